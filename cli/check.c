@@ -1,6 +1,7 @@
 /* brio check: the certificate of the faces of a file, the exact Delaunay check of its tetrahedra, or both. */
 #include "certificate.h"
 #include "commands.h"
+#include "coverage.h"
 #include "hints.h"
 #include "weights.h"
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 typedef struct arguments {
     weights_options weights;
     bool open, self_intersections;
+    const char *samples;
 } arguments;
 
 static const option options[] = {
@@ -15,6 +17,8 @@ static const option options[] = {
     {"open", 0, OPTION_FLAG, offsetof(arguments, open), NULL, "a surface may have a boundary", 0},
     {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
      "faces may not run through each other; counts the pairs that do", 0},
+    {"samples", 0, OPTION_INPUT, offsetof(arguments, samples), "FILE",
+     "points that the surface is to go through: what of it they do not show, and which it leaves", 0},
     {0},
 };
 
@@ -55,12 +59,25 @@ static brio_status refuse_idle(run *r, const arguments *a, const brio_mesh *mesh
                  {"weights-mod", "tetrahedra", a->weights.exponent != NO_EXPONENT && !mesh->num_tetrahedra},
                  {"unweighted", "tetrahedra", a->weights.unweighted && !mesh->num_tetrahedra},
                  {"open", "faces", a->open && !mesh->num_faces},
-                 {"self-intersections", "faces", a->self_intersections && !mesh->num_faces}};
+                 {"self-intersections", "faces", a->self_intersections && !mesh->num_faces},
+                 {"samples", "faces", a->samples && !mesh->num_faces}};
     for (size_t i = 0; i < sizeof given / sizeof *given; i++)
         if (given[i].idle)
             return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is about %s, and %s has none", given[i].name, given[i].what,
                             r->operands[0]);
     return BRIO_OK;
+}
+
+/* Holds the surface against the points of a file. */
+static brio_status compare_with_samples(run *r, const brio_mesh *mesh, const char *path) {
+    brio_mesh *points = NULL;
+    brio_status status = BRIO_OK;
+    TRY(cli_read_points(r, path, &points));
+    if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points", path);
+    TRY(cli_report_coverage(r, mesh, points));
+done:
+    brio_mesh_free(points);
+    return status;
 }
 
 static brio_status check(run *r) {
@@ -79,6 +96,11 @@ static brio_status check(run *r) {
     if (mesh->num_tetrahedra) TRY(check_tetrahedra(r, a, mesh));
     unsigned how = (a->open ? CERTIFY_OPEN : 0u) | (a->self_intersections ? CERTIFY_EMBEDDED : 0u);
     if (mesh->num_faces) status = blame_file(r, cli_certify(r, mesh, how | CERTIFY_INPUT));
+    if (a->samples && (status == BRIO_OK || status == BRIO_ERR_CHECK)) {
+        brio_status judged = status;
+        TRY(compare_with_samples(r, mesh, a->samples));
+        status = judged;
+    }
     cli_examine(r, status, mesh);
 done:
     brio_mesh_free(mesh);
@@ -92,6 +114,7 @@ const command cli_check = {
     .description = "Exit code 5 says that the file does not pass, the report and the message why.",
     .examples = "brio check surface.ply\nclosed, manifold, oriented?\n"
                 "brio check surface.ply --self-intersections\ndo faces run through each other, too?\n"
+                "brio check surface.ply --open --samples scan.ply\nwhat of it did the scan see?\n"
                 "brio check tetrahedra.vtu\nare the tetrahedra Delaunay?\n",
     .group = GROUP_FILES,
     .min_operands = 1,

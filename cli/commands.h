@@ -20,6 +20,8 @@
     X(info)                                                                                                            \
     X(generate)                                                                                                        \
     X(subdivide)                                                                                                       \
+    X(simplify)                                                                                                        \
+    X(terrain)                                                                                                         \
     X(locate)                                                                                                          \
     X(interpolate)
 

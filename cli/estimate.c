@@ -13,6 +13,8 @@ double cli_mesh_bytes(const brio_mesh *mesh) {
         bytes += FACE_OFFSET * (double)mesh->num_faces + INDEX * (double)mesh->face_offsets[mesh->num_faces];
     for (size_t i = 0; i < mesh->num_properties; i++)
         bytes += (double)brio_scalar_size(mesh->properties[i].type) * (double)mesh->num_vertices;
+    for (size_t i = 0; i < mesh->num_face_properties; i++)
+        bytes += (double)brio_scalar_size(mesh->face_properties[i].type) * (double)mesh->num_faces;
     return bytes;
 }
 

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MESHES         "surface hull alpha offset iso generate subdivide medial check restricted"
+#define MESHES         "surface hull alpha offset iso generate subdivide simplify medial check restricted"
 #define TRIANGULATIONS "delaunay voronoi"
 #define POLES          "surface medial offset"
 
@@ -24,6 +24,7 @@ const glossary_line cli_glossary[] = {
     {NULL, NULL, "moved", NULL, "the most that a coordinate in the file differs from what it was", LINE_PLAIN,
      STYLE_PLAIN},
     {NULL, NULL, "merged", NULL, "points that have another point's position in the file", LINE_PLAIN, STYLE_PLAIN},
+    {"simplify", NULL, "faces_before", "faces before", "faces of the input", LINE_PLAIN, STYLE_PLAIN},
     {"subdivide", NULL, "levels", NULL, "how many times each triangle became four", LINE_PLAIN, STYLE_PLAIN},
     {"surface offset hull alpha medial", NULL, "samples", "distinct points",
      "distinct positions among the points of the input", LINE_PLAIN, STYLE_PLAIN},
@@ -117,6 +118,7 @@ const glossary_line cli_glossary[] = {
     {"info", NULL, "spacing", NULL, "typical distance of a point to its nearest neighbour", LINE_PLAIN, STYLE_PLAIN},
     {"info", NULL, "properties", NULL, "what the file holds for each point besides the position, with the types",
      LINE_PLAIN, STYLE_PLAIN},
+    {"info", NULL, "face_properties", "properties of faces", "likewise for each face", LINE_PLAIN, STYLE_PLAIN},
     {"info", NULL, "ranges", NULL, "least and greatest value of each property", LINE_PLAIN, STYLE_PLAIN},
     {"info", NULL, "estimate_bytes", "memory needed", "estimate for each command; --max-memory goes by it", LINE_PLAIN,
      STYLE_PLAIN},
@@ -133,6 +135,25 @@ const glossary_line cli_glossary[] = {
     {"compare", NULL, "p95", "95 % within", "distance that 95 in 100 places are within", LINE_PLAIN, STYLE_PLAIN},
     {"compare", NULL, "hausdorff", "largest distance", "largest distance that was met (Hausdorff)", LINE_PLAIN,
      STYLE_PLAIN},
+    {"compare", NULL, "points", NULL, "points compared with the surface", LINE_PLAIN, STYLE_PLAIN},
+    {"compare", NULL, "signed_mean", "mean with signs", "mean distance, negative inside or behind the surface",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"compare", NULL, "percentiles", NULL, "distances, with signs, that so many in 100 are below", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"compare", NULL, "histogram", NULL,
+     "how many distances are in each of 20 parts between the least and the greatest", LINE_VERBOSE, STYLE_PLAIN},
+    {"compare", NULL, "within", NULL, "whether everything is within --within", LINE_PLAIN, STYLE_PLAIN},
+    {"compare", NULL, "outside", NULL, "points that are not", LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "points", NULL, "points of the input", LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "other_classes", "of other classes", "points that --class left out", LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "duplicates", NULL, "points at the place of another one on the map; the first one counts",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "triangles", NULL, "triangles", LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "left_out", "left out", "triangles with a side over --max-edge", LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "columns", NULL, "of the raster", LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "rows", NULL, "of the raster", LINE_PLAIN, STYLE_PLAIN},
+    {"terrain", NULL, "empty_cells", "cells without height", "cells of the raster whose middle is in no triangle",
+     LINE_PLAIN, STYLE_PLAIN},
     {"compare", NULL, "normal_consistency", NULL,
      "mean |cosine| of the angle between normals at nearest places; 1 is best", LINE_PLAIN, STYLE_PLAIN},
     {"compare", NULL, "diagonal", NULL, "of the box of the second surface, the measure of its size", LINE_PLAIN,
@@ -197,7 +218,7 @@ const glossary_line cli_glossary[] = {
      STYLE_UNLESS_ZERO},
     {"surface", NULL, "holes", NULL,
      "holes of the surface that were left open, where the points end (--open, --closed)", LINE_PLAIN, STYLE_PLAIN},
-    {"surface", NULL, "bridges", NULL,
+    {"surface check", NULL, "bridges", NULL,
      "what the surface has between points that are far apart, where nothing was seen:", LINE_PLAIN, STYLE_PLAIN},
     {NULL, "bridges", "number", NULL, "gaps that triangles span, several times larger than the others there",
      LINE_PLAIN, STYLE_PLAIN},
@@ -205,7 +226,9 @@ const glossary_line cli_glossary[] = {
     {NULL, "bridges", "largest_radius", NULL, "of the largest of them, in the unit of the points; 0: there is none",
      LINE_PLAIN, STYLE_UNLESS_ZERO},
     {NULL, "bridges", "largest_centre", NULL, "where that is", LINE_VERBOSE, STYLE_PLAIN},
-    {"surface", NULL, "far_area_percent", "far area, per cent",
+    {"surface check", NULL, "points_left_out", "points left out", "points farther than two spacings from the surface",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"surface check", NULL, "far_area_percent", "far area, per cent",
      "per cent of the area that is over five spacings of the points round it from the nearest point", LINE_PLAIN,
      STYLE_PLAIN},
     {"surface offset", NULL, "left_out", "left open", "faces left out because they span holes (--open)", LINE_PLAIN,

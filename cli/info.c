@@ -30,8 +30,11 @@ typedef struct survey {
     bool failed; /* out of memory */
     brio_file_facts file;
     facts left_out;      /* the names of what is not read of the file */
+    facts of_faces;      /* the names and types of the properties of its faces */
     facts crs, metadata; /* what the file says of all its points: of their coordinate system; everything else */
 } survey;
+
+static const char *const type_names[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
 
 static const option options[] = {{0}};
 static const char defaults = 0; /* info has no options of its own */
@@ -52,6 +55,12 @@ static int take_properties(survey *v, const brio_mesh *block) {
         v->ranges[i].low = 1;
     }
     return 0;
+}
+
+/* Files with faces are one block. */
+static void take_face_properties(survey *v, const brio_mesh *block) {
+    for (size_t i = 0; i < block->num_face_properties && block->num_faces; i++)
+        cli_fact_text(&v->of_faces, block->face_properties[i].name, type_names[block->face_properties[i].type]);
 }
 
 /* A text that people can read, or else how many bytes there are. */
@@ -79,6 +88,7 @@ static int take_block(const brio_mesh *block, void *user) {
     survey *v = user;
     double low[3], high[3];
     if (!v->ranges) take_metadata(v, block);
+    if (!v->ranges) take_face_properties(v, block);
     if (!v->ranges && take_properties(v, block)) return v->failed = true;
     if (block->num_vertices) cli_cloud_box(block->vertices, block->num_vertices, low, high);
     for (int k = 0; k < 3 && block->num_vertices; k++) {
@@ -125,6 +135,7 @@ static void report_metadata(run *r, const char *name, const facts *metadata) {
 
 static void free_survey(survey *v) {
     cli_facts_free(&v->left_out);
+    cli_facts_free(&v->of_faces);
     cli_facts_free(&v->crs);
     cli_facts_free(&v->metadata);
     free(v->ranges);
@@ -181,9 +192,8 @@ static void report_box(facts *f, const survey *v) {
 }
 
 static void report_properties(facts *f, const survey *v) {
-    static const char *const types[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
     cli_fact_open(f, "properties", FACT_OBJECT);
-    for (size_t i = 0; i < v->num_ranges; i++) cli_fact_text(f, v->ranges[i].name, types[v->ranges[i].type]);
+    for (size_t i = 0; i < v->num_ranges; i++) cli_fact_text(f, v->ranges[i].name, type_names[v->ranges[i].type]);
     cli_fact_close(f);
     cli_fact_open(f, "ranges", FACT_OBJECT);
     for (size_t i = 0; i < v->num_ranges; i++) {
@@ -309,6 +319,7 @@ static brio_status info(run *r) {
     report_box(f, &v);
     TRY(measure(r, mesh));
     report_properties(f, &v);
+    report_metadata(r, "face_properties", &v.of_faces);
     report_metadata(r, "crs", &v.crs);
     report_metadata(r, "metadata", &v.metadata);
     report_left_out(r, &v);

@@ -19,11 +19,24 @@ static bool is_held(const brio_mesh *mesh, const char *name, unsigned holds) {
     return false;
 }
 
+/* Whether a format has a place for a property of faces: for all, or for their colours. */
+static bool is_held_of_faces(const char *name, unsigned holds) {
+    static const char *const colour[] = {"red", "green", "blue", "alpha"};
+    bool one = false;
+    for (int k = 0; k < 4; k++) one |= !strcmp(name, colour[k]);
+    return holds & BRIO_HOLDS_FACE_PROPERTIES || (one && holds & BRIO_HOLDS_FACE_COLOURS);
+}
+
 /* Lists the names of the properties that a format does not hold, the first few of them. Returns how many there are. */
 static size_t list_names(const brio_mesh *mesh, unsigned holds, char text[1024]) {
     enum { MOST = 12 };
     size_t used = 0, count = 0;
-    for (size_t i = 0; i < mesh->num_properties; i++) {
+    for (size_t i = 0; i < mesh->num_face_properties && mesh->num_faces && holds & BRIO_HOLDS_FACES; i++) {
+        const char *name = mesh->face_properties[i].name;
+        if (is_held_of_faces(name, holds)) continue;
+        if (count++ < MOST) used += (size_t)snprintf(text + used, 1024 - used, " \"%s of faces\"", name);
+    }
+    for (size_t i = 0; i < mesh->num_properties && !(holds & BRIO_HOLDS_NAMES); i++) {
         if (is_held(mesh, mesh->properties[i].name, holds)) continue;
         if (count++ < MOST) used += (size_t)snprintf(text + used, 1024 - used, " %s", mesh->properties[i].name);
     }
@@ -36,11 +49,10 @@ void cli_tell_lost(run *r, const char *path, const brio_mesh *mesh, brio_format 
     unsigned holds = brio_format_facts(format)->holds;
     if (mesh->num_faces && !(holds & BRIO_HOLDS_FACES)) cli_warn(r, WARNING_FACES, path);
     if (mesh->num_edges && !(holds & BRIO_HOLDS_EDGES)) cli_warn(r, WARNING_EDGES, path);
-    if (!mesh->num_properties || !r->has_properties) return;
-    if (!list_names(mesh, holds, names)) return;
+    if (!r->has_properties || !list_names(mesh, holds, names)) return;
     if (holds & BRIO_HOLDS_PROPERTIES && !(holds & BRIO_HOLDS_NAMES))
         cli_warn(r, WARNING_NAMES, path, names);
-    else if (!(holds & BRIO_HOLDS_PROPERTIES))
+    else
         cli_warn(r, WARNING_PROPERTIES, path, names);
 }
 

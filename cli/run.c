@@ -263,7 +263,7 @@ brio_status cli_read(run *r, const char *path, brio_mesh **out) {
     TRY(cli_check_interrupt(r));
     cli_tell_input(r, path);
     TRY(cli_check_precision(r, path, *out));
-    r->has_properties |= (*out)->num_properties > 0;
+    r->has_properties |= (*out)->num_properties > 0 || (*out)->num_face_properties > 0;
     cli_lap(r, "read");
 done:
     return status;

@@ -55,7 +55,7 @@ typedef struct run {
     brio_context *ctx;
     facts facts;
     bool over_map;             /* texts of points may have no z, which then is 0 */
-    bool has_properties;       /* an input's points have */
+    bool has_properties;       /* an input's points or faces have */
     bool wants_origins;        /* set by a command before it reads: cli_read_options asks for places of scanners, */
     int added_origins;         /* 1: which the file that was read last then has as properties that are not its own */
     uint64_t dropped, missing; /* of the file that was read last, as in brio_read_options */

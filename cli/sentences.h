@@ -47,6 +47,10 @@
     "%.1f %% of the area spans gaps between the points, where nothing was seen: %zu bridges, the largest at %g %g "    \
     "%g, "                                                                                                             \
     "%g across; --open auto leaves out what was not seen"
+#define WARNING_UNSEEN   "%.1f %% of the area is where no point is near: %zu bridges, the largest at %g %g %g, %g across"
+#define WARNING_LEFT_OUT "%zu of %zu points are farther than two spacings from the surface"
+#define WARNING_MORE_FACES                                                                                             \
+    "%zu faces are left, more than the %zu asked for: borders and topology stay, and no faces may come to cross"
 #define WARNING_THETA        "--theta: no guarantee holds under %g"
 #define WARNING_LOST         "%s is without:%s"
 #define WARNING_RENAMED      "%s has other names for:%s"

@@ -1,6 +1,7 @@
 /* brio surface: a surface through the points of a file, with its certificate. */
 #include "certificate.h"
 #include "commands.h"
+#include "coverage.h"
 #include "estimate.h"
 #include "evidence.h"
 #include "files.h"
@@ -25,7 +26,14 @@ typedef struct arguments {
     int extraction;
     component_options components;
     evidence_options evidence;
+    const char *left_out; /* file for the points that the surface leaves */
 } arguments;
+
+/* What is known of a surface before it is looked at. */
+typedef struct {
+    bool open;        /* it may end where the points do */
+    bool leaves_many; /* so many samples are on no face that those left out are counted */
+} outcome;
 
 static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},
                                         {"power-crust", POWER_CRUST},
@@ -52,6 +60,8 @@ static const option options[] = {
      0},
     {"self-intersections", 0, OPTION_FLAG, FIELD(self_intersections), NULL,
      "count the pairs of faces that run through each other", 0},
+    {"left-out", 0, OPTION_OUTPUT, FIELD(left_out), "FILE",
+     "write the points that the surface leaves more than two spacings away", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
     SOLID_ROWS(arguments, crust),
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay, cocone and tight-cocone", 0},
@@ -204,6 +214,10 @@ done:
 /* Over this share of guesses the user is told. Chosen. */
 static const double MANY_GUESSES = 0.02;
 
+/* Over this share of samples on no face it is counted how many of them the surface leaves. Chosen: smaller shares are strays and
+ * samples beside others. */
+static const double MANY_UNUSED = 0.005;
+
 static void report_confidence(run *r, double share) {
     cli_fact_real(&r->facts, "uncertain_share", share);
     if (share > MANY_GUESSES) cli_warn(r, WARNING_GUESS, 100 * share);
@@ -289,8 +303,7 @@ static brio_labeled_delaunay_options labeled_delaunay_options(run *r) {
     return o;
 }
 
-/* open  set to true if the surface ends where the points do. */
-static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, bool *open) {
+static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, outcome *found) {
     brio_labeled_delaunay_options o = labeled_delaunay_options(r);
     brio_labeled_delaunay_stats s = {.size = sizeof s};
     const arguments *a = r->arguments;
@@ -312,7 +325,8 @@ static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surfa
     if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
     TRY(complete(r, points, samples, s.samples, *surface));
     report_labeled_delaunay(r, &s);
-    *open |= !closed;
+    found->leaves_many = (double)s.unused > MANY_UNUSED * (double)s.samples;
+    found->open |= !closed;
 done:
     cli_evidence_free(&e);
     free(samples);
@@ -421,12 +435,12 @@ static void suggest(run *r, brio_status status, const brio_mesh *points) {
     if (a->method != COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
 }
 
-static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, bool *open) {
+static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, outcome *found) {
     switch (method_of(r->arguments)) {
     case POWER_CRUST:
         return power_crust(r, points, result);
     case LABELED_DELAUNAY:
-        return labeled_delaunay(r, points, result, open);
+        return labeled_delaunay(r, points, result, found);
     default:
         return cocone(r, points, result);
     }
@@ -443,18 +457,20 @@ static brio_status surface(run *r) {
         FAIL(r, BRIO_ERR_ARGUMENT, "--from and --%s exclude each other", a->crust.closed ? "closed" : "pieces");
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
+    if (a->left_out) TRY(cli_check_beside(r, "left-out", a->left_out, cli_point_formats));
     r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
     TRY(cli_read_samples(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
-    bool open = a->method == COCONE || (a->crust.open && method_of(a) == POWER_CRUST);
-    status = reconstruct(r, points, &result, &open);
+    outcome found = {.open = a->method == COCONE || (a->crust.open && method_of(a) == POWER_CRUST)};
+    status = reconstruct(r, points, &result, &found);
     suggest(r, status, points);
     if (status != BRIO_OK) goto done;
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
+    if (a->left_out || found.leaves_many) TRY(cli_report_left_out(r, result, points, a->left_out));
     brio_mesh_free(points);
     points = NULL;
-    unsigned how = open ? CERTIFY_OPEN : 0u;
+    unsigned how = found.open ? CERTIFY_OPEN : 0u;
     if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
     TRY(cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u)));
     TRY(cli_write(r, result));

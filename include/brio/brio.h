@@ -772,16 +772,16 @@ typedef enum brio_scalar {
 /** Returns the bytes of a scalar type. */
 BRIO_API size_t brio_scalar_size(brio_scalar type);
 
-/** One named number for each vertex. */
+/** One named number for each vertex, or for each face. */
 typedef struct brio_property {
     char name[64];
     brio_scalar type;
     int reserved_int;
-    void *data; /* #V scalars of `type` */
+    void *data; /* #V or #F scalars of `type` */
     uint64_t reserved[2];
 } brio_property;
 
-/** What a file holds: points, polygons, tetrahedra or edges over them, and properties of the points. Polygons are stored
+/** What a file holds: points, polygons, tetrahedra or edges over them, and properties of points and polygons. Polygons are stored
  *  one after the other: face f has the vertices face_vertices[face_offsets[f]] to face_vertices[face_offsets[f+1] - 1].
  *  Vertices at the same position stay distinct. The mesh owns all arrays; the array of an absent part is NULL. A program
  *  may change the numbers in the arrays, but neither pointers nor counts. Later versions may append fields. */
@@ -810,6 +810,8 @@ typedef struct brio_mesh {
     double coordinate_origin[3]; /* plus the origin. brio_write keeps both. Steps are 0 if they are not known. */
     size_t num_metadata;
     brio_metadata *metadata; /* what the file says of all its points at once, such as their coordinate system */
+    size_t num_face_properties;
+    brio_property *face_properties; /* of the faces */
 } brio_mesh;
 
 /** Makes an empty mesh. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
@@ -822,7 +824,7 @@ BRIO_API void brio_mesh_free(brio_mesh *mesh);
 
 /** Copies vertices into a mesh without vertices and properties; vertices NULL sets them to 0. */
 BRIO_API brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size_t num_vertices);
-/** Copies polygons into a mesh.   offsets  #F + 1, from 0 on, not decreasing; NULL without faces.   indices  offsets[#F]. */
+/** Copies polygons into a mesh without faces and properties of faces.   offsets  #F + 1, from 0 on, not decreasing; NULL without faces.   indices  offsets[#F]. */
 BRIO_API brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices,
                                          size_t num_faces);
 /** Copies tetrahedra into a mesh. Tetrahedron i has four vertices at tetrahedra + stride * i: stride 4 for a packed
@@ -839,6 +841,12 @@ BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, b
 BRIO_API void brio_mesh_remove_property(brio_mesh *mesh, const char *name);
 /** Returns the property of that name, or NULL. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
+/** Adds a property of the faces, as brio_mesh_add_property adds one of the vertices; names of the two do not meet. */
+BRIO_API brio_status brio_mesh_add_face_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
+/** Removes the property of the faces of that name, if there is one. */
+BRIO_API void brio_mesh_remove_face_property(brio_mesh *mesh, const char *name);
+/** Returns the property of the faces of that name, or NULL. */
+BRIO_API const brio_property *brio_mesh_face_property(const brio_mesh *mesh, const char *name);
 /** Adds metadata, or replaces that of the same name.   bytes  copied.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the name is empty, has over 63 bytes, or is no UTF-8), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_set_metadata(brio_mesh *mesh, const char *name, const void *bytes, size_t size);
@@ -871,7 +879,7 @@ BRIO_API brio_status brio_mesh_carry_properties(brio_context *ctx, const brio_me
                                                 brio_mesh *mesh);
 
 /** Drops components of a mesh: sets of faces joined across edges. Also drops the vertices, with their properties, that
- *  only dropped faces used; the rest keeps its order.
+ *  only dropped faces used; the rest keeps its order, and faces that stay keep their properties.
  *  largest      1: keeps one component, that of the largest area (among equal areas, the one of more faces, then the
  *               first one); 0: keeps all.
  *  least_faces  drops the components of fewer faces, before the largest one is looked for.
@@ -895,7 +903,8 @@ typedef struct brio_merge_stats {
  *  and its properties. Vertices keep their order. The merged positions do not depend on the order of the vertices, nor on
  *  the number of threads.
  *  A face loses corners that equal the next one, and is dropped if fewer than three distinct corners are left. Tetrahedra
- *  and edges with equal corners are dropped, and so are those that were given like that. Faces that become equal stay.
+ *  and edges with equal corners are dropped, and so are those that were given like that. Faces that become equal stay, and
+ *  faces that stay keep their properties.
  *  distance  0: equal positions only; or a normal number, at least 2^-38 times the largest coordinate. Distances that are
  *            this one up to rounding, 2^-50 of the greatest coordinate, count as this one.
  *  stats     NULL, or receives what was changed.
@@ -953,10 +962,48 @@ typedef struct brio_distance {
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
+/** Measures how far points are from a surface: exactly the nearest point of its faces, and the side. Of a closed surface points
+ *  inside have negative distances, by the winding number, exactly, whichever way its faces look. Of any other surface points behind
+ *  the faces have: by the triangles at the nearest point, and where these disagree by their normals, weighted by angles. Vertices at
+ *  one position count as one.   distance  #P, written.
+ *  Cost: O(log F) expected a point, with all threads; 50 bytes a triangle.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or no face of three corners), BRIO_ERR_NOT_FINITE,
+ *  BRIO_ERR_NO_ANSWER (doubles cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Baerentzen Aanaes 2005]. */
+BRIO_API brio_status brio_mesh_signed_distances(brio_context *ctx, const brio_mesh *mesh, const double *points,
+                                                size_t num_points, double *distance);
+
+/** What of a surface points do not show, and what of the points a surface leaves. Lengths are in spacings of the points
+ *  there: the spacing of a square grid with as many points within the distance of the sixth nearest one. */
+typedef struct brio_coverage {
+    size_t size;
+    double far_share;    /* of the area: what is farther than five spacings from all points */
+    size_t bridges;      /* sets of faces, joined across edges, that are over 2.5 spacings away somewhere, one over 5 */
+    double bridge_share; /* of the area: that of the bridges */
+    double
+        bridge_radius; /* of the largest bridge, by area: how far it is from all points, and where; 0: there is none */
+    double bridge_centre[3];
+    size_t left_out; /* points that are farther than two spacings from the surface */
+} brio_coverage;
+
+/** Compares a surface, of any origin, with the points that it is to go through. Polygons count as fans.
+ *  bridge  NULL, or #F: receives 1 for faces of bridges.   out  its `size` set.
+ *  Cost: about ten nearest points a point and a face; 90 bytes a point and 110 a face.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, no faces or no points), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_mesh_coverage(brio_context *ctx, const brio_mesh *mesh, const double *points,
+                                        size_t num_points, uint8_t *bridge, brio_coverage *out);
+
+/** Finds the points that brio_coverage.left_out counts.
+ *  left_out  NULL, or #P: receives 1 for points that are left out, 0 for others.   count  receives their number.
+ *  Cost and errors as brio_mesh_coverage, without what the faces take. */
+BRIO_API brio_status brio_mesh_left_out(brio_context *ctx, const brio_mesh *mesh, const double *points,
+                                        size_t num_points, uint8_t *left_out, size_t *count);
+
 /** Subdivides a mesh of triangles by the butterfly scheme. Each level adds one vertex on every edge and divides every
  *  triangle into four. Old vertices keep their indices and positions; the limit surface is smooth, also at vertices
  *  without six neighbours. Boundaries are subdivided as curves. A new vertex receives the mean of the properties of its
- *  edge's ends or, for integer properties, those of one end. Of two triangles with the same corners the result has different
+ *  edge's ends or, for integer properties, those of one end; a triangle has the properties of the one that it was part of. Of two triangles with the same corners the result has different
  *  edges with the same ends, which a second level refuses.
  *  levels  1 to 15.   out  owned by the caller.
  *  Cost: linear in the result; 64 bytes a vertex of the result and 118 a vertex of the level before.
@@ -972,6 +1019,9 @@ typedef struct brio_mesh_simplify_options {
     double
         tolerance; /* most distance of a new vertex from the planes of the triangles that it stands for, as the root of
                             the mean of squares, in the unit of the mesh; default 0: any distance */
+    int any; /* 1: takes any mesh: cuts polygons into triangles, drops faces without three distinct corners, and takes what
+                is not manifold and oriented for boundaries, which stay; default 0: such meshes are refused */
+    int reserved_int;
 } brio_mesh_simplify_options;
 
 BRIO_API void brio_mesh_simplify_options_init(brio_mesh_simplify_options *options, size_t size);
@@ -982,18 +1032,21 @@ static inline brio_mesh_simplify_options brio_mesh_simplify_options_default(void
 }
 
 /** Simplifies a mesh of triangles in place: edges collapse, about in the order of their errors. The mesh stays manifold and oriented,
- *  and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary stay. Vertices that
- *  no triangle uses are dropped. A vertex keeps the properties of one of those that it stands for.
+ *  and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary stay. Triangles do not come to
+ *  cross others: the pairs that brio_mesh_self_intersections counts do not become more. Where collapses would make them cross,
+ *  the work begins anew, with an exact test of each collapse, in one thread. Boundaries, topology and these tests may leave more
+ *  faces than asked for. Vertices that no triangle uses are dropped. A vertex keeps the properties of one of those that it stands for, a triangle those that it had.
  *  The result does not depend on the number of threads, nor on the numbers of the vertices; the order of the faces and of
  *  their corners breaks ties.
- *  Cost: O(n log n); 175 bytes a vertex beside the mesh, and 24 more for each vertex that is left when the last edges
- *  collapse.
+ *  Cost: O(n log n); 223 bytes a vertex beside the mesh, and 24 more for each vertex that is left when the last edges
+ *  collapse; 112 more a vertex, and about ten times the seconds, where each collapse is tested.
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT (neither target nor tolerance, a negative one, a face is no triangle or has a vertex
- *  twice, an index is out of range, the mesh is not manifold and oriented at an edge or a vertex), BRIO_ERR_TOO_LARGE (2^32 corners) and
+ *  twice, the mesh is not manifold and oriented at an edge or a vertex, without options.any; an index is out of range; the mesh has edges
+ *  or tetrahedra), BRIO_ERR_TOO_LARGE (2^32 corners) and
  *  BRIO_ERR_NOT_FINITE, after which the mesh is
  *  what it was; BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, BRIO_ERR_NO_ANSWER (doubles cannot hold a new vertex), after which
  *  it can only be freed.
- *  Based on: [Garland Heckbert 1997], [Dey Edelsbrunner Guha Nekhayev 1999]. */
+ *  Based on: [Garland Heckbert 1997], [Dey Edelsbrunner Guha Nekhayev 1999], [Gumhold Borodin Klein 2003]. */
 BRIO_API brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *options);
 
 /** Edges between vertices. */
@@ -1628,7 +1681,7 @@ typedef struct brio_labeled_delaunay_options {
     size_t size;
     uint64_t seed;    /* default 1 */
     brio_noise noise; /* what to do about noisy samples; default BRIO_NOISE_AUTO */
-    int confidence;   /* 1: adds the vertex property "confidence"; default 0 */
+    int confidence;   /* 1: adds the property "confidence" of vertices and of faces; default 0 */
     double
         open; /* K > 0, finite: leaves open the holes that have an empty circle along the surface whose radius is over
                          K spacings (the median distance from a vertex to its nearest neighbour), whatever `holes` is. The
@@ -1693,7 +1746,9 @@ typedef struct brio_labeled_delaunay_stats {
  *           property "confidence" (float32) is the probability that the surface is right there, between 0 and 1: a
  *           logistic regression on the share of the votes round the vertex that the labels contradict and on the
  *           log-odds of the labels beside its triangles, measured on generated solids. Vertices under 0.7 are
- *           guesses (docs/algorithms.md tells how often those of real models were wrong).
+ *           guesses (docs/algorithms.md tells how often those of real models were wrong). Faces have the property "bridge"
+ *           (uint8): 1 for those that span gaps of the samples, which stats.bridges counts; and with options.confidence
+ *           "confidence" (float32), the probability that the face is right, fitted to simulated scans.
  *  samples  NULL, or room for #P: receives for each vertex the index of its sample, ascending; with options.simplify, of
  *           the sample whose vertex it was before edges collapsed.
  *  Cost: one triangulation, and the labels, about as long; about 1,000 bytes a sample at the peak.
@@ -1907,17 +1962,19 @@ BRIO_API brio_format brio_format_of(const char *path);
 enum {
     BRIO_HOLDS_FACES = 1,
     BRIO_HOLDS_TETRAHEDRA = 2,
-    BRIO_HOLDS_EDGES = 4,        /* of brio_mesh.edges */
-    BRIO_HOLDS_PROPERTIES = 8,   /* of the vertices, any of them */
-    BRIO_HOLDS_NAMES = 16,       /* the names of the properties */
-    BRIO_HOLDS_DOUBLES = 32,     /* coordinates in double precision */
-    BRIO_HOLDS_SINGLES = 64,     /* coordinates in single precision: by choice where doubles are held, too */
-    BRIO_HOLDS_TEXT = 128,       /* the file can be a text */
-    BRIO_HOLDS_BINARY = 256,     /* the file can be binary */
-    BRIO_HOLDS_COMPRESSED = 512, /* brio_write_options.compress has a meaning */
-    BRIO_HOLDS_COLOURS = 1024,   /* red, green and blue, though not all properties */
-    BRIO_HOLDS_NORMALS = 2048,   /* nx, ny and nz, though not all properties */
-    BRIO_HOLDS_INTENSITY = 4096  /* intensity, though not all properties */
+    BRIO_HOLDS_EDGES = 4,              /* of brio_mesh.edges */
+    BRIO_HOLDS_PROPERTIES = 8,         /* of the vertices, any of them */
+    BRIO_HOLDS_NAMES = 16,             /* the names of the properties */
+    BRIO_HOLDS_DOUBLES = 32,           /* coordinates in double precision */
+    BRIO_HOLDS_SINGLES = 64,           /* coordinates in single precision: by choice where doubles are held, too */
+    BRIO_HOLDS_TEXT = 128,             /* the file can be a text */
+    BRIO_HOLDS_BINARY = 256,           /* the file can be binary */
+    BRIO_HOLDS_COMPRESSED = 512,       /* brio_write_options.compress has a meaning */
+    BRIO_HOLDS_COLOURS = 1024,         /* red, green and blue, though not all properties */
+    BRIO_HOLDS_NORMALS = 2048,         /* nx, ny and nz, though not all properties */
+    BRIO_HOLDS_INTENSITY = 4096,       /* intensity, though not all properties */
+    BRIO_HOLDS_FACE_PROPERTIES = 8192, /* of the faces, any of them */
+    BRIO_HOLDS_FACE_COLOURS = 16384    /* red, green, blue and alpha of the faces, though not all properties */
 };
 
 /** What is known of a format. */
@@ -1980,7 +2037,7 @@ static inline brio_read_options brio_read_options_default(void) {
     return options;
 }
 
-/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of the vertices; skips other elements.
+/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of vertices and polygons; skips other elements.
  *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads. A file
  *  compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or libzstd; messages
  *  then count lines and bytes of what was decompressed.
@@ -2115,7 +2172,7 @@ typedef struct brio_convert_stats {
  *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
  *  file is in memory.
  *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, the names of metadata ("crs" for a coordinate system), "faces of dropped points" if outliers or thinning take corners of faces, tetrahedra or edges,
+ *  properties, "NAME of faces" for those of faces, the names of metadata ("crs" for a coordinate system), "faces of dropped points" if outliers or thinning take corners of faces, tetrahedra or edges,
  *  and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
  *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
  *  With options->crs an input without a coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written.

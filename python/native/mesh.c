@@ -14,30 +14,38 @@ PyObject *call_end_with_mesh(call *c, brio_status status, brio_mesh *mesh) {
 
 static const char letters[] = {'b', 'B', 'h', 'H', 'i', 'I', 'f', 'd'};
 
-/* Adds a property of one number a vertex, an array of one dimension. */
-static brio_status add_property(brio_mesh *mesh, const char *name, PyObject *array) {
+/* What properties are of. */
+typedef struct {
+    const char *name;
+    brio_status (*add)(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
+} owner;
+
+static const owner of_vertices = {"vertex", brio_mesh_add_property}, of_faces = {"face", brio_mesh_add_face_property};
+
+/* Adds a property of one number for each of `count`, an array of one dimension. */
+static brio_status add_property(brio_mesh *mesh, const owner *of, size_t count, const char *name, PyObject *array) {
     Py_buffer view;
     void *data;
     brio_status status = BRIO_ERR_ARGUMENT;
     if (PyObject_GetBuffer(array, &view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT)) return status;
     int type = 0;
     while (type < BRIO_SCALAR_END && (view.format[1] || letters[type] != view.format[0])) type++;
-    if (type == BRIO_SCALAR_END || view.ndim != 1 || (size_t)view.shape[0] != mesh->num_vertices)
-        PyErr_Format(PyExc_ValueError, "property %s: not one number a vertex, of a type of at most 32 bits or float64",
-                     name);
-    else if ((status = brio_mesh_add_property(mesh, name, (brio_scalar)type, &data)) == BRIO_OK && view.len)
+    if (type == BRIO_SCALAR_END || view.ndim != 1 || (size_t)view.shape[0] != count)
+        PyErr_Format(PyExc_ValueError, "property %s: not one number a %s, of a type of at most 32 bits or float64",
+                     name, of->name);
+    else if ((status = of->add(mesh, name, (brio_scalar)type, &data)) == BRIO_OK && view.len)
         memcpy(data, view.buf, (size_t)view.len);
     PyBuffer_Release(&view);
     return status;
 }
 
-static brio_status add_properties(brio_mesh *mesh, PyObject *properties) {
+static brio_status add_properties(brio_mesh *mesh, const owner *of, size_t count, PyObject *properties) {
     PyObject *name, *array;
     Py_ssize_t at = 0;
     brio_status status = BRIO_OK;
     while (status == BRIO_OK && PyDict_Next(properties, &at, &name, &array)) {
         const char *text = PyUnicode_AsUTF8AndSize(name, NULL);
-        status = text ? add_property(mesh, text, array) : BRIO_ERR_ARGUMENT;
+        status = text ? add_property(mesh, of, count, text, array) : BRIO_ERR_ARGUMENT;
     }
     return status;
 }
@@ -92,14 +100,16 @@ static int open_steps(input *in, PyObject *steps) {
     return maybe_open(in, steps, "steps", 'd', 3) || (in->data && input_has_rows(in, "steps", 2)) ? -1 : 0;
 }
 
-/* mesh(vertices, offsets, corners, tetrahedra, edges, properties, steps): a mesh of copies; None for an absent part. */
+/* mesh(vertices, offsets, corners, tetrahedra, edges, properties, steps, face_properties): a mesh of copies; None for an
+ * absent part. */
 static PyObject *mesh(PyObject *module, PyObject *args) {
-    PyObject *vertices, *offsets, *corners, *tetrahedra, *edges, *properties, *steps, *result = NULL;
+    PyObject *vertices, *offsets, *corners, *tetrahedra, *edges, *properties, *steps, *of_face, *result = NULL;
     mesh_arrays a = {{.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}, {.held = 0}};
     call c;
-    if (!PyArg_ParseTuple(args, "OOOOOOO", &vertices, &offsets, &corners, &tetrahedra, &edges, &properties, &steps))
+    if (!PyArg_ParseTuple(args, "OOOOOOOO", &vertices, &offsets, &corners, &tetrahedra, &edges, &properties, &steps,
+                          &of_face))
         return NULL;
-    if (!PyDict_Check(properties)) {
+    if (!PyDict_Check(properties) || !PyDict_Check(of_face)) {
         PyErr_SetString(PyExc_TypeError, "properties: a dict of arrays");
         return NULL;
     }
@@ -111,7 +121,8 @@ static PyObject *mesh(PyObject *module, PyObject *args) {
         brio_mesh *made = NULL;
         brio_status status = brio_mesh_new(c.ctx, &made);
         if (status == BRIO_OK) status = set_arrays(made, &a);
-        if (status == BRIO_OK) status = add_properties(made, properties);
+        if (status == BRIO_OK) status = add_properties(made, &of_vertices, made->num_vertices, properties);
+        if (status == BRIO_OK) status = add_properties(made, &of_faces, made->num_faces, of_face);
         result = call_end_with_mesh(&c, status, made);
     }
     close_arrays(&a);
@@ -120,11 +131,12 @@ static PyObject *mesh(PyObject *module, PyObject *args) {
 
 /* --- shown as arrays --- */
 
-static PyObject *property_views(module_state *state, PyObject *owner, const brio_mesh *m) {
+static PyObject *property_views(module_state *state, PyObject *mesh_object, const brio_property *list, size_t count,
+                                size_t rows) {
     PyObject *dict = PyDict_New();
-    for (size_t k = 0; dict && k < m->num_properties; k++) {
-        const brio_property *p = &m->properties[k];
-        PyObject *view = array_new(state, owner, layout_of(p->data, letters[p->type], m->num_vertices, 0));
+    for (size_t k = 0; dict && k < count; k++) {
+        const brio_property *p = &list[k];
+        PyObject *view = array_new(state, mesh_object, layout_of(p->data, letters[p->type], rows, 0));
         PyObject *name = view ? PyUnicode_DecodeUTF8(p->name, (Py_ssize_t)strlen(p->name), "replace") : NULL;
         if (!name || PyDict_SetItem(dict, name, view)) Py_CLEAR(dict);
         Py_XDECREF(name);
@@ -139,11 +151,13 @@ static PyObject *mesh_views(PyObject *module, PyObject *object) {
     if (!m) return NULL;
     size_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0;
 #define VIEW(name, format, rows, columns) #name, array_new(state, object, layout_of(m->name, format, rows, columns))
-    return Py_BuildValue("{s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N}", VIEW(vertices, 'd', m->num_vertices, 3),
-                         VIEW(face_offsets, 'L', m->face_offsets ? m->num_faces + 1 : 1, 0),
-                         VIEW(face_vertices, 'I', corners, 0), VIEW(tetrahedra, 'I', m->num_tetrahedra, 4),
-                         VIEW(edges, 'I', m->num_edges, 2), VIEW(coordinate_step, 'd', 3, 0),
-                         VIEW(coordinate_origin, 'd', 3, 0), "properties", property_views(state, object, m));
+    return Py_BuildValue(
+        "{s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N}", VIEW(vertices, 'd', m->num_vertices, 3),
+        VIEW(face_offsets, 'L', m->face_offsets ? m->num_faces + 1 : 1, 0), VIEW(face_vertices, 'I', corners, 0),
+        VIEW(tetrahedra, 'I', m->num_tetrahedra, 4), VIEW(edges, 'I', m->num_edges, 2),
+        VIEW(coordinate_step, 'd', 3, 0), VIEW(coordinate_origin, 'd', 3, 0), "properties",
+        property_views(state, object, m->properties, m->num_properties, m->num_vertices), "face_properties",
+        property_views(state, object, m->face_properties, m->num_face_properties, m->num_faces));
 #undef VIEW
 }
 
@@ -169,18 +183,27 @@ static PyObject *mesh_with_normals(PyObject *module, PyObject *object) {
     return call_end_with_mesh(&c, status, made);
 }
 
+static brio_status copy_properties(brio_mesh *to, const owner *of, const brio_property *list, size_t count,
+                                   size_t rows) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; status == BRIO_OK && i < count; i++) {
+        void *data;
+        status = of->add(to, list[i].name, list[i].type, &data);
+        if (status == BRIO_OK && rows) memcpy(data, list[i].data, rows * brio_scalar_size(list[i].type));
+    }
+    return status;
+}
+
 /* Copies what a mesh holds, except for tetrahedra and edges. */
 static brio_status copy_surface(brio_context *ctx, const brio_mesh *m, brio_mesh **out) {
     brio_status status = brio_mesh_new(ctx, out);
     if (status == BRIO_OK) status = brio_mesh_set_vertices(*out, m->vertices, m->num_vertices);
     if (status == BRIO_OK && m->num_faces)
         status = brio_mesh_set_faces(*out, m->face_offsets, m->face_vertices, m->num_faces);
-    for (size_t i = 0; status == BRIO_OK && i < m->num_properties; i++) {
-        const brio_property *p = &m->properties[i];
-        void *data;
-        status = brio_mesh_add_property(*out, p->name, p->type, &data);
-        if (status == BRIO_OK && m->num_vertices) memcpy(data, p->data, m->num_vertices * brio_scalar_size(p->type));
-    }
+    if (status == BRIO_OK)
+        status = copy_properties(*out, &of_vertices, m->properties, m->num_properties, m->num_vertices);
+    if (status == BRIO_OK)
+        status = copy_properties(*out, &of_faces, m->face_properties, m->num_face_properties, m->num_faces);
     return status;
 }
 
@@ -338,7 +361,8 @@ static PyObject *mesh_distance(PyObject *module, PyObject *args) {
 }
 
 PyMethodDef mesh_methods[] = {
-    {"mesh", mesh, METH_VARARGS, "mesh(vertices, offsets, corners, tetrahedra, edges, properties, steps)"},
+    {"mesh", mesh, METH_VARARGS,
+     "mesh(vertices, offsets, corners, tetrahedra, edges, properties, steps, face_properties)"},
     {"mesh_views", mesh_views, METH_O, "The arrays of a mesh, in a dict."},
     {"mesh_with_normals", mesh_with_normals, METH_O, "The same surface with the properties nx, ny, nz."},
     {"mesh_simplified", mesh_simplified, METH_VARARGS, "mesh_simplified(mesh, faces, tolerance, progress)"},

@@ -7,6 +7,7 @@
 #include "io/builder.h"
 #include "io/colour.h"
 #include "io/filter.h"
+#include "io/scalar.h"
 #include "base/memory.h"
 #include "mesh/properties.h"
 #include <inttypes.h>
@@ -190,11 +191,36 @@ brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_
 /* --- faces and tetrahedra --- */
 
 static brio_status set_face_capacity(brio_builder *b, size_t capacity) {
-    brio_status status = BRIO_RESIZE(b->ctx, b->mesh->face_offsets, capacity + 1);
-    if (status != BRIO_OK) return status;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESIZE(b->ctx, b->mesh->face_offsets, capacity + 1));
     if (!b->face_capacity) b->mesh->face_offsets[0] = 0;
+    for (size_t i = 0; i < b->mesh->num_face_properties; i++) {
+        brio_property *p = &b->mesh->face_properties[i];
+        BRIO_TRY(brio_resize_to(b->ctx, &p->data, capacity, brio_scalar_size(p->type)));
+    }
     b->face_capacity = capacity;
-    return BRIO_OK;
+done:
+    return status;
+}
+
+brio_status brio_builder_face_property(brio_builder *b, const char *name, brio_scalar type) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_limit_numbers(b->ctx, b->name, 0, b->mesh->num_face_properties + 1));
+    BRIO_TRY(brio_mesh_append_face_property(b->mesh, name, type));
+    brio_property *p = &b->mesh->face_properties[b->mesh->num_face_properties - 1];
+    if (b->face_capacity) BRIO_TRY(brio_resize_to(b->ctx, &p->data, b->face_capacity, brio_scalar_size(type)));
+done:
+    return status;
+}
+
+void brio_builder_new_face_name(const brio_builder *b, const char *source, char name[64]) {
+    brio_utf8_copy(name, 64, source);
+    for (size_t n = 2; brio_mesh_face_property(b->mesh, name); n++) brio_numbered_name(name, 64, source, n);
+}
+
+bool brio_builder_face_value(brio_builder *b, size_t which, double value) {
+    const brio_property *p = &b->mesh->face_properties[which];
+    return brio_scalar_store((char *)p->data + (b->mesh->num_faces - 1) * brio_scalar_size(p->type), p->type, value);
 }
 
 brio_status brio_builder_expect_faces(brio_builder *b, uint64_t count) {
@@ -243,6 +269,7 @@ brio_status brio_builder_face(brio_builder *b) {
     if (f == b->face_capacity) BRIO_TRY(set_face_capacity(b, grown(f, f + 1)));
     b->mesh->face_offsets[f + 1] = b->num_corners;
     b->mesh->num_faces = f + 1;
+    for (size_t i = 0; i < b->mesh->num_face_properties; i++) brio_builder_face_value(b, i, 0);
 done:
     return status;
 }
@@ -301,9 +328,10 @@ static brio_status trim(brio_builder *b) {
         m->vertices = NULL;
     }
     if (m->num_faces) {
-        BRIO_TRY(BRIO_RESIZE(b->ctx, m->face_offsets, m->num_faces + 1));
+        if (m->num_faces < b->face_capacity) BRIO_TRY(set_face_capacity(b, m->num_faces));
         BRIO_TRY(BRIO_RESIZE(b->ctx, m->face_vertices, b->num_corners));
     } else {
+        while (m->num_face_properties) brio_release(b->ctx, m->face_properties[--m->num_face_properties].data);
         brio_release(b->ctx, m->face_offsets);
         m->face_offsets = NULL;
     }
@@ -325,7 +353,9 @@ brio_status brio_builder_finish(brio_builder *b) {
         if (!b->drop_invalid) BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
         return BRIO_OK;
     }
+    brio_mesh faces = brio_mesh_faces_as_points(b->mesh);
     brio_colour_name(b->mesh);
+    brio_colour_name(&faces);
     BRIO_TRY(trim(b));
     BRIO_TRY(check_indices(b));
     brio_count_not_finite(&b->refused, 0, b->mesh->vertices, NULL, b->mesh->num_vertices);

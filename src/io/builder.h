@@ -98,6 +98,14 @@ void brio_builder_new_name(brio_builder *b, const char *source, char name[64]);
 void brio_builder_component_name(brio_builder *b, const char *source, uint64_t which, uint64_t count, char name[64]);
 /** Adds a property whose values are in `data`. The mesh takes the block; on failure the function frees the block. */
 brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data);
+/** Adds a property of the faces, one of at most BRIO_MOST_NUMBERS. Faces that are there already, and new ones, have 0 until
+ *  the caller sets their values. The name may be taken by no other property of the faces: brio_builder_new_face_name.
+ *  The property is b->mesh->face_properties[which], with `which` their number before. */
+brio_status brio_builder_face_property(brio_builder *b, const char *name, brio_scalar type);
+/** Makes a name that no property of the faces has: SOURCE, or SOURCE_2 and so on; as brio_builder_new_name. */
+void brio_builder_new_face_name(const brio_builder *b, const char *source, char name[64]);
+/** Sets property `which` of the face that was added last. Returns whether its type holds the value. */
+bool brio_builder_face_value(brio_builder *b, size_t which, double value);
 /** Appends a corner to the face under construction.   index  the file's index minus its index base. */
 brio_status brio_builder_corner(brio_builder *b, double index);
 /** Ends the face under construction. */

@@ -6,6 +6,7 @@
 #include "io/colour.h"
 #include "base/memory.h"
 #include "io/scalar.h"
+#include "mesh/properties.h"
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
@@ -130,13 +131,13 @@ static double told_white(const brio_mesh *m, const brio_channels *c) {
     return c->of[0]->type == BRIO_SCALAR_UINT16 ? WORD : 0;
 }
 
-bool brio_colour_is_open(const brio_colour_plan *plan, const brio_mesh *m) {
+static bool is_open(const brio_colour_depth *plan, const brio_mesh *m) {
     brio_channels c = brio_colour_of(m);
     bool known = plan->to == BRIO_COLOURS_AS_THEY_ARE || plan->looked || plan->decided;
     return !known && c.count && told_white(m, &c) == 0;
 }
 
-void brio_colour_look(brio_colour_plan *plan, const brio_mesh *m) {
+static void look(brio_colour_depth *plan, const brio_mesh *m) {
     brio_channels c = brio_colour_of(m);
     for (int k = 0; k < c.count; k++)
         for (size_t v = 0; v < m->num_vertices; v++) {
@@ -149,15 +150,15 @@ void brio_colour_look(brio_colour_plan *plan, const brio_mesh *m) {
 }
 
 /* Returns white of values in the range that was seen. Values a little over 1 that are no whole numbers are not bytes. */
-static double seen_white(const brio_colour_plan *plan, brio_scalar type) {
+static double seen_white(const brio_colour_depth *plan, brio_scalar type) {
     if (plan->least < 0 || plan->most > WORD) return 0;
     if (is_real(type) && (plan->most <= UNIT || (plan->fraction && plan->most < 2))) return UNIT;
     return plan->most <= BYTE ? BYTE : WORD;
 }
 
-static void decide(brio_colour_plan *plan, const brio_mesh *m, const brio_channels *c) {
-    plan->guessed = brio_colour_is_open(plan, m);
-    if (plan->guessed) brio_colour_look(plan, m);
+static void decide(brio_colour_depth *plan, const brio_mesh *m, const brio_channels *c) {
+    plan->guessed = is_open(plan, m);
+    if (plan->guessed) look(plan, m);
     plan->white = told_white(m, c);
     if (plan->white == 0) plan->white = seen_white(plan, c->of[0]->type);
     plan->decided = true;
@@ -166,7 +167,7 @@ static void decide(brio_colour_plan *plan, const brio_mesh *m, const brio_channe
 /* --- change of depth --- */
 
 /* Returns white of the file that is written, and the type of its numbers; 0: they stay as they are. */
-static double target_white(const brio_colour_plan *plan, brio_scalar from, brio_scalar *type) {
+static double target_white(const brio_colour_depth *plan, brio_scalar from, brio_scalar *type) {
     brio_colours to = plan->to;
     if (plan->white == 0) return 0;
     if (to == BRIO_COLOURS_NORMALIZED)
@@ -193,7 +194,7 @@ static double target_white(const brio_colour_plan *plan, brio_scalar from, brio_
 }
 
 /* Returns a value at another depth, and takes note of what that loses. */
-static double changed(brio_colour_plan *plan, double x, double white) {
+static double changed(brio_colour_depth *plan, double x, double white) {
     if (isnan(x)) {
         plan->lost = true;
         return 0;
@@ -210,12 +211,12 @@ static double changed(brio_colour_plan *plan, double x, double white) {
 }
 
 /* A guess by the first block holds as long as no value shows that white is more. */
-static brio_status check_guess(brio_context *ctx, brio_colour_plan *plan, const brio_mesh *m) {
+static brio_status check_guess(brio_context *ctx, brio_colour_depth *plan, const brio_mesh *m) {
     brio_channels c = brio_colour_of(m);
     brio_status status = BRIO_OK;
     double guess = plan->white;
     if (!plan->guessed || !c.count) return BRIO_OK;
-    brio_colour_look(plan, m);
+    look(plan, m);
     BRIO_REQUIRE(
         ctx, seen_white(plan, c.of[0]->type) == guess, BRIO_ERR_FORMAT,
         "the colours of the first points seemed to have a white of %g, but one further on is %g: such an input "
@@ -225,7 +226,7 @@ done:
     return status;
 }
 
-static brio_status change(brio_context *ctx, brio_colour_plan *plan, brio_property *p, size_t count, brio_scalar type,
+static brio_status change(brio_context *ctx, brio_colour_depth *plan, brio_property *p, size_t count, brio_scalar type,
                           double white) {
     brio_status status = BRIO_OK;
     char *data = NULL;
@@ -239,11 +240,11 @@ done:
     return status;
 }
 
-brio_status brio_colour_show(brio_context *ctx, brio_colour_plan *plan, const brio_mesh *m, brio_mesh *shown) {
+/* Shows the colours of points: shown->properties is then a list that free_list frees. */
+static brio_status show(brio_context *ctx, brio_colour_depth *plan, const brio_mesh *m, brio_mesh *shown) {
     brio_status status = BRIO_OK;
     brio_channels c = brio_colour_of(m);
     brio_scalar type = BRIO_SCALAR_END;
-    *shown = *m;
     if (!c.count || plan->to == BRIO_COLOURS_AS_THEY_ARE) return BRIO_OK;
     if (!plan->decided) decide(plan, m, &c);
     BRIO_TRY(check_guess(ctx, plan, m));
@@ -258,14 +259,45 @@ done:
     return status;
 }
 
+static void free_list(brio_context *ctx, const brio_property *list, size_t count, brio_property *shown) {
+    if (!shown || shown == list) return;
+    for (size_t i = 0; i < count; i++)
+        if (shown[i].data != list[i].data) brio_release(ctx, shown[i].data);
+    brio_release(ctx, shown);
+}
+
+/* --- the whole --- */
+
+bool brio_colour_is_open(const brio_colour_plan *plan, const brio_mesh *m) {
+    return is_open(&plan->points, m);
+}
+
+void brio_colour_look(brio_colour_plan *plan, const brio_mesh *m) {
+    look(&plan->points, m);
+}
+
+brio_status brio_colour_show(brio_context *ctx, brio_colour_plan *plan, const brio_mesh *m, brio_mesh *shown) {
+    brio_status status = BRIO_OK;
+    const brio_mesh faces = brio_mesh_faces_as_points(m);
+    brio_mesh shown_faces = faces;
+    *shown = *m;
+    BRIO_TRY(show(ctx, &plan->points, m, shown));
+    if (m->num_faces) BRIO_TRY(show(ctx, &plan->faces, &faces, &shown_faces));
+done:
+    shown->face_properties = shown_faces.properties;
+    return status;
+}
+
 void brio_colour_free(brio_context *ctx, const brio_mesh *m, brio_mesh *shown) {
-    if (!shown->properties || shown->properties == m->properties) return;
-    for (size_t i = 0; i < m->num_properties; i++)
-        if (shown->properties[i].data != m->properties[i].data) brio_release(ctx, shown->properties[i].data);
-    brio_release(ctx, shown->properties);
-    shown->properties = NULL;
+    free_list(ctx, m->properties, m->num_properties, shown->properties);
+    free_list(ctx, m->face_properties, m->num_face_properties, shown->face_properties);
+    shown->properties = shown->face_properties = NULL;
+}
+
+static bool has_lost(const brio_colour_depth *plan) {
+    return plan->lost || (plan->off_steps_257 && plan->off_steps_256);
 }
 
 bool brio_colour_lost(const brio_colour_plan *plan) {
-    return plan->lost || (plan->off_steps_257 && plan->off_steps_256);
+    return has_lost(&plan->points) || has_lost(&plan->faces);
 }

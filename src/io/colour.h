@@ -34,8 +34,8 @@ typedef enum {
     BRIO_COLOURS_NORMALIZED   /* bytes, uint16, or float32 from 0 to 1 */
 } brio_colours;
 
-/** How the colours of a file become those of another one. */
-typedef struct brio_colour_plan {
+/** How the colours of points, or of faces, become those of another file. */
+typedef struct brio_colour_depth {
     brio_colours to;
     bool looked;  /* whether all blocks were seen */
     bool decided; /* whether `white` is known */
@@ -45,9 +45,14 @@ typedef struct brio_colour_plan {
     bool fraction; /* least, most, fraction: of the values seen */
     bool off_steps_257, off_steps_256,
         lost; /* values of 16 bits that are no bytes times 257, 256; other values rounded */
+} brio_colour_depth;
+
+/** How the colours of a file become those of another one. Faces are all in one block. */
+typedef struct brio_colour_plan {
+    brio_colour_depth points, faces;
 } brio_colour_plan;
 
-/** Returns whether the depth of a mesh's colours shows only in all values of the file, and is not known yet. */
+/** Returns whether the depth of the colours of a mesh's points shows only in all values of the file, and is not known yet. */
 bool brio_colour_is_open(const brio_colour_plan *plan, const brio_mesh *m);
 /** Takes note of the values of a block. */
 void brio_colour_look(brio_colour_plan *plan, const brio_mesh *m);

@@ -1,6 +1,7 @@
 /* Parts of a mesh, see filter.h. Rows that stay move to the front of their arrays. */
 #include "io/filter.h"
 #include "base/memory.h"
+#include "mesh/properties.h"
 #include <string.h>
 
 void brio_find_in_box(const brio_mesh *mesh, const double *box, uint8_t *stays) {
@@ -41,7 +42,9 @@ static void pack_faces(brio_mesh *m, const uint8_t *stays, const uint32_t *place
         for (uint64_t c = from; c < to; c++) whole &= stays[m->face_vertices[c]];
         for (uint64_t c = from; c < to && whole; c++) m->face_vertices[corners++] = place[m->face_vertices[c]];
         from = to;
-        if (whole) m->face_offsets[++kept] = corners;
+        if (!whole) continue;
+        brio_properties_move(m->face_properties, m->num_face_properties, f, kept);
+        m->face_offsets[++kept] = corners;
     }
     m->num_faces = kept;
 }

@@ -1,50 +1,54 @@
 /* What is known of each format, in one table: all that needs a format's name, its extensions, its beginning, its reader, its
  * writer or what it can hold asks here. */
 #include "io/row_format.h"
+#include "mesh/properties.h"
 #include <stdio.h>
 #include <string.h>
 
 enum {
     POINTS = BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_NAMES,
     BOTH_PRECISIONS = BRIO_HOLDS_DOUBLES | BRIO_HOLDS_SINGLES,
+    FACES = BRIO_HOLDS_FACES | BRIO_HOLDS_FACE_PROPERTIES,
     BOTH_FORMS = BRIO_HOLDS_TEXT | BRIO_HOLDS_BINARY
 };
 
 /* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
 static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_PLY, "a PLY file", "ply", "ply",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS,
-      BRIO_MOST_NUMBERS - 3},
+      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, BRIO_MOST_NUMBERS - 3},
      .starts = brio_ply_starts,
      .read = brio_ply_read,
      .rows = &brio_ply_rows,
-     .colours = BRIO_COLOURS_8},
+     .colours = BRIO_COLOURS_8,
+     .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_OFF, "an OFF file", "off", "off",
-      BRIO_HOLDS_FACES | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_FACES | BRIO_HOLDS_FACE_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .starts = brio_off_starts,
      .read = brio_off_read,
-     .write = brio_off_write},
+     .write = brio_off_write,
+     .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTP, "a VTP file", "vtp", "vtp",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED,
-      BRIO_MOST_NUMBERS},
+      POINTS | FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS},
      .starts = brio_vtp_starts,
      .read = brio_vtk_read,
      .write = brio_vtp_write,
-     .colours = BRIO_COLOURS_8},
+     .colours = BRIO_COLOURS_8,
+     .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTU, "a VTU file", "vtu", "vtu",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS |
-          BRIO_HOLDS_COMPRESSED,
+      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED,
       BRIO_MOST_NUMBERS},
      .starts = brio_vtu_starts,
      .read = brio_vtk_read,
      .write = brio_vtu_write,
-     .colours = BRIO_COLOURS_8},
+     .colours = BRIO_COLOURS_8,
+     .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTK, "a legacy VTK file", "vtk", "vtk",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 4096},
+      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 4096},
      .starts = brio_vtk_legacy_starts,
      .read = brio_vtk_legacy_read,
      .write = brio_vtk_legacy_write,
-     .colours = BRIO_COLOURS_8},
+     .colours = BRIO_COLOURS_8,
+     .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "laz", POINTS | BRIO_HOLDS_BINARY, 0},
      .starts = brio_laz_starts,
      .read = brio_las_read,
@@ -144,6 +148,18 @@ bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i
     if (brio_format_holds(format, BRIO_HOLDS_INTENSITY) && !strcmp(p->name, "intensity")) return true;
     return (brio_format_holds(format, BRIO_HOLDS_COLOURS) && brio_channels_have(&colour, p)) ||
            (brio_format_holds(format, BRIO_HOLDS_NORMALS) && brio_channels_have(&normal, p));
+}
+
+bool brio_format_holds_face_property(brio_format format, const brio_mesh *m, size_t i) {
+    const brio_mesh faces = brio_mesh_faces_as_points(m);
+    const brio_channels colour = brio_colour_of(&faces);
+    if (brio_format_holds(format, BRIO_HOLDS_FACE_PROPERTIES)) return true;
+    return brio_format_holds(format, BRIO_HOLDS_FACE_COLOURS) && brio_channels_have(&colour, &m->face_properties[i]);
+}
+
+brio_colour_plan brio_format_colours(brio_format format) {
+    const brio_format_row *row = brio_format_row_of(format);
+    return (brio_colour_plan){.points.to = row->colours, .faces.to = row->face_colours};
 }
 
 bool brio_format_keeps(brio_format format, const char *metadata) {

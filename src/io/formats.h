@@ -11,9 +11,10 @@
 typedef struct brio_write_job {
     const brio_mesh *mesh;
     const brio_write_options *options;
-    char (*names)[64]; /* PLY, XYZ and NPY: the names of the properties, each as one word */
-    uint64_t points;   /* formats of rows: the number of points of all blocks, as row_format.h says */
-    uint64_t expected; /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
+    char (*names)[64];      /* PLY, XYZ and NPY: the names of the properties, each as one word */
+    char (*face_names)[64]; /* PLY: likewise of those of the faces */
+    uint64_t points;        /* formats of rows: the number of points of all blocks, as row_format.h says */
+    uint64_t expected;      /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
 } brio_write_job;
 
 brio_status brio_ply_read(brio_stream *s, brio_builder *b);
@@ -55,10 +56,11 @@ typedef struct brio_format_row {
     brio_status (*read_columns)(brio_stream *s, brio_builder *b, const char *columns);
     const struct brio_row_format *rows;                                /* NULL: not written row by row */
     brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
-    bool about_origin;    /* single precision is that of distances from an origin, which the writer chooses */
-    brio_colours colours; /* how a file that is written has colours */
-    bool scans;           /* whether the writer makes scans (scans.h): the reader then tells places and grids */
-    const char *keeps;    /* NULL, or how the names of the metadata begin that the writer keeps: "crs. las." */
+    bool about_origin;         /* single precision is that of distances from an origin, which the writer chooses */
+    brio_colours colours;      /* how a file that is written has colours */
+    brio_colours face_colours; /* likewise of the faces */
+    bool scans;                /* whether the writer makes scans (scans.h): the reader then tells places and grids */
+    const char *keeps;         /* NULL, or how the names of the metadata begin that the writer keeps: "crs. las." */
 } brio_format_row;
 
 /** Returns the row of a format, or NULL. */
@@ -67,6 +69,10 @@ const brio_format_row *brio_format_row_of(brio_format format);
 bool brio_format_holds(brio_format format, unsigned what);
 /** Returns whether a format holds property i of a mesh, under the name that the format has for colours and normals. */
 bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i);
+/** Returns whether a format holds property i of the faces of a mesh. */
+bool brio_format_holds_face_property(brio_format format, const brio_mesh *m, size_t i);
+/** Returns how colours become those of a format. */
+brio_colour_plan brio_format_colours(brio_format format);
 /** Returns whether the writer of a format keeps the metadata of a name. */
 bool brio_format_keeps(brio_format format, const char *metadata);
 /** Returns the format whose files begin with these bytes, or BRIO_FORMAT_AUTO. */

@@ -1,5 +1,6 @@
 /* OFF, the Object File Format of Geomview. Reads OFF and its variants with normals (N), colours (C) and texture coordinates
- * (ST) of the vertices, which become properties, as text and binary. Skips colours of faces, and says so.
+ * (ST) of the vertices, which become properties, as text and binary. Colours of faces are three or four numbers behind the
+ * corners: bytes, or from 0 to 1; faces without one have NaN. An index in a table of colours is passed over, and said so.
  *
  * A binary file has the keyword and BINARY in its first line. Behind it are integers and floats of 32 bits, the most
  * significant byte first, in the order of the text; a vertex's colour is four floats, and behind the corners of a face is
@@ -12,6 +13,7 @@
 #include "io/number.h"
 #include "io/salvage.h"
 #include "io/textrow.h"
+#include "mesh/properties.h"
 #include <math.h>
 #include <string.h>
 
@@ -140,18 +142,49 @@ done:
     return status;
 }
 
+/* Gives the face that was added last its colour, 3 or 4 numbers or none; all other numbers are left out. The first colour
+ * decides whether there is an alpha. */
+static brio_status keep_face_colour(brio_builder *b, const double *numbers, size_t count) {
+    static const char *const names[] = {"red", "green", "blue", "alpha"};
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = b->mesh;
+    bool colour = count == 3 || count == 4;
+    if (!m->num_face_properties && colour) {
+        for (size_t i = 0; i < count; i++) {
+            BRIO_TRY(brio_builder_face_property(b, names[i], BRIO_SCALAR_FLOAT64));
+            for (size_t f = 0; f < m->num_faces; f++) ((double *)m->face_properties[i].data)[f] = (double)NAN;
+        }
+    }
+    if (count && (!colour || count > m->num_face_properties)) BRIO_TRY(brio_builder_leave_out(b, "colours of faces"));
+    for (size_t i = 0; i < m->num_face_properties; i++)
+        brio_builder_face_value(b, i, colour && i < count ? numbers[i] : (double)NAN);
+done:
+    return status;
+}
+
 static brio_status read_face(brio_text *t, brio_builder *b) {
     brio_status status = BRIO_OK;
     uint64_t corners;
-    double index;
+    double index, colour[4];
+    size_t count = 0;
     BRIO_TRY(brio_text_count(t, "the number of corners", UINT32_MAX, &corners));
     for (uint64_t i = 0; i < corners; i++) {
         BRIO_TRY(brio_text_number(t, &index));
         BRIO_TRY(brio_builder_corner(b, index));
     }
     BRIO_TRY(brio_builder_face(b));
-    if (brio_text_more(t)) BRIO_TRY(brio_builder_leave_out(b, "colours of faces"));
-    t->at = NULL; /* the rest of the line is the colour of the face */
+    while (count < 4 && brio_text_more(t)) {
+        const char *at = t->at;
+        if (!brio_parse_number(&at, &colour[count])) break;
+        t->at += at - t->at;
+        count++;
+    }
+    if (brio_text_more(t)) { /* a word, or too many numbers */
+        count = 0;
+        BRIO_TRY(brio_builder_leave_out(b, "colours of faces"));
+    }
+    BRIO_TRY(keep_face_colour(b, colour, count));
+    t->at = NULL;
 done:
     return status;
 }
@@ -202,6 +235,7 @@ done:
 static brio_status read_binary_face(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     uint32_t corners, index, colours;
+    double colour[4];
     BRIO_TRY(take_word(s, &corners));
     BRIO_TRY(brio_stream_expect(s, corners, sizeof index, "the number of corners"));
     for (uint32_t i = 0; i < corners; i++) {
@@ -210,8 +244,9 @@ static brio_status read_binary_face(brio_stream *s, brio_builder *b) {
     }
     BRIO_TRY(brio_builder_face(b));
     BRIO_TRY(take_word(s, &colours));
-    if (colours) BRIO_TRY(brio_builder_leave_out(b, "colours of faces"));
-    BRIO_TRY(brio_stream_skip(s, sizeof(float) * (uint64_t)colours));
+    for (size_t i = 0; i < colours && i < 4; i++) BRIO_TRY(take_real(s, &colour[i]));
+    BRIO_TRY(keep_face_colour(b, colour, colours));
+    if (colours > 4) BRIO_TRY(brio_stream_skip(s, sizeof(float) * (uint64_t)(colours - 4)));
 done:
     return status;
 }
@@ -262,9 +297,22 @@ done:
     return status;
 }
 
+/* Writes a face. Its colour has been made bytes, if numbers of that range can be. */
+static brio_status write_face(brio_output *out, const brio_mesh *m, const brio_channels *colour, size_t f) {
+    brio_status status = BRIO_OK;
+    uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
+    BRIO_TRY(brio_output_integer(out, 0, (int64_t)(to - from)));
+    for (uint64_t i = from; i < to; i++) BRIO_TRY(brio_output_integer(out, ' ', m->face_vertices[i]));
+    for (int k = 0; k < colour->count; k++) BRIO_TRY(brio_output_scalar(out, ' ', colour->of[k], f));
+    BRIO_TRY(brio_output_string(out, "\n"));
+done:
+    return status;
+}
+
 brio_status brio_off_write(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
-    const brio_mesh *m = job->mesh;
+    const brio_mesh *m = job->mesh, faces = brio_mesh_faces_as_points(m);
+    const brio_channels colour = brio_colour_of(&faces);
     BRIO_TRY(brio_output_string(out, "OFF\n"));
     BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
     BRIO_TRY(brio_output_format(out, "%zu %zu 0\n", m->num_vertices, m->num_faces));
@@ -272,12 +320,7 @@ brio_status brio_off_write(brio_output *out, const brio_write_job *job) {
         BRIO_TRY(brio_output_point(out, m->vertices + 3 * v));
         BRIO_TRY(brio_output_string(out, "\n"));
     }
-    for (size_t f = 0; f < m->num_faces; f++) {
-        uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
-        BRIO_TRY(brio_output_integer(out, 0, (int64_t)(to - from)));
-        for (uint64_t i = from; i < to; i++) BRIO_TRY(brio_output_integer(out, ' ', m->face_vertices[i]));
-        BRIO_TRY(brio_output_string(out, "\n"));
-    }
+    for (size_t f = 0; f < m->num_faces; f++) BRIO_TRY(write_face(out, m, &colour, f));
 done:
     return status;
 }

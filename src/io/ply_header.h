@@ -12,6 +12,7 @@ typedef enum {
     BRIO_PLY_COORDINATE,
     BRIO_PLY_PROPERTY,
     BRIO_PLY_FACE,
+    BRIO_PLY_OF_FACE,
     BRIO_PLY_STRIP,
     BRIO_PLY_TETRAHEDRON,
     BRIO_PLY_EDGE
@@ -22,7 +23,8 @@ typedef struct brio_ply_property {
     brio_scalar type, count_type; /* count_type: of the count of a list */
     bool list;
     brio_ply_role role;
-    size_t target; /* axis of a coordinate, end of an edge, or index of a property of the mesh */
+    size_t target; /* axis of a coordinate, end of an edge, or index of a property of the mesh (BRIO_PLY_PROPERTY,
+                              BRIO_PLY_OF_FACE) */
     size_t offset; /* byte offset in a binary row without lists */
 } brio_ply_property;
 

@@ -5,6 +5,7 @@
  * lists and encoding.
  *
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
+#include "base/memory.h"
 #include "io/crs.h"
 #include "io/formats.h"
 #include "io/ply_header.h"
@@ -28,6 +29,7 @@ typedef struct {
     brio_builder *builder;
     brio_text text;
     bool ascii, swap;
+    double *of_face; /* numbers of the face that is being read */
 } ply_reader;
 
 bool brio_ply_starts(const char *bytes, size_t size) {
@@ -82,6 +84,24 @@ static void plan_list(brio_ply_element *e, brio_ply_role role) {
         p->role = role;
         return;
     }
+}
+
+/* Numbers of the faces are properties, unless there are strips, too: their triangles have none. */
+static brio_status plan_of_faces(brio_builder *b, const brio_ply_header *header, brio_ply_element *e) {
+    brio_status status = BRIO_OK;
+    for (size_t i = 0; i < header->num_elements; i++)
+        if (header->elements[i].count && !strcmp(header->elements[i].name, "tristrips")) return BRIO_OK;
+    for (size_t i = 0; i < e->num_properties && e->count; i++) {
+        brio_ply_property *p = &e->properties[i];
+        char name[64];
+        if (p->list) continue;
+        p->role = BRIO_PLY_OF_FACE;
+        p->target = b->mesh->num_face_properties;
+        brio_builder_new_face_name(b, p->name, name);
+        BRIO_TRY(brio_builder_face_property(b, name, p->type));
+    }
+done:
+    return status;
 }
 
 /* Edges are read if both their ends are there. */
@@ -156,6 +176,7 @@ static brio_status plan(ply_reader *r, brio_ply_header *header) {
             if (known) BRIO_TRY(brio_builder_expect_vertices(b, e->count));
         } else if (!strcmp(e->name, "face")) {
             plan_list(e, BRIO_PLY_FACE);
+            if (has_role(e, BRIO_PLY_FACE)) BRIO_TRY(plan_of_faces(b, header, e));
             if (known && has_role(e, BRIO_PLY_FACE)) BRIO_TRY(brio_builder_expect_faces(b, e->count));
         } else if (!strcmp(e->name, "tristrips")) {
             plan_list(e, BRIO_PLY_STRIP);
@@ -246,6 +267,12 @@ static brio_status next_scalar(ply_reader *r, brio_scalar type, double *value) {
     return status;
 }
 
+static brio_status bad_value(const ply_reader *r, const brio_ply_property *p, double value) {
+    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
+                     "%s: %s %zu (counted from 0): %s is %.17g, not a number of its type %s", r->stream->name,
+                     r->stream->element, (size_t)r->stream->row, p->name, value, brio_ply_type_name(p->type));
+}
+
 static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, double value) {
     const brio_mesh *mesh = r->builder->mesh;
     size_t row = mesh->num_vertices - 1;
@@ -255,10 +282,7 @@ static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, doubl
         return BRIO_OK;
     }
     char *target = (char *)mesh->properties[p->target].data + row * brio_scalar_size(p->type);
-    if (brio_scalar_store(target, p->type, value)) return BRIO_OK;
-    return brio_fail(r->stream->ctx, BRIO_ERR_FORMAT,
-                     "%s: vertex %zu (counted from 0): %s is %.17g, not a number of its type %s", r->stream->name,
-                     (size_t)r->stream->row, p->name, value, brio_ply_type_name(p->type));
+    return brio_scalar_store(target, p->type, value) ? BRIO_OK : bad_value(r, p, value);
 }
 
 /* Adds a corner to a strip, and the triangle that the corner ends: every second one is turned round. A negative number
@@ -307,7 +331,7 @@ done:
 
 static brio_status read_row(ply_reader *r, const brio_ply_element *e) {
     brio_status status = BRIO_OK;
-    double ends[2];
+    double ends[2], *of_face = r->of_face;
     bool edge = false;
     for (size_t i = 0; i < e->num_properties; i++) {
         const brio_ply_property *p = &e->properties[i];
@@ -319,10 +343,17 @@ static brio_status read_row(ply_reader *r, const brio_ply_element *e) {
         BRIO_TRY(next_scalar(r, p->type, &value));
         if (p->role == BRIO_PLY_EDGE)
             ends[p->target] = value, edge = true;
+        else if (p->role == BRIO_PLY_OF_FACE)
+            of_face[p->target] = value;
         else if (p->role != BRIO_PLY_SKIP)
             BRIO_TRY(store_scalar(r, p, value));
     }
     if (edge) BRIO_TRY(brio_builder_edge(r->builder, ends));
+    for (size_t i = 0; i < e->num_properties; i++) { /* numbers may stand before the corners */
+        const brio_ply_property *p = &e->properties[i];
+        if (p->role == BRIO_PLY_OF_FACE && !brio_builder_face_value(r->builder, p->target, of_face[p->target]))
+            return bad_value(r, p, of_face[p->target]);
+    }
     if (r->ascii) BRIO_TRY(brio_text_row_end(&r->text));
 done:
     return status;
@@ -353,13 +384,16 @@ static brio_status read_element(ply_reader *r, const brio_ply_element *e) {
 brio_status brio_ply_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_ply_header header;
+    ply_reader r = {.stream = s, .builder = b, .text = {s, 0, NULL}};
     BRIO_TRY(brio_ply_header_read(s, b->salvage, &header));
-    ply_reader r = {s, b, {s, 0, NULL}, header.encoding == BRIO_PLY_ASCII, false};
+    r.ascii = header.encoding == BRIO_PLY_ASCII;
     r.swap = !r.ascii && (header.encoding == BRIO_PLY_LITTLE) != brio_host_is_little();
     BRIO_TRY(plan(&r, &header));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, r.of_face, b->mesh->num_face_properties));
     for (size_t i = 0; i < header.num_elements; i++) BRIO_TRY(read_element(&r, &header.elements[i]));
     if (r.ascii && !s->salvaged) BRIO_TRY(brio_text_end(&r.text));
 done:
+    brio_release(b->ctx, r.of_face);
     brio_ply_header_free(b->ctx, &header);
     return status;
 }

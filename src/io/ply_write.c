@@ -88,6 +88,9 @@ static brio_status write_header(brio_output *out, const brio_write_job *job, ply
     if (m->num_faces)
         BRIO_TRY(brio_output_format(out, "element face %zu\nproperty list %s %s vertex_indices\n", m->num_faces,
                                     w->long_lists ? "int" : "uchar", index));
+    for (size_t i = 0; i < m->num_face_properties && m->num_faces; i++)
+        BRIO_TRY(brio_output_format(out, "property %s %s\n", brio_ply_type_name(m->face_properties[i].type),
+                                    job->face_names[i]));
     if (m->num_tetrahedra)
         BRIO_TRY(brio_output_format(out, "element tetrahedron %zu\nproperty list uchar %s vertex_indices\n",
                                     m->num_tetrahedra, index));
@@ -109,7 +112,7 @@ typedef struct {
     const brio_write_job *job;
     size_t first;
     char *bytes;
-    size_t size; /* bytes of the number before the corners of a face */
+    size_t size, extra; /* bytes of the number before the corners of a face, and of its properties behind them */
 } rows;
 
 static void encode_list(const uint32_t *items, size_t count, bool long_list, char *bytes) {
@@ -125,23 +128,32 @@ static void encode_faces(void *user, size_t begin, size_t end, int thread) {
     const brio_mesh *m = r->job->mesh;
     const uint64_t *offsets = m->face_offsets + r->first;
     (void)thread;
-    for (size_t i = begin; i < end; i++)
-        encode_list(m->face_vertices + offsets[i], (size_t)(offsets[i + 1] - offsets[i]), r->size == sizeof(uint32_t),
-                    r->bytes + i * r->size + (size_t)(offsets[i] - offsets[0]) * sizeof(uint32_t));
+    for (size_t i = begin; i < end; i++) {
+        size_t corners = (size_t)(offsets[i + 1] - offsets[i]);
+        char *at = r->bytes + i * (r->size + r->extra) + (size_t)(offsets[i] - offsets[0]) * sizeof(uint32_t);
+        encode_list(m->face_vertices + offsets[i], corners, r->size == sizeof(uint32_t), at);
+        at += r->size + corners * sizeof(uint32_t);
+        for (size_t k = 0; k < m->num_face_properties; k++) {
+            size_t size = brio_scalar_size(m->face_properties[k].type);
+            memcpy(at, (const char *)m->face_properties[k].data + (r->first + i) * size, size);
+            at += size;
+        }
+    }
 }
 
 static brio_status write_binary_faces(brio_output *out, const brio_write_job *job, bool long_lists) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    size_t head = long_lists ? sizeof(uint32_t) : sizeof(uint8_t), capacity = 0;
+    size_t head = long_lists ? sizeof(uint32_t) : sizeof(uint8_t), capacity = 0, extra = 0;
     char *bytes = NULL;
+    for (size_t k = 0; k < m->num_face_properties; k++) extra += brio_scalar_size(m->face_properties[k].type);
     for (size_t begin = 0; begin < m->num_faces; begin += CHUNK) {
         size_t count = m->num_faces - begin < CHUNK ? m->num_faces - begin : CHUNK;
         const uint64_t *offsets = m->face_offsets + begin;
-        size_t size = count * head + (size_t)(offsets[count] - offsets[0]) * sizeof(uint32_t);
+        size_t size = count * (head + extra) + (size_t)(offsets[count] - offsets[0]) * sizeof(uint32_t);
         BRIO_TRY(BRIO_RESERVE(out->ctx, bytes, capacity, size));
         BRIO_TRY(brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode_faces,
-                          &(rows){job, begin, bytes, head}));
+                          &(rows){job, begin, bytes, head, extra}));
         BRIO_TRY(brio_output_bytes(out, bytes, size));
     }
 done:
@@ -183,6 +195,16 @@ static brio_status write_text_list(brio_output *out, const uint32_t *items, size
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_output_integer(out, 0, (int64_t)count));
     for (size_t i = 0; i < count; i++) BRIO_TRY(brio_output_integer(out, ' ', items[i]));
+done:
+    return status;
+}
+
+static brio_status write_text_face(brio_output *out, const brio_mesh *m, size_t f) {
+    brio_status status = BRIO_OK;
+    uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
+    BRIO_TRY(write_text_list(out, m->face_vertices + from, (size_t)(to - from)));
+    for (size_t i = 0; i < m->num_face_properties; i++)
+        BRIO_TRY(brio_output_scalar(out, ' ', &m->face_properties[i], f));
     BRIO_TRY(brio_output_string(out, "\n"));
 done:
     return status;
@@ -200,11 +222,11 @@ done:
 static brio_status write_text(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    for (size_t f = 0; f < m->num_faces; f++) {
-        uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
-        BRIO_TRY(write_text_list(out, m->face_vertices + from, (size_t)(to - from)));
+    for (size_t f = 0; f < m->num_faces; f++) BRIO_TRY(write_text_face(out, m, f));
+    for (size_t t = 0; t < m->num_tetrahedra; t++) {
+        BRIO_TRY(write_text_list(out, m->tetrahedra + 4 * t, 4));
+        BRIO_TRY(brio_output_string(out, "\n"));
     }
-    for (size_t t = 0; t < m->num_tetrahedra; t++) BRIO_TRY(write_text_list(out, m->tetrahedra + 4 * t, 4));
     for (size_t e = 0; e < m->num_edges; e++) BRIO_TRY(write_text_edge(out, m->edges + 2 * e));
 done:
     return status;

@@ -29,25 +29,29 @@ static bool is_axis(const char *name) {
     return strlen(name) == 1 && strchr("xyzXYZ", name[0]);
 }
 
-/* Returns whether a coordinate or one of the first `count` properties has the name. */
-static bool is_taken(const brio_write_job *job, size_t count, const char *name) {
+static bool is_list_of_corners(const char *name) {
+    return !strcmp(name, "vertex_indices") || !strcmp(name, "vertex_index");
+}
+
+/* Returns whether one of the first `count` names is this. */
+static bool is_taken(char (*names)[64], size_t count, const char *name) {
     for (size_t i = 0; i < count; i++)
-        if (!strcmp(job->names[i], name)) return true;
-    return is_axis(name);
+        if (!strcmp(names[i], name)) return true;
+    return false;
 }
 
 /* A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole fits: no result of long work is
  * refused for a name. */
-static brio_status make_names(brio_context *ctx, const char *path, brio_write_job *job, bool comments) {
+static brio_status make_names(const brio_row_writer *w, const char *path, const brio_property *of, size_t count,
+                              bool (*reserved)(const char *name), char (**out)[64]) {
     brio_status status = BRIO_OK;
-    size_t count = job->mesh->num_properties;
-    BRIO_TRY(BRIO_ALLOC(ctx, job->names, count));
+    BRIO_TRY(BRIO_ALLOC(w->ctx, *out, count));
     for (size_t i = 0; i < count; i++) {
-        char word[64];
-        BRIO_REQUIRE(ctx, job->mesh->properties[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
-        make_word(word, job->mesh->properties[i].name, comments);
-        memcpy(job->names[i], word, sizeof word);
-        for (size_t n = 2; is_taken(job, i, job->names[i]); n++) brio_numbered_name(job->names[i], 64, word, n);
+        char word[64], *name = (*out)[i];
+        BRIO_REQUIRE(w->ctx, of[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
+        make_word(word, of[i].name, w->format->comments);
+        memcpy(name, word, sizeof word);
+        for (size_t n = 2; is_taken(*out, i, name) || reserved(name); n++) brio_numbered_name(name, 64, word, n);
     }
 done:
     return status;
@@ -85,7 +89,7 @@ brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_form
     *w = (brio_row_writer){.ctx = ctx, .kind = format, .format = brio_row_format_of(format), .job = *job};
     w->out = (brio_output){.ctx = ctx, .target.folder = -1, .file = -1};
     w->surveys = w->format->survey != NULL;
-    w->colours.to = brio_format_row_of(format)->colours;
+    w->colours = brio_format_colours(format);
     return brio_zeroed(ctx, &w->state, 1, w->format->state + 1);
 }
 
@@ -108,7 +112,7 @@ void brio_row_writer_look(brio_row_writer *w, const brio_mesh *block) {
 }
 
 void brio_row_writer_end_look(brio_row_writer *w) {
-    w->colours.looked = true;
+    w->colours.points.looked = true;
 }
 
 brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block) {
@@ -132,7 +136,11 @@ uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w) {
 
 static brio_status open_output(brio_row_writer *w, const char *path) {
     brio_status status = BRIO_OK;
-    if (!w->format->renames) BRIO_TRY(make_names(w->ctx, path, &w->job, w->format->comments));
+    const brio_mesh *m = w->job.mesh;
+    if (!w->format->renames) BRIO_TRY(make_names(w, path, m->properties, m->num_properties, is_axis, &w->job.names));
+    if (brio_format_holds(w->kind, BRIO_HOLDS_FACE_PROPERTIES))
+        BRIO_TRY(
+            make_names(w, path, m->face_properties, m->num_face_properties, is_list_of_corners, &w->job.face_names));
     BRIO_TRY(brio_check_properties(w->ctx, path, w->kind, w->columns));
     w->begun = true;
     BRIO_TRY(brio_output_open(&w->out, w->ctx, path, w->job.expected));
@@ -178,12 +186,16 @@ bool brio_row_writer_renames(const brio_row_writer *w, const brio_mesh *block, s
 
 brio_status brio_row_writer_end(brio_row_writer *w, const brio_mesh *last) {
     brio_status status = BRIO_OK;
-    w->job.mesh = last;
+    brio_mesh cells = *last, shown;
+    cells.num_properties = 0; /* its points are written */
+    BRIO_TRY(brio_colour_show(w->ctx, &w->colours, &cells, &shown));
+    w->job.mesh = &shown;
     w->job.points = w->points;
     if (w->format->end) BRIO_TRY(w->format->end(&w->out, &w->job, w->state));
     BRIO_TRY(brio_output_finish(&w->out));
     BRIO_TRY(brio_output_publish(&w->out));
 done:
+    brio_colour_free(w->ctx, &cells, &shown);
     return status;
 }
 
@@ -191,8 +203,9 @@ void brio_row_writer_free(brio_row_writer *w) {
     if (w->format && w->format->free && w->state) w->format->free(w->ctx, w->state);
     brio_release(w->ctx, w->state);
     brio_release(w->ctx, w->job.names);
+    brio_release(w->ctx, w->job.face_names);
     if (w->begun) brio_output_close(&w->out);
     w->begun = false;
     w->state = NULL;
-    w->job.names = NULL;
+    w->job.names = w->job.face_names = NULL;
 }

@@ -66,6 +66,8 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
         BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele", strcmp(path, "-") ? path : "standard output");
     BRIO_TRY(brio_check_compress(ctx, path, format, options));
     BRIO_TRY(brio_check_properties(ctx, path, format, m->num_properties));
+    if (m->num_faces && brio_format_holds(format, BRIO_HOLDS_FACE_PROPERTIES))
+        BRIO_TRY(brio_check_properties(ctx, path, format, m->num_face_properties));
     if (brio_is_single(format, options)) BRIO_TRY(brio_check_single(ctx, path, m));
 done:
     return status;
@@ -77,14 +79,14 @@ static uint64_t expected_bytes(const brio_mesh *m, brio_format format, bool asci
     bool text = ascii || !brio_format_holds(format, BRIO_HOLDS_BINARY);
     uint64_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0, scalars = 3 + m->num_properties;
     uint64_t number = text ? 18 : 8, index = text ? 7 : 4;
-    return m->num_vertices * scalars * number +
+    return m->num_vertices * scalars * number + m->num_faces * m->num_face_properties * number +
            (corners + m->num_faces + 5 * m->num_tetrahedra + 2 * m->num_edges) * index;
 }
 
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
     const brio_format_row *row = brio_format_row_of(format);
-    brio_colour_plan colours = {.to = row->colours};
+    brio_colour_plan colours = brio_format_colours(format);
     brio_write_job of_shown = *job;
     brio_output out = {.ctx = ctx, .target.folder = -1, .file = -1};
     brio_mesh shown;

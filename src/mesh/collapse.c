@@ -5,12 +5,14 @@
  * - the link condition holds, so that the topology of the surface stays: the ends have exactly two common neighbours,
  *   and not both ends have degree three;
  * - no triangle round the edge turns over or loses its area. Needles stay allowed: the crust is full of them, and each
- *   collapse of a needle is a step to better shapes.
+ *   collapse of a needle is a step to better shapes;
+ * - with a guard, no triangle crosses another one that it did not cross before (collapse_guard.c).
  *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997. Dey, Edelsbrunner,
  * Guha, Nekhayev. Topology preserving edge contraction. Publ. Inst. Math. Beograd 1999 (the link condition). */
 #include "mesh/collapse.h"
 #include "base/vector.h"
+#include "mesh/collapse_guard.h"
 #include <math.h>
 #include <string.h>
 
@@ -160,6 +162,8 @@ uint32_t brio_collapse_try(brio_collapse_mesh *m, uint32_t h) {
     double point[3];
     best_point(m, h, &sum, point);
     if (!allowed(m, h, point)) return BRIO_COLLAPSE_NONE;
+    if (m->guard && !brio_collapse_guard_allows(m, h, point)) return BRIO_COLLAPSE_NONE;
+    if (m->guard) brio_collapse_guard_before(m);
     do m->vertex[g] = kept;
     while ((g = brio_collapse_turn(m, g)) != h);
     close_triangle(m, h);
@@ -168,5 +172,6 @@ uint32_t brio_collapse_try(brio_collapse_mesh *m, uint32_t h) {
     m->quadric[kept] = sum;
     if (m->spacing) m->spacing[kept] = fmin(m->spacing[kept], m->spacing[gone]);
     m->half_edge[gone] = BRIO_COLLAPSE_NONE;
+    if (m->guard) brio_collapse_guard_after(m);
     return kept;
 }

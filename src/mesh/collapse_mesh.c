@@ -6,9 +6,11 @@
  * that the result does not depend on how the caller numbers the vertices. */
 #include "mesh/collapse_mesh.h"
 #include "base/memory.h"
+#include "mesh/collapse_guard.h"
 #include "base/team.h"
 #include "base/vector.h"
 #include "mesh/edge_rings.h"
+#include "mesh/properties.h"
 #include "order/curve.h"
 #include <math.h>
 #include <string.h>
@@ -296,14 +298,6 @@ done:
 
 /* --- end --- */
 
-static void move_properties(const brio_mesh *mesh, size_t from, size_t to) {
-    for (size_t i = 0; i < mesh->num_properties; i++) {
-        size_t size = brio_scalar_size(mesh->properties[i].type);
-        char *row = mesh->properties[i].data;
-        memmove(row + to * size, row + from * size, size);
-    }
-}
-
 /* Writes to `left` what is left of n items, in the order of their names below num_names. Returns how many are left. */
 static size_t list_by_name(const uint32_t *name, const uint32_t *use, size_t stride, size_t n, uint32_t *left,
                            size_t num_names) {
@@ -327,7 +321,7 @@ static brio_status write_vertices(const brio_collapse_mesh *m, brio_mesh *mesh, 
     for (size_t i = 0; i < count; i++) {
         memcpy(position + 3 * i, brio_collapse_at(m, left[i]), 3 * sizeof *position);
         number[left[i]] = (uint32_t)i;
-        move_properties(mesh, m->vertex_name[left[i]], i);
+        brio_properties_move(mesh->properties, mesh->num_properties, m->vertex_name[left[i]], i);
     }
     if (count) memcpy(mesh->vertices, position, 3 * count * sizeof *position);
     mesh->num_vertices = count;
@@ -343,8 +337,10 @@ static brio_status write_faces(const brio_collapse_mesh *m, brio_mesh *mesh, con
     BRIO_TRY(BRIO_ALLOC(m->ctx, left, m->num_faces));
     size_t count = list_by_name(m->face_name, m->vertex, 3, m->num_faces, left, m->num_faces);
     BRIO_TRY(BRIO_ALLOC(m->ctx, corners, 3 * count));
-    for (size_t f = 0; f < count; f++)
+    for (size_t f = 0; f < count; f++) {
         for (size_t i = 0; i < 3; i++) corners[3 * f + i] = number[m->vertex[3 * (size_t)left[f] + i]];
+        brio_properties_move(mesh->face_properties, mesh->num_face_properties, m->face_name[left[f]], f);
+    }
     if (count) memcpy(mesh->face_vertices, corners, 3 * count * sizeof *corners);
     mesh->num_faces = count; /* the offsets are those of triangles already */
 done:
@@ -361,6 +357,8 @@ static void free_workspace(brio_collapse_mesh *m) {
     brio_release(m->ctx, m->spacing);
     brio_release(m->ctx, m->quadric);
     brio_release(m->ctx, m->second_order);
+    brio_collapse_guard_free(m->ctx, m->guard);
+    m->guard = NULL;
     m->mate = m->second_order = NULL;
     m->error = NULL, m->marks = NULL, m->spacing = NULL, m->quadric = NULL;
 }

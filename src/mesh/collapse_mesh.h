@@ -20,6 +20,8 @@ enum { BRIO_COLLAPSE_NONE = UINT32_MAX };
 /* The bits of a vertex's mark. INSIDE: all neighbours belong to the vertex's block. SEEN: 0 between calls. */
 enum { BRIO_COLLAPSE_BOUNDARY = 1, BRIO_COLLAPSE_INSIDE = 2, BRIO_COLLAPSE_SEEN = 4 };
 
+typedef struct brio_collapse_guard brio_collapse_guard;
+
 typedef struct {
     brio_context *ctx;
     const brio_collapse_options *options;
@@ -33,7 +35,8 @@ typedef struct {
     double *spacing;                /* #V, or NULL: all 1 */
     brio_quadric *quadric;          /* #V */
     uint32_t *vertex_name, *face_name;
-    uint32_t *second_order; /* #V: the vertices along another curve */
+    uint32_t *second_order;     /* #V: the vertices along another curve */
+    brio_collapse_guard *guard; /* collapses that make triangles cross are not tried; NULL: they are */
 } brio_collapse_mesh;
 
 static inline uint32_t brio_collapse_next(uint32_t h) {

@@ -6,6 +6,7 @@
 #include "base/union_find.h"
 #include "mesh/edge_rings.h"
 #include "mesh/extent.h"
+#include "mesh/properties.h"
 #include <math.h>
 #include <string.h>
 
@@ -110,7 +111,9 @@ static void move_faces(const sieve *s) {
             if (stays) m->face_vertices[corners++] = m->face_vertices[h];
         }
         begin = end;
-        if (stays) m->face_offsets[++faces] = corners;
+        if (!stays) continue;
+        brio_properties_move(m->face_properties, m->num_face_properties, f, faces);
+        m->face_offsets[++faces] = corners;
     }
     m->num_faces = faces;
 }
@@ -122,11 +125,7 @@ static void move_vertices(const sieve *s) {
     for (size_t v = 0; v < m->num_vertices; v++) {
         if (s->used[v] == USED_BEFORE) continue;
         memmove(m->vertices + 3 * count, m->vertices + 3 * v, 3 * sizeof *m->vertices);
-        for (size_t i = 0; i < m->num_properties; i++) {
-            size_t size = brio_scalar_size(m->properties[i].type);
-            char *row = m->properties[i].data;
-            memmove(row + count * size, row + v * size, size);
-        }
+        brio_properties_move(m->properties, m->num_properties, v, count);
         s->number[v] = (uint32_t)count++;
     }
     m->num_vertices = count;

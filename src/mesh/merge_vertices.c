@@ -12,6 +12,7 @@
 #include "base/union_find.h"
 #include "base/versioned.h"
 #include "mesh/edge_rings.h"
+#include "mesh/properties.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -188,11 +189,7 @@ static void move_vertices(const merger *m, brio_merge_stats *stats) {
     for (size_t v = 0; v < n; v++) {
         if (!m->stays[v]) continue;
         memmove(mesh->vertices + 3 * kept, mesh->vertices + 3 * v, 3 * sizeof *mesh->vertices);
-        for (size_t i = 0; i < mesh->num_properties; i++) {
-            size_t size = brio_scalar_size(mesh->properties[i].type);
-            char *row = mesh->properties[i].data;
-            memmove(row + kept * size, row + v * size, size);
-        }
+        brio_properties_move(mesh->properties, mesh->num_properties, v, kept);
         kept++;
     }
     stats->vertices = n - kept;
@@ -228,6 +225,7 @@ static void move_faces(const merger *m, brio_merge_stats *stats) {
         begin = end;
         if (!count) continue;
         corners += count;
+        brio_properties_move(mesh->face_properties, mesh->num_face_properties, f, kept);
         mesh->face_offsets[++kept] = corners;
     }
     stats->faces = mesh->num_faces - kept;

@@ -14,11 +14,16 @@ brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out) {
     return status;
 }
 
+static void free_properties(brio_context *ctx, brio_property *properties, size_t count) {
+    for (size_t i = 0; i < count; i++) brio_release(ctx, properties[i].data);
+    brio_release(ctx, properties);
+}
+
 void brio_mesh_free(brio_mesh *mesh) {
     if (!mesh) return;
     brio_context *ctx = mesh->context;
-    for (size_t i = 0; i < mesh->num_properties; i++) brio_release(ctx, mesh->properties[i].data);
-    brio_release(ctx, mesh->properties);
+    free_properties(ctx, mesh->properties, mesh->num_properties);
+    free_properties(ctx, mesh->face_properties, mesh->num_face_properties);
     for (size_t i = 0; i < mesh->num_metadata; i++) brio_release(ctx, mesh->metadata[i].bytes);
     brio_release(ctx, mesh->metadata);
     brio_release(ctx, mesh->vertices);
@@ -63,6 +68,8 @@ brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const 
     uint32_t *v = NULL;
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, !mesh->face_offsets, BRIO_ERR_ARGUMENT, "the mesh has faces already");
+    BRIO_REQUIRE(ctx, !mesh->num_face_properties, BRIO_ERR_ARGUMENT,
+                 "the mesh has properties of faces already: set faces first");
     BRIO_TRY(check_offsets(ctx, offsets, num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, o, num_faces + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, v, num_faces ? offsets[num_faces] : 0));
@@ -120,22 +127,69 @@ size_t brio_scalar_size(brio_scalar type) {
     return (unsigned)type < BRIO_SCALAR_END ? sizes[type] : 0;
 }
 
-brio_status brio_mesh_append_property(brio_mesh *mesh, const char *name, brio_scalar type) {
-    brio_context *ctx = mesh->context;
+/* --- properties --- */
+
+/* Appends a property of `rows` numbers to a list. */
+static brio_status append(brio_context *ctx, brio_property **list, size_t *count, size_t rows, const char *name,
+                          brio_scalar type) {
     brio_property p = {.type = type};
     brio_status status = BRIO_OK;
     char *bytes = NULL;
     BRIO_REQUIRE(ctx, brio_scalar_size(type), BRIO_ERR_ARGUMENT, "property %s: no such scalar type", name);
     BRIO_REQUIRE(ctx, brio_utf8_copy(p.name, sizeof p.name, name) && name[0], BRIO_ERR_ARGUMENT,
                  "a property name of %zu bytes, expected 1 to 63 bytes of UTF-8", strlen(name));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bytes, mesh->num_vertices * brio_scalar_size(type)));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, bytes, rows * brio_scalar_size(type)));
     p.data = bytes;
-    BRIO_TRY(BRIO_RESIZE(ctx, mesh->properties, mesh->num_properties + 1));
-    mesh->properties[mesh->num_properties++] = p;
+    BRIO_TRY(BRIO_RESIZE(ctx, *list, *count + 1));
+    (*list)[(*count)++] = p;
     bytes = NULL;
 done:
     brio_release(ctx, bytes);
     return status;
+}
+
+static const brio_property *find(const brio_property *list, size_t count, const char *name) {
+    char clean[64];
+    bool fits = brio_utf8_copy(clean, sizeof clean, name);
+    for (size_t i = 0; fits && i < count; i++)
+        if (!strcmp(list[i].name, clean)) return &list[i];
+    return NULL;
+}
+
+/* Removes what has the name. Returns how many are left. */
+static size_t remove_named(brio_context *ctx, brio_property *list, size_t count, const char *name) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (strcmp(list[i].name, name) != 0)
+            list[kept++] = list[i];
+        else
+            brio_release(ctx, list[i].data);
+    }
+    return kept;
+}
+
+void brio_properties_move(const brio_property *list, size_t count, size_t from, size_t to) {
+    for (size_t i = 0; i < count; i++) {
+        size_t size = brio_scalar_size(list[i].type);
+        char *rows = list[i].data;
+        memmove(rows + to * size, rows + from * size, size);
+    }
+}
+
+brio_mesh brio_mesh_faces_as_points(const brio_mesh *mesh) {
+    return (brio_mesh){.size = sizeof(brio_mesh),
+                       .context = mesh->context,
+                       .num_vertices = mesh->num_faces,
+                       .num_properties = mesh->num_face_properties,
+                       .properties = mesh->face_properties};
+}
+
+brio_status brio_mesh_append_property(brio_mesh *mesh, const char *name, brio_scalar type) {
+    return append(mesh->context, &mesh->properties, &mesh->num_properties, mesh->num_vertices, name, type);
+}
+
+brio_status brio_mesh_append_face_property(brio_mesh *mesh, const char *name, brio_scalar type) {
+    return append(mesh->context, &mesh->face_properties, &mesh->num_face_properties, mesh->num_faces, name, type);
 }
 
 brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data) {
@@ -147,29 +201,39 @@ done:
     return status;
 }
 
+brio_status brio_mesh_add_face_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data) {
+    brio_status status = BRIO_OK;
+    BRIO_REQUIRE(mesh->context, !brio_mesh_face_property(mesh, name), BRIO_ERR_ARGUMENT,
+                 "two properties of faces named %s", name);
+    BRIO_TRY(brio_mesh_append_face_property(mesh, name, type));
+    if (data) *data = mesh->face_properties[mesh->num_face_properties - 1].data;
+done:
+    return status;
+}
+
 void brio_mesh_drop_properties(brio_mesh *mesh, size_t left) {
     while (mesh->num_properties > left) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }
 
 void brio_mesh_remove_property(brio_mesh *mesh, const char *name) {
     BRIO_DOOR;
-    size_t kept = 0;
-    for (size_t i = 0; i < mesh->num_properties; i++) {
-        if (strcmp(mesh->properties[i].name, name) != 0)
-            mesh->properties[kept++] = mesh->properties[i];
-        else
-            brio_release(mesh->context, mesh->properties[i].data);
-    }
-    mesh->num_properties = kept;
+    mesh->num_properties = remove_named(mesh->context, mesh->properties, mesh->num_properties, name);
+}
+
+void brio_mesh_remove_face_property(brio_mesh *mesh, const char *name) {
+    BRIO_DOOR;
+    mesh->num_face_properties = remove_named(mesh->context, mesh->face_properties, mesh->num_face_properties, name);
 }
 
 const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name) {
-    char clean[64];
-    bool fits = brio_utf8_copy(clean, sizeof clean, name);
-    for (size_t i = 0; fits && i < mesh->num_properties; i++)
-        if (!strcmp(mesh->properties[i].name, clean)) return &mesh->properties[i];
-    return NULL;
+    return find(mesh->properties, mesh->num_properties, name);
 }
+
+const brio_property *brio_mesh_face_property(const brio_mesh *mesh, const char *name) {
+    return find(mesh->face_properties, mesh->num_face_properties, name);
+}
+
+/* --- metadata --- */
 
 const brio_metadata *brio_mesh_metadata(const brio_mesh *mesh, const char *name) {
     for (size_t i = 0; i < mesh->num_metadata; i++)

@@ -1,4 +1,4 @@
-/* Properties of the vertices of a mesh. */
+/* Properties of the vertices and of the faces of a mesh. */
 #ifndef BRIO_MESH_PROPERTIES_H
 #define BRIO_MESH_PROPERTIES_H
 
@@ -9,5 +9,14 @@ void brio_mesh_drop_properties(brio_mesh *mesh, size_t left);
 
 /** As brio_mesh_add_property, for a name that no property has: nothing is compared. */
 brio_status brio_mesh_append_property(brio_mesh *mesh, const char *name, brio_scalar type);
+/** As brio_mesh_add_face_property, likewise. */
+brio_status brio_mesh_append_face_property(brio_mesh *mesh, const char *name, brio_scalar type);
+
+/** Copies row `from` of some properties to row `to`. */
+void brio_properties_move(const brio_property *list, size_t count, size_t from, size_t to);
+
+/** Returns a view of the faces of a mesh as points without positions, so that what serves the properties of points
+ *  serves those of faces. It owns nothing. */
+brio_mesh brio_mesh_faces_as_points(const brio_mesh *mesh);
 
 #endif

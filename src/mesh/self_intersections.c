@@ -1,4 +1,4 @@
-/* The number of pairs of faces that cross each other.
+/* The pairs of faces that cross each other: their number, and which faces they are.
  *
  * Faces are sorted along a space-filling curve through the centres of their boxes. A binary tree of boxes stands over
  * this sequence. A node is a range of the sequence, so only the boxes are stored. Each face searches the tree, and
@@ -7,12 +7,13 @@
  *
  * Based on: Rubin, Whitted. A 3-dimensional representation for fast rendering of complex scenes. SIGGRAPH 1980
  * (boxes). Morton. A computer oriented geodetic data base. IBM 1966 (the curve). */
-#include "mesh/triangles_cross.h"
+#include "mesh/crossing_faces.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "mesh/edge_rings.h"
+#include "mesh/triangles_cross.h"
 #include <math.h>
 #include <string.h>
 
@@ -181,24 +182,35 @@ static bool faces_cross(const tree *tr, size_t f, size_t g) {
     return false;
 }
 
-/* Counts the faces that cross the face at place `at` of the order and come after `at` in the order. */
-static int64_t count_crossing(const tree *t, size_t at) {
+static void mark(uint8_t *crosses, size_t face) {
+    __atomic_store_n(&crosses[face], 1, __ATOMIC_RELAXED); /* read after all threads have ended */
+}
+
+/* Counts the faces that cross the face at place `at` of the order and come after `at` in the order, or are not asked about.
+ * only     NULL, or #F: the faces that are asked about.
+ * crosses  NULL, or #F: set to 1 for the faces of these pairs. */
+static int64_t count_crossing(const tree *t, size_t at, const uint8_t *only, uint8_t *crosses) {
     range stack[MOST_LEVELS];
     size_t face = t->order[at];
     int depth = 0;
     int64_t count = 0;
+    if (only && !only[face]) return 0;
     stack[depth++] = (range){0, 0, t->count};
     while (depth > 0) {
         range r = stack[--depth];
-        if (r.high <= at + 1 || !boxes_meet(&t->nodes[r.node], &t->faces[face])) continue;
+        if ((!only && r.high <= at + 1) || !boxes_meet(&t->nodes[r.node], &t->faces[face])) continue;
         if (r.high - r.low > LEAF_FACES) {
             size_t middle = r.low + (r.high - r.low) / 2, child = 2 * r.node + 1;
             stack[depth++] = (range){child, r.low, middle};
             stack[depth++] = (range){child + 1, middle, r.high};
             continue;
         }
-        for (size_t i = r.low > at ? r.low : at + 1; i < r.high; i++)
-            if (boxes_meet(&t->faces[t->order[i]], &t->faces[face])) count += faces_cross(t, face, t->order[i]);
+        for (size_t i = only || r.low > at ? r.low : at + 1; i < r.high; i++) {
+            if (i <= at && (i == at || only[t->order[i]])) continue;
+            if (!boxes_meet(&t->faces[t->order[i]], &t->faces[face]) || !faces_cross(t, face, t->order[i])) continue;
+            count++;
+            if (crosses) mark(crosses, face), mark(crosses, t->order[i]);
+        }
     }
     return count;
 }
@@ -206,6 +218,8 @@ static int64_t count_crossing(const tree *t, size_t at) {
 /* The crossing pairs of a batch of faces. */
 typedef struct {
     const tree *tree;
+    const uint8_t *only;
+    uint8_t *crosses;
     size_t first; /* place of the batch's first face in the order */
     int64_t count;
 } batch;
@@ -214,16 +228,17 @@ static void count_pairs(void *user, size_t begin, size_t end, int thread) {
     batch *b = user;
     int64_t count = 0;
     (void)thread;
-    for (size_t i = begin; i < end; i++) count += count_crossing(b->tree, b->first + i);
+    for (size_t i = begin; i < end; i++) count += count_crossing(b->tree, b->first + i, b->only, b->crosses);
     if (count) __atomic_fetch_add(&b->count, count, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
-brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs) {
-    BRIO_DOOR;
+brio_status brio_crossing_faces(brio_context *ctx, const brio_mesh *mesh, const uint8_t *only, uint8_t *crosses,
+                                int64_t *pairs) {
     brio_status status = BRIO_OK;
     tree t = {0};
-    batch b = {.tree = &t};
+    batch b = {.tree = &t, .only = only, .crosses = crosses};
     *pairs = 0;
+    if (crosses && mesh->num_faces) memset(crosses, 0, mesh->num_faces);
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(tree_new(ctx, mesh, &t));
     for (; b.first < t.count; b.first += BATCH) {
@@ -235,4 +250,9 @@ brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mes
 done:
     tree_free(ctx, &t);
     return status;
+}
+
+brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs) {
+    BRIO_DOOR;
+    return brio_crossing_faces(ctx, mesh, NULL, NULL, pairs);
 }

@@ -10,6 +10,9 @@
  * The limits come from a histogram of errors, whose classes differ by less than 1%, and not from a share of the blocks'
  * own edges: so they do not depend on threads.
  *
+ * Collapses in blocks look at the surface near them, not at other sheets of it. Where triangles of the result cross, all is
+ * done once more, as one block, with a guard that sees every sheet (collapse_guard.h).
+ *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
  * Differs from the paper: blocks instead of one queue; see also collapse.c and quadric.h. */
 #include "mesh/simplify.h"
@@ -17,6 +20,8 @@
 #include "base/team.h"
 #include "mesh/collapse.h"
 #include "mesh/collapse_blocks.h"
+#include "mesh/collapse_guard.h"
+#include "mesh/crossing_faces.h"
 #include <float.h>
 #include <string.h>
 
@@ -187,23 +192,102 @@ done:
     return status;
 }
 
+/* --- triangles that cross --- */
+
+/* Counts the pairs of triangles that are left and cross. */
+static brio_status count_crossings(const brio_collapse_mesh *m, int64_t *pairs) {
+    brio_status status = BRIO_OK;
+    brio_mesh left = {.size = sizeof left, .context = m->ctx, .num_vertices = m->num_vertices, .vertices = m->position};
+    BRIO_TRY(BRIO_ALLOC(m->ctx, left.face_vertices, 3 * m->num_faces));
+    BRIO_TRY(BRIO_ALLOC(m->ctx, left.face_offsets, m->num_faces + 1));
+    left.face_offsets[0] = 0;
+    for (size_t f = 0; f < m->num_faces; f++) {
+        if (m->vertex[3 * f] == BRIO_COLLAPSE_NONE) continue;
+        memcpy(left.face_vertices + 3 * left.num_faces, m->vertex + 3 * f, 3 * sizeof *m->vertex);
+        left.num_faces++;
+        left.face_offsets[left.num_faces] = 3 * left.num_faces;
+    }
+    BRIO_TRY(brio_crossing_faces(m->ctx, &left, NULL, NULL, pairs));
+done:
+    brio_release(m->ctx, left.face_vertices);
+    brio_release(m->ctx, left.face_offsets);
+    return status;
+}
+
+/* Collapses edges of a mesh, whose arrays s->m takes over, but does not write the result.
+ * guarded  whether each collapse is tested. */
+static brio_status collapse(simplifier *s, brio_mesh *mesh, bool guarded) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = mesh->context;
+    const brio_collapse_options *options = s->m.options;
+    *s = (simplifier){0};
+    BRIO_TRY(brio_collapse_mesh_new(ctx, mesh, options, &s->m));
+    if (mesh->num_faces <= options->target_faces) goto done;
+    s->all = s->excess = (mesh->num_faces - options->target_faces + 1) / 2;
+    BRIO_TRY(report(s));
+    BRIO_TRY(prepare(s));
+    if (guarded)
+        BRIO_TRY(brio_collapse_guard_new(&s->m, &s->m.guard));
+    else
+        BRIO_TRY(collapse_in_blocks(s));
+    BRIO_TRY(collapse_the_rest(s));
+    if (guarded) BRIO_TRY(brio_collapse_guard_status(s->m.guard));
+done:
+    return status;
+}
+
+static void free_simplifier(simplifier *s, brio_context *ctx) {
+    brio_release(ctx, s->order[0]);
+    brio_release(ctx, s->classes);
+    s->order[0] = NULL;
+    s->classes = NULL;
+    brio_collapse_mesh_free(&s->m);
+}
+
+/* A copy of what collapses change of a mesh. */
+typedef struct {
+    double *vertices;
+    uint32_t *face_vertices;
+} original;
+
+static brio_status collapse_again(simplifier *s, brio_mesh *mesh, const original *o) {
+    const brio_collapse_options *options = s->m.options;
+    free_simplifier(s, mesh->context);
+    s->m.options = options;
+    memcpy(mesh->vertices, o->vertices, 3 * mesh->num_vertices * sizeof *o->vertices);
+    memcpy(mesh->face_vertices, o->face_vertices, 3 * mesh->num_faces * sizeof *o->face_vertices);
+    return collapse(s, mesh, true);
+}
+
 brio_status brio_collapse_edges(brio_context *ctx, brio_mesh *mesh, const brio_collapse_options *options) {
     brio_status status = BRIO_OK;
-    simplifier s = {0};
-    BRIO_TRY(brio_collapse_mesh_new(ctx, mesh, options, &s.m));
-    if (mesh->num_faces > options->target_faces) {
-        s.all = s.excess = (mesh->num_faces - options->target_faces + 1) / 2;
-        BRIO_TRY(report(&s));
-        BRIO_TRY(prepare(&s));
-        BRIO_TRY(collapse_in_blocks(&s));
-        BRIO_TRY(collapse_the_rest(&s));
+    simplifier s = {.m.options = options};
+    bool embedded = options->embedded && mesh->num_faces > options->target_faces;
+    original o = {NULL, NULL};
+    int64_t pairs = 0;
+    const brio_bar bar = brio_progress_bar(ctx);
+    if (embedded) {
+        size_t corners = (size_t)mesh->face_offsets[mesh->num_faces];
+        BRIO_TRY(BRIO_ALLOC(ctx, o.vertices, 3 * mesh->num_vertices));
+        BRIO_TRY(BRIO_ALLOC(ctx, o.face_vertices, corners));
+        memcpy(o.vertices, mesh->vertices, 3 * mesh->num_vertices * sizeof *o.vertices);
+        memcpy(o.face_vertices, mesh->face_vertices, corners * sizeof *o.face_vertices);
     }
+    if (embedded) brio_progress_part(ctx, bar, 0, 0.5);
+    BRIO_TRY(collapse(&s, mesh, false));
+    if (embedded) {
+        brio_progress_part(ctx, bar, 0.5, 0.6);
+        BRIO_TRY(count_crossings(&s.m, &pairs));
+    }
+    brio_progress_part(ctx, bar, pairs ? 0.6 : 0, 1);
+    if (pairs) BRIO_TRY(collapse_again(&s, mesh, &o));
     brio_release(ctx, s.order[0]);
     s.order[0] = NULL;
     BRIO_TRY(brio_collapse_mesh_write(&s.m, mesh));
 done:
-    brio_release(ctx, s.order[0]);
-    brio_release(ctx, s.classes);
-    brio_collapse_mesh_free(&s.m);
+    brio_progress_part(ctx, bar, 0, 1);
+    brio_release(ctx, o.vertices);
+    brio_release(ctx, o.face_vertices);
+    free_simplifier(&s, ctx);
     return status;
 }

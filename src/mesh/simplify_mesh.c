@@ -8,6 +8,7 @@
 #include "base/scale.h"
 #include "base/versioned.h"
 #include "mesh/simplify.h"
+#include "mesh/simplify_any.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -25,7 +26,8 @@ static int exponent_of(const brio_mesh *mesh) {
 
 static brio_status collapse(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *o, double tolerance) {
     /* the tolerance is one length, not a share of a spacing */
-    brio_collapse_options options = {.target_faces = o->target_faces, .longest = INFINITY, .tolerance = tolerance};
+    brio_collapse_options options = {
+        .target_faces = o->target_faces, .longest = INFINITY, .embedded = true, .tolerance = tolerance};
     return brio_collapse_edges(ctx, mesh, &options);
 }
 
@@ -38,7 +40,10 @@ brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_me
                  "a tolerance of %g, expected a finite number, 0 or more", o.tolerance);
     BRIO_REQUIRE(ctx, o.target_faces > 0 || o.tolerance > 0, BRIO_ERR_ARGUMENT,
                  "neither a number of faces nor a tolerance to simplify to");
+    BRIO_REQUIRE(ctx, !mesh->num_edges && !mesh->num_tetrahedra, BRIO_ERR_ARGUMENT,
+                 "a mesh with edges or tetrahedra of its own: only faces are simplified");
     BRIO_TRY(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, NULL));
+    if (o.any) BRIO_TRY(brio_mesh_take_apart(ctx, mesh));
     int exponent = exponent_of(mesh);
     if (exponent) BRIO_TRY(brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, mesh->vertices));
     status = collapse(ctx, mesh, &o, o.tolerance > 0 ? ldexp(o.tolerance, -exponent) : INFINITY);
@@ -46,6 +51,7 @@ brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_me
         brio_status scaled = brio_scale_vertices(ctx, mesh->vertices, mesh->num_vertices, exponent);
         if (status == BRIO_OK) status = scaled;
     }
+    if (o.any && status == BRIO_OK) status = brio_mesh_put_together(ctx, mesh);
 done:
     return status;
 }

@@ -148,6 +148,35 @@ done:
     return status;
 }
 
+/* Makes half-edges of edges that are no pair, or run in one direction, half-edges of boundaries. Members of a ring follow
+ * each other in ascending order, so that a pair is seen at its first one. */
+static brio_status leave_pairs(brio_context *ctx, const brio_mesh *m, uint32_t *ring) {
+    brio_status status = BRIO_OK;
+    size_t corners = m->num_faces ? (size_t)m->face_offsets[m->num_faces] : 0;
+    uint32_t *pair = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, pair, corners));
+    for (uint32_t h = 0; h < corners; h++) {
+        uint32_t g = ring[h];
+        pair[h] = ring[g] == h && m->face_vertices[g] != m->face_vertices[h] ? g : h;
+    }
+    if (corners) memcpy(ring, pair, corners * sizeof *ring);
+done:
+    brio_release(ctx, pair);
+    return status;
+}
+
+brio_status brio_mesh_cut_apart(brio_context *ctx, brio_mesh *m) {
+    brio_status status = BRIO_OK;
+    uint32_t *ring = NULL;
+    BRIO_TRY(brio_mesh_check_faces(ctx, m));
+    BRIO_TRY(brio_edge_rings(ctx, m, &ring));
+    BRIO_TRY(leave_pairs(ctx, m, ring));
+    BRIO_TRY(split_fans(ctx, m, ring));
+done:
+    brio_release(ctx, ring);
+    return status;
+}
+
 /* After pairing across inside wedges, two sheets may still be connected round both ends of an edge, which then stays
  * one edge of four faces. There the fan of each end passes the edge twice. Pairing across the outside wedges instead
  * splits that fan in two. */

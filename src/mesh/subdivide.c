@@ -303,6 +303,20 @@ done:
     return status;
 }
 
+/* The four parts of a face have its properties. */
+static brio_status make_face_property(brio_context *ctx, const subdivider *s, const brio_property *property) {
+    brio_status status = BRIO_OK;
+    size_t size = brio_scalar_size(property->type), faces = s->mesh->num_faces;
+    char *data;
+    BRIO_TRY(brio_mesh_add_face_property(s->fine, property->name, property->type, (void **)&data));
+    for (size_t f = 0; f < 4 * faces; f++) {
+        BRIO_TRY(report(ctx, (uint32_t)f, 4 * faces, 1, 1));
+        memcpy(data + f * size, (const char *)property->data + f / 4 * size, size);
+    }
+done:
+    return status;
+}
+
 static brio_status subdivide_once(brio_context *ctx, const brio_mesh *mesh, brio_mesh **out) {
     brio_status status = BRIO_OK;
     subdivider s = {.mesh = mesh};
@@ -318,6 +332,8 @@ static brio_status subdivide_once(brio_context *ctx, const brio_mesh *mesh, brio
     BRIO_TRY(place_vertices(ctx, &s));
     BRIO_TRY(make_faces(ctx, &s));
     for (size_t i = 0; i < mesh->num_properties; i++) BRIO_TRY(make_property(ctx, &s, i));
+    for (size_t i = 0; i < mesh->num_face_properties; i++)
+        BRIO_TRY(make_face_property(ctx, &s, &mesh->face_properties[i]));
     *out = s.fine;
     s.fine = NULL;
 done:

@@ -235,7 +235,10 @@ static brio_status collapse_short_edges(brio_context *ctx, const brio_implicit_g
     double *spacing = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, spacing, mesh->num_vertices));
     for (size_t v = 0; v < mesh->num_vertices; v++) spacing[v] = grid->cell;
-    brio_collapse_options options = {(size_t)((double)mesh->num_faces * KEPT), spacing, LONGEST, TOLERANCE};
+    brio_collapse_options options = {.target_faces = (size_t)((double)mesh->num_faces * KEPT),
+                                     .spacing = spacing,
+                                     .longest = LONGEST,
+                                     .tolerance = TOLERANCE};
     BRIO_TRY(brio_collapse_edges(ctx, mesh, &options));
 done:
     brio_release(ctx, spacing);

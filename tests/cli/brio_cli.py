@@ -4,6 +4,7 @@ BRIO names the program. Python's standard library is all that is needed.
 """
 
 import json
+import math
 import os
 import re
 import shutil
@@ -93,6 +94,13 @@ class CliTest(unittest.TestCase):
     def cloud(self, name, n, kind="cube"):
         self.expect(0, "generate", kind, "-n", n, "-o", self.path(name), "--quiet")
         return self.path(name)
+
+    @staticmethod
+    def sphere(n):
+        """Points spread evenly on the unit sphere."""
+        turn = math.pi * (1 + math.sqrt(5))
+        z = [1 - (2 * k + 1) / n for k in range(n)]
+        return [(math.cos(turn * k) * math.sqrt(1 - c * c), math.sin(turn * k) * math.sqrt(1 - c * c), c) for k, c in enumerate(z)]
 
     def ball_map(self, name, size=20):
         """A CCP4 map whose values fall with the distance from the middle."""

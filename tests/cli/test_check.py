@@ -11,6 +11,22 @@ class Facts(CliTest):
         tetrahedra = self.facts("check", self.tetrahedra("t", FLAT, FLAT_RIGHT))
         self.assert_schema(tetrahedra, {**COMMON_FACTS, "verified": bool, "canonical": bool})
 
+    def test_surface_held_against_its_points(self):
+        """A lid over half a ball, made of two triangles or of many."""
+        half = [p for p in self.sphere(3000) if p[2] > 0.1]
+        points, lid = self.xyz("half.xyz", half), self.path("closed.ply")
+        self.expect(0, "surface", points, "--closed", "-o", lid, "--quiet")
+        self.facts("subdivide", lid, "-o", self.path("fine.ply"))
+        for mesh in [lid, self.path("fine.ply")]:
+            facts = self.facts("check", mesh, "--samples", points)
+            self.assertEqual((facts["bridges"]["number"], facts["points_left_out"]), (1, 0))
+            self.assertTrue(0.2 < facts["bridges"]["area_share"] < 0.4)
+            self.assertLess(max(abs(x) for x in facts["bridges"]["largest_centre"]), 0.4)
+            self.assertTrue(5 < facts["far_area_percent"] < 30)
+        self.expect(0, "surface", points, "-o", self.path("open.ply"), "--quiet")
+        facts = self.facts("check", self.path("open.ply"), "--open", "--samples", points)
+        self.assertEqual((facts["bridges"]["number"], facts["far_area_percent"]), (0, 0))
+
     def test_check_of_points_alone(self):
         self.bad_input("points only", "check", self.xyz("a.xyz", CUBE))
 

@@ -9,7 +9,7 @@ import subprocess
 
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
-COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide",
+COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide", "simplify", "terrain",
             "locate", "interpolate", "voronoi", "restricted"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
@@ -20,20 +20,22 @@ OWN_OPTIONS = {
     "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
                 "--vertex-normals", "--self-intersections", "--polygons", "--extraction", "--keep-largest",
-                "--min-component", "--from", "--ignore-normals", "--ignore-origins"],
+                "--min-component", "--from", "--ignore-normals", "--ignore-origins", "--left-out"],
     "medial": ["--sides", "--spacing", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust",
                "--sampling-density", "--sharp"],
     "offset": ["--distance", "--error", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",
                "--vertex-normals", "--self-intersections"],
     "hull": ["--polygons"],
     "alpha": ["--alpha", "--filtration", "--weights", "--weights-mod", "--unweighted"],
-    "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections"],
-    "compare": ["--samples"],
+    "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections", "--samples"],
+    "compare": ["--samples", "--within"],
     "info": [],
     "iso": ["--level", "--sigma", "--resolution", "--points", "--blobbiness", "--delaunay-conforming",
             "--vertex-normals", "--self-intersections"],
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--kind", "--resolution"],
     "subdivide": ["--levels"],
+    "simplify": ["--faces", "--error"],
+    "terrain": ["--class", "--max-edge", "--raster", "--cell"],
     "locate": ["--at", "--plane", "--weights", "--weights-mod", "--unweighted"],
     "voronoi": ["--weights", "--weights-mod", "--unweighted", "--box", "--faces"],
     "interpolate": ["--at", "--plane", "--property", "--method"],
@@ -109,7 +111,7 @@ class Usage(CliTest):
         self.usage("--format", "delaunay", "a.xyz", "-o", "-")
 
     def test_output_of_a_command_that_writes_none(self):
-        for operands in [("check", "a"), ("info", "a"), ("compare", "a", "b")]:
+        for operands in [("check", "a"), ("info", "a")]:
             self.usage("writes no file", *operands, "-o", "x.ply")
 
     def test_standard_input_wanted_twice(self):

@@ -19,10 +19,67 @@ class Compare(CliTest):
         self.assertLess(facts["hausdorff"], 1e-12)
         self.assertAlmostEqual(facts["normal_consistency"], 1)
 
-    def test_compare_with_points_alone(self):
-        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
-        self.bad_input("found no faces", "compare", mesh, self.xyz("a.xyz", CUBE))
+    def test_two_clouds(self):
+        self.bad_input("found no faces", "compare", self.xyz("a.xyz", CUBE), self.xyz("b.xyz", CUBE))
 
+    def test_two_surfaces_within(self):
+        a = self.off("a.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        b = self.off("b.off", [(x + 0.1, y, z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
+        self.assertIs(self.facts("compare", a, b, "--samples", 500, "--within", 0.2)["within"], True)
+        self.assertIn("more than 0.01", self.expect(5, "compare", a, b, "--samples", 500, "--within", 0.01).err)
+        self.usage("-o is for points", "compare", a, b, "-o", self.path("c.ply"))
+
+
+class Cloud(CliTest):
+    """Points of an octahedron: |x| + |y| + |z| - 1 over the root of 3 where a face is nearest."""
+
+    POINTS = [(0, 0, 0), (1 / 3, 1 / 3, 1 / 3), (0.5, 0.5, 0.5), (0.2, 0.1, -0.1), (2, 0, 0), (-0.9, -0.9, 0.9)]
+
+    def distance(self, p):
+        return 1.0 if p == (2, 0, 0) else (sum(map(abs, p)) - 1) / 3**0.5
+
+    def test_signed_distances(self):
+        mesh, cloud, out = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.xyz("a.xyz", self.POINTS), self.path("d.csv")
+        for pair in [(cloud, mesh), (mesh, cloud)]:
+            facts = self.facts("compare", *pair, "-o", out)
+            with open(out) as f:
+                rows = [list(map(float, line.split(","))) for line in f.read().split()[1:]]
+            wanted = [self.distance(p) for p in self.POINTS]
+            for row, d in zip(rows, wanted):
+                self.assertAlmostEqual(row[3], d, places=14)
+            self.assertAlmostEqual(facts["signed_mean"], sum(wanted) / 6)
+            self.assertAlmostEqual(facts["mean"], sum(map(abs, wanted)) / 6)
+            self.assertAlmostEqual(facts["hausdorff"], max(map(abs, wanted)))
+            self.assertAlmostEqual(facts["percentiles"]["p50"], sorted(wanted)[2])
+            self.assertEqual(sum(facts["histogram"]["counts"]), 6)
+            self.assertAlmostEqual(facts["histogram"]["low"], min(wanted))
+
+    def test_faces_that_look_inwards(self):
+        mesh = self.off("m.off", OCTAHEDRON, [f[::-1] for f in OCTAHEDRON_FACES])
+        facts = self.facts("compare", self.xyz("a.xyz", [(0, 0, 0)]), mesh)
+        self.assertAlmostEqual(facts["signed_mean"], -1 / 3**0.5)
+
+    def test_within(self):
+        mesh, cloud = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.xyz("a.xyz", self.POINTS)
+        facts = self.facts("compare", cloud, mesh, "--within", 0.5, code=5)
+        self.assertEqual((facts["within"], facts["outside"]), (False, 3))
+        self.assertEqual(self.facts("compare", cloud, mesh, "--within", 1)["outside"], 0)
+
+    def test_other_properties_stay(self):
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        cloud = self.file("a.csv", "x,y,z,distance,label\n0,0,0,7,1\n1,1,1,8,2\n")
+        run = self.expect(0, "compare", cloud, mesh, "-o", self.path("d.csv"))
+        self.assertIn("the property distance of the points is now input_distance", run.err)
+        with open(self.path("d.csv")) as f:
+            self.assertEqual(f.readline().strip(), "x,y,z,input_distance,label,distance")
+
+    def test_wrong_uses(self):
+        mesh, cloud = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.xyz("a.xyz", self.POINTS)
+        self.usage("--samples is for two surfaces", "compare", cloud, mesh, "--samples", 10)
+        self.expect(3, "compare", self.file("e.xyz", ""), mesh)
+
+
+class Figures(CliTest):
     def test_surface_without_area_is_named(self):
         mesh, flat = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES), self.off("f.off", [(1, 1, 1)] * 3, [(0, 1, 2)])
         self.assertRegex(self.expect(3, "compare", mesh, flat).err, r"f\.off: the faces of the second mesh have area 0")

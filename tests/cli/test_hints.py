@@ -123,6 +123,9 @@ ROWS = {
                          Silent("surface sparse.ply --method labeled-delaunay -o out.ply")]),
     "WARNING_GUESS": ("surface cube.ply -o out.ply", 0, ["help methods", "alpha cube.ply --alpha auto -o out.ply"]),
     "WARNING_BRIDGES": ("surface half.xyz --closed -o out.ply", 0, [Silent("surface half.xyz --open auto -o out.ply")]),
+    "WARNING_UNSEEN": ("check capped.ply --samples half.xyz", 0, [Silent("check part.ply --open --samples half.xyz")]),
+    "WARNING_LEFT_OUT": ("check oct.off --samples scan.ply", 0, [Silent("check capped.ply --samples half.xyz")]),
+    "WARNING_MORE_FACES": ("simplify open.off --faces 2 -o out.ply", 0, [Silent("simplify oct.off --faces 8 -o out.ply")]),
     "WARNING_THETA": ("surface scan.ply --method cocone --theta 0.1 -o out.ply", 0,
                       [Silent("surface scan.ply --method cocone --theta 0.3 -o out.ply")]),
     "WARNING_LOST": ("convert values.ply out.off", 0, [Silent("convert values.ply out.ply")]),
@@ -155,7 +158,7 @@ ROWS = {
     "WARNING_BEYOND": ("alpha tiny.xyz --alpha 1 --filtration out.txt -o out.ply", 0,
                        [Silent("alpha few.xyz --alpha auto --filtration out.txt -o out.ply")]),
     "WARNING_SET_ASIDE": ("interpolate values.csv --at values.csv --property q -o out.ply", 0, ["info out.ply"]),
-    "WARNING_SELF": ("surface noisy.ply --closed --self-intersections -o out.ply", 0,
+    "WARNING_SELF": ("surface clusters.ply --method power-crust --self-intersections -o out.ply", 0,
                      [Ends(5, "intersects itself", "check out.ply --self-intersections")]),
     "WARNING_COLOURS": ("surface deep.ply -o out.ply", 0, [Silent("surface deep.ply -o out.glb")]),
     "WARNING_APART": ("check apart.off --open", 0, ["{hint}", Silent("check out.ply --open")]),
@@ -184,6 +187,7 @@ ERRORS = {
         "delaunay scan.ply --locate history --first-conflict --all-conflicts", 1,
         ["delaunay scan.ply --locate history --first-conflict"]),
     "no surface: --surface FILE is missing": ("restricted oct.off -o out.ply", 1, ["restricted oct.off --surface oct.off -o out.ply"]),
+    "simplify: --faces N or --error D is missing": ("simplify oct.off -o out.ply", 1, ["simplify oct.off --faces 8 -o out.ply"]),
     "no distance: --distance D is missing": ("offset scan.ply -o out.ply", 1, ["offset scan.ply --distance 0.01 -o out.ply"]),
     "no output: -o FILE is missing": ("hull few.xyz", 1, ["hull few.xyz -o out.ply"]),
     "no output: --%s needs -o FILE": ("delaunay few.xyz --ascii", 1, ["delaunay few.xyz --ascii -o out.ply"]),
@@ -251,7 +255,9 @@ class Hints(CliTest):
         self.off("far.off", [(4100000.456 + 0.1 * x, 5100000.1 + 0.1 * y, z / 10) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
         for name, size in ("vast.off", 1e308), ("vast2.off", 1.5e308):
             self.off(name, [[size * x for x in p] for p in OCTAHEDRON], OCTAHEDRON_FACES)
-        self.xyz("half.xyz", [p for p in self.sphere(2000) if p[2] > 0])
+        self.xyz("half.xyz", [p for p in self.sphere(2000) if p[2] > 0]), self.cloud("clusters.ply", 300, "clusters")
+        self.expect(0, "surface", "half.xyz", "--closed", "-o", "capped.ply", "--quiet")
+        self.expect(0, "surface", "half.xyz", "-o", "part.ply", "--quiet")
         self.xyz("vast.xyz", [[1.79e308 * x for x in p] for p in self.sphere(300)])
         self.xyz("pair.xyz", [(i % 40, i // 40, i * i % 7) for i in range(3000)] + [(0.3, 0.3, 0.3), (0.3 + 1e-12, 0.3, 0.3)])
         self.ball_map("ball.map", 12)
@@ -357,6 +363,8 @@ class Hints(CliTest):
                 self.expect(0, "convert", source, name, "--quiet")
             self.file("stations.csv", "x,y,z,temperature\n" + "".join("%d,%d,%d,%d\n" % (*p, i) for i, p in enumerate(CUBE)))
             self.ball_map("emd_1234.map", 12)
+            self.file("ground.csv", "x,y,z,classification\n" + "".join("%d,%d,%d,2\n" % p for p in CUBE))
+            self.expect(0, "convert", "ground.csv", "survey.laz", "--quiet")
             if "scan.laz" in arguments:  # which brio does not write
                 arguments = ["convert", "scan.ply", "out.ply"]
             if command == "generate":
@@ -400,13 +408,6 @@ class Hints(CliTest):
         certificate = self.facts("surface", "half.xyz", "--method", "cocone", "--boundaries", "-o", "out.ply")["certificate"]
         self.assertFalse(certificate["closed"])
         self.assertAlmostEqual(certificate["area"], 6.283, delta=0.2)
-
-    @staticmethod
-    def sphere(n):
-        """Points spread evenly on the unit sphere."""
-        turn = pi * (1 + sqrt(5))
-        z = [1 - (2 * k + 1) / n for k in range(n)]
-        return [(cos(turn * k) * sqrt(1 - z[k] ** 2), sin(turn * k) * sqrt(1 - z[k] ** 2), z[k]) for k in range(n)]
 
     def test_sampling_density_tells_good_from_bad(self):
         warns = lambda *a: bool(re.search("hardly show", self.expect(0, *a, "--method", "cocone", "--density", "-o", "out.ply").err))

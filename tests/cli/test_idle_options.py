@@ -20,12 +20,12 @@ VALUES = {
     "format": ["zzz"], "input-format": ["obj", "zzz"], "columns": ["-,x,y,z"], "weights": ["w.txt"], "weights-mod": ["-9"],
     "order": ["random", "hilbert"], "block-size": ["7"], "round-ratio": ["0.9"], "locate": ["jump"], "record-every": ["5"],
     "subgraph": ["tree"], "page-size": ["4K"], "surface": ["mesh.ply"], "cache-size": ["64K"], "plane": ["xy"], "method": ["cocone", "linear"], "labeling": ["naive"], "noise": ["smooth", "0.5"],
-    "open": ["4"], "from": ["0,0,9"], "crs": ["crs.prj"], "error": ["0.05"], "spacing": ["0.2"], "left-out": ["left.ply"], "normals": ["n.ply"], "sampling-density": ["0.3"], "theta": ["0.1"], "pieces": ["3"],
+    "open": ["4"], "from": ["0,0,9"], "crs": ["crs.prj"], "error": ["0.05", "1e-9"], "spacing": ["0.2"], "left-out": ["left.ply"], "normals": ["n.ply"], "sampling-density": ["0.3"], "theta": ["0.1"], "pieces": ["3"],
     "extraction": ["candidates"], "min-component": ["100000", "2"], "sides": ["outer"], "scale": ["1.5"], "redundancy": ["0.5"],
     "crust": ["c.ply"], "alpha": ["0.5"], "filtration": ["f.txt"], "distance": ["0.2"], "box": ["0,0,0,1,1,1"],
-    "faces": ["f.csv"], "samples": ["50"], "level": ["-3"], "resolution": ["9", "20"], "points": ["40"], "blobbiness": ["4"],
+    "faces": ["f.csv", "20"], "samples": ["50", "cloud.ply"], "level": ["-3"], "resolution": ["9", "20"], "points": ["40"], "blobbiness": ["4"],
     "crop": ["0,0,0,0.5,1,1"], "drop-outliers": ["8"], "thin": ["0.4"], "merge": ["0.3"], "views": ["3"], "truth": ["t.ply"],
-    "truth-resolution": ["9"], "kind": ["machined"], "levels": ["2"], "at": ["p.csv"], "property": ["q"],
+    "truth-resolution": ["9"], "within": ["0.001"], "class": ["2"], "max-edge": ["0.3"], "raster": ["t.asc"], "cell": ["0.5"], "kind": ["machined"], "levels": ["2"], "at": ["p.csv"], "property": ["q"],
 }
 
 # Lines without `brio`.

@@ -283,7 +283,7 @@ class Everything(LossTest):
            "TYPE F F F U F F F U U\nCOUNT 1 1 1 1 1 1 1 1 4\nWIDTH 1\nHEIGHT 2\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 2\n"
            "DATA ascii\n0 0 0 255 0 0 1 9007199254740993 1 1 1 1\n1 0 0 255 0 0 1 2 0 0 0 0\n")
     XYZ = "# x y z R G B Nx Ny Nz Intensity id label\n0 0 0 1 2 3 0 0 1 0.5 9007199254740993 wall\n"
-    VTK = ["time of the file", "wide", "label", "area of cells"]
+    VTK = ["time of the file", "wide", "label", "area of cells that are no polygons"]
     LAS = ["intensity", "return_number", "number_of_returns", "scan_direction_flag", "edge_of_flight_line", "classification",
            "classification_flags", "scan_angle_rank", "user_data", "point_source_id", "gps_time"]
     METADATA = ["crs"] + ["las." + name for name in "records system software date gps_time returns extras".split()]
@@ -294,7 +294,7 @@ class Everything(LossTest):
         "obj": (OBJ, ["red", "green", "blue"],
                 ["alpha", "materials", "objects", "groups", "texture coordinates", "free-form geometry", "smoothing groups",
                  "lines", "#MRGB", "normals of corners"]),
-        "off": (OFF, "nx ny nz red green blue alpha s t".split(), ["colours of faces"]),
+        "off": (OFF, "nx ny nz red green blue alpha s t".split(), []),
         "pcd": (PCD, "red green blue nx ny nz stamp".split(), ["integers beyond 2^53", "viewpoint", "order in rows"]),
         "xyz": (XYZ, "red green blue nx ny nz intensity id".split(), ["label"]),
         "e57": (whole_files.e57_of_everything(), "intensity red green blue row_index".split(),
@@ -316,7 +316,7 @@ class Everything(LossTest):
         "vtu": (whole_files.vtu_of_everything(), "red green blue nx ny nz heat".split(),
                 VTK + ["cells of other types", "curved sides of cells"]),
         "vtk": (whole_files.vtk_of_everything(), "heat|nx|ny|nz|my flow_0|my flow_1|my flow_2|red|green|blue|t_0|t_1".split("|"),
-                ["time of the file", "area of cells", "tables of colours", "label", "on", "wide", "cells of other types",
+                ["time of the file", "area of cells that are no polygons", "tables of colours", "label", "on", "wide", "cells of other types",
                  "curved sides of cells"]),
         "stl": (whole_files.stl_of_everything(), [], ["attributes of faces"]),
         "ptx": ("2\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n" + "1 0 0 0.5 1 2 3\n" * 4,
@@ -348,6 +348,32 @@ class Everything(LossTest):
             self.assertEqual(sorted(facts.get("left_out", [])), sorted(left_out), extension)
             run = self.facts("convert", name, self.path("out.ply"), "--quiet")
             self.assertEqual(sorted(set(run["lost"]) - {"colour depth", "precision"}), sorted(sum(metadata, left_out)), extension)
+
+    def test_what_stays_of_faces(self):
+        """The kinds of files above that say something of faces; in PLY, strips beside the faces would have nothing."""
+        ply = self.PLY.replace("element tristrips 1\n", "element tristrips 0\n").replace("3 0 1 3\n", "")
+        for name, content, kept in [("a.ply", ply, {"flags": "uint8"}), ("a.vtp", self.FILES["vtp"][0], {"area": "float32"}),
+                                    ("a.vtu", self.FILES["vtu"][0], {"area": "float32"}),
+                                    ("a.vtk", self.FILES["vtk"][0], {"area": "float32"}),
+                                    ("a.off", self.OFF, {c: "float64" for c in ["red", "green", "blue"]})]:
+            self.assertEqual(self.facts("info", self.file(name, content))["face_properties"], kept, name)
+
+    def test_properties_of_faces_that_a_format_cannot_hold(self):
+        mesh = self.file("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                         "property float z\nelement face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n"
+                         "property uchar green\nproperty uchar blue\nproperty float heat\nend_header\n"
+                         "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 1 2 3 0.5\n")
+        colours = [c + " of faces" for c in ["red", "green", "blue"]]
+        for extension, lost in [("ply", []), ("vtu", []), ("vtp", []), ("vtk", []), ("off", ["heat of faces"]),
+                                ("obj", colours + ["heat of faces"]), ("stl", colours + ["heat of faces"]),
+                                ("glb", colours + ["heat of faces"]), ("xyz", ["faces"] + colours + ["heat of faces"])]:
+            facts = self.facts("convert", mesh, self.path("out." + extension))
+            self.assertEqual(facts["lost"], lost, extension)
+        run = self.expect(0, "subdivide", mesh, "-o", self.path("out.glb"))
+        self.assertIn('without the properties, which the format cannot hold: "red of faces"', run.err)
+        self.assertEqual(self.expect(0, "subdivide", mesh, "-o", self.path("out.ply")).err, "")
+        kept = self.facts("info", self.path("out.ply"))["face_properties"]
+        self.assertEqual(kept, {"red": "uint8", "green": "uint8", "blue": "uint8", "heat": "float32"})
 
     def test_what_a_writer_changes_is_named(self):
         quads = self.off("a.off", CUBES[:4], [(0, 1, 3, 2)])

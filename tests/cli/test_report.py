@@ -65,10 +65,14 @@ class People(CliTest):
         yield "restricted", octahedron, "--surface", octahedron, "-o", out
         yield "check", mesh, "--self-intersections"
         yield "compare", mesh, mesh, "--samples", "100"
+        yield "compare", points, mesh, "--within", "9"
+        yield "check", mesh, "--samples", points
         yield "iso", self.ball_map("b.map", 12), "--level", "-3", "-o", out
         yield "info", mesh
         yield "generate", "scan", "-n", "100", "--truth", self.path("t.ply"), "--truth-resolution", "12", "-o", out
         yield "subdivide", mesh, "-o", out
+        yield "simplify", mesh, "--faces", "60", "-o", out
+        yield "terrain", points, "--max-edge", "1", "--raster", self.path("t.asc"), "--cell", "0.2", "-o", out
         yield "locate", points, "--at", places, "-o", self.path("l.csv")
         yield "interpolate", values, "--at", places, "--property", "t", "-o", self.path("i.csv")
         yield "voronoi", places, "--box", "0,0,0,1,1,1", "-o", self.path("c.csv")

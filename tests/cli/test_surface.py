@@ -22,6 +22,40 @@ class Usage(CliTest):
         self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")
 
 
+class Unseen(CliTest):
+    def test_bridges_and_confidence_of_faces(self):
+        half, out = self.xyz("a.xyz", [p for p in self.sphere(3000) if p[2] > 0.1]), self.path("out.ply")
+        facts = self.facts("surface", half, "--closed", "-o", out)
+        self.assertEqual(self.facts("info", out)["face_properties"], {"bridge": "uint8", "confidence": "float32"})
+        self.expect(0, "convert", out, self.path("t.vtp"), "--ascii", "--quiet")
+        with open(self.path("t.vtp")) as f:
+            text = f.read().split("<CellData>")[1]
+        bridge, sure = ([float(x) for x in part.split("<")[0].split()] for part in text.split('format="ascii">')[1:3])
+        self.assertEqual((len(bridge), facts["bridges"]["number"]), (facts["faces"], 1))
+        self.assertTrue(20 < sum(bridge) < len(bridge) / 4)
+        self.assertLess(sum(s for b, s in zip(bridge, sure) if b) / sum(bridge), 0.5)
+        self.assertGreater(min(s for b, s in zip(bridge, sure) if not b), 0.5)
+
+    def test_points_left_out_are_written(self):
+        """A patch beside a ball, which --min-component drops."""
+        far = [(3 + 0.02 * x, 0.02 * y, 0) for x in range(6) for y in range(6)]
+        points = self.file("a.csv", "x,y,z,part\n" + "".join("%r,%r,%r,%d\n" % (*p, i >= 2000) for i, p in enumerate(
+            self.sphere(2000) + far)))
+        run = self.expect(0, "surface", points, "--min-component", 100, "-o", self.path("out.ply"), "--left-out",
+                          self.path("left.csv"))
+        with open(self.path("left.csv")) as f:
+            rows = f.read().split()
+        self.assertEqual(rows[0], "x,y,z,part")
+        self.assertEqual({row.split(",")[3] for row in rows[1:]}, {"1"})
+        self.assertEqual(len(rows), 37)
+        self.assertIn("36 of 2036 points are farther than two spacings from the surface", run.err)
+
+    def test_smoothing_keeps_rims_and_makes_nothing_cross(self):
+        self.expect(0, "generate", "scan", "-n", 3000, "--noise", 1, "-o", self.path("n.ply"), "--quiet")
+        facts = self.facts("surface", self.path("n.ply"), "--noise", "smooth", "--self-intersections", "-o", self.path("out.ply"))
+        self.assertEqual((facts["smoothed"], facts["certificate"]["self_intersections"]), (True, 0))
+
+
 class NoAnswer(CliTest):
     def test_surface_of_three_points(self):
         points = self.xyz("a.xyz", [(0, 0, 0), (1, 0, 0), (0, 1, 0)])

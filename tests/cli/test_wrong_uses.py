@@ -195,7 +195,7 @@ USES = [
     ("surface two.xyz -o {old}.ply", 3, "two.xyz: 2 distinct points"), ("surface void.xyz -o {old}.ply", 3, "void.xyz: no points, no surface"),
     ("alpha cube.xyz -o {old}.ply --alpha -1", 3, "cube.xyz: no tetrahedron"),
     ("subdivide cube.xyz -o {old}.ply", 3, "cube.xyz: has no faces"),
-    ("check cube.xyz", 2, "cube.xyz: expected faces or tetrahedra"), ("compare oct.off cube.xyz", 2, "cube.xyz: expected a surface"),
+    ("check cube.xyz", 2, "cube.xyz: expected faces or tetrahedra"), ("compare cube.xyz cube.xyz", 2, "cube.xyz: expected a surface"),
     ("iso cube.xyz -o {old}.ply --level 1", 2, "cube.xyz: unknown format, expected .map"),
 ]
 

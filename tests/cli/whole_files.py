@@ -134,15 +134,15 @@ def stl_of_everything():
     return b"made by a program".ljust(80) + struct.pack("<I", 1) + struct.pack("<12fH", 0, 0, 1, *[0, 0, 0, 1, 0, 0, 0, 1, 0], 7)
 
 
-def vtk_xml(kind, counts, cells):
-    """Points and point data of every kind as text, and the cells of the kind."""
+def vtk_xml(kind, counts, cells, areas):
+    """Points and point data of every kind as text, the cells of the kind, and an area of each."""
     array = '<DataArray type="%s" Name="%s" NumberOfComponents="%d" format="ascii">%s</DataArray>'
     data = array % ("UInt8", "RGB", 3, "1 2 3 " * 5) + array % ("Float32", "Normals", 3, "0 0 1 " * 5)
     data += array % ("Int16", "heat", 1, "1 2 3 4 5") + array % ("Float64", "wide", 17, "0 " * 85)
     data += '<Array type="String" Name="label" format="ascii">97 0 98 0 99 0 100 0 101 0</Array>'
     return ('<VTKFile type="%s" byte_order="LittleEndian"><%s><FieldData>%s</FieldData><Piece NumberOfPoints="5" %s>'
             '<PointData>%s</PointData><CellData>%s</CellData><Points>%s</Points>%s</Piece></%s></VTKFile>'
-            % (kind, kind, array % ("Int32", "time", 1, "3"), counts, data, array % ("Float32", "area", 1, "1 2 3 4 5"),
+            % (kind, kind, array % ("Int32", "time", 1, "3"), counts, data, array % ("Float32", "area", 1, areas),
                array % ("Float64", "Points", 3, "0 0 0 1 0 0 0 1 0 0 0 1 1 1 1"), cells, kind))
 
 
@@ -155,13 +155,13 @@ def vtk_lists(section, connectivity, offsets, types=None):
 def vtp_of_everything():
     return vtk_xml("PolyData", 'NumberOfVerts="1" NumberOfLines="1" NumberOfStrips="1" NumberOfPolys="1"',
                    vtk_lists("Verts", "0", "1") + vtk_lists("Lines", "0 1", "2") + vtk_lists("Strips", "0 1 2 3", "4") +
-                   vtk_lists("Polys", "0 1 2", "3"))
+                   vtk_lists("Polys", "0 1 2", "3"), "1 2 3 4")
 
 
 def vtu_of_everything():
     """A vertex, a triangle, a tetrahedron, a pyramid, and a quadratic triangle."""
     return vtk_xml("UnstructuredGrid", 'NumberOfCells="5"',
-                   vtk_lists("Cells", "0  0 1 2  0 1 2 3  0 1 2 3 4  0 1 2 3 4 0", "1 4 8 13 19", "1 5 10 14 22"))
+                   vtk_lists("Cells", "0  0 1 2  0 1 2 3  0 1 2 3 4  0 1 2 3 4 0", "1 4 8 13 19", "1 5 10 14 22"), "1 2 3 4 5")
 
 
 def vtk_of_everything():

@@ -85,6 +85,7 @@ locate {i}/cube.xyz --at {i}/grid.xyz -o - --format csv
 iso {i}/atoms.pdb --level 1 --resolution 8 -o {o}/a.ply --json
 iso {i}/atoms.pdb --level 0.5 --resolution 6 --delaunay-conforming -o {o}/a.ply --json
 subdivide {i}/mesh.ply -o {o}/a.ply --json
+simplify {i}/mesh.ply --faces 20 -o {o}/a.ply --json
 check {i}/mesh.ply --self-intersections --json
 check {i}/solid.node --json
 check {i}/solid.vtu

@@ -30,6 +30,7 @@ INPUTS = [
     ("grid.ply", "generate grid -n %d" % MANY),
     ("surface.ply", "surface few.ply"),
     ("fine.ply", "subdivide surface.ply --levels 1"),
+    ("small.ply", "simplify surface.ply --faces 900"),
 ]
 
 # Outputs, made by one thread and by several: the line's files beside -o are named with @, which is the folder of the run.

@@ -89,7 +89,7 @@ static void vtu_of_others(void) {
         "NumberOfCells=\"3\"><PointData><DataArray type=\"Int16\" Name=\"a&lt;b\" format=\"appended\" offset=\"0\"/>"
         "<DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"3\" format=\"appended\" "
         "offset=\"12\"/></PointData>"
-        "<CellData><DataArray type=\"Float32\" Name=\"c\" format=\"ascii\">1 2</DataArray></CellData>"
+        "<CellData><DataArray type=\"Float32\" Name=\"c\" format=\"ascii\">7 8 9</DataArray></CellData>"
         "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"appended\" "
         "offset=\"64\"/></Points><Cells>"
         "<DataArray type=\"UInt32\" Name=\"connectivity\" format=\"appended\" offset=\"116\"/>"
@@ -134,6 +134,7 @@ static void vtu_of_others(void) {
            brio_property_value(m->properties, 3) == -4);
     const brio_property *v = brio_mesh_property(m, "v_1");
     EXPECT(v && v->type == BRIO_SCALAR_FLOAT32 && brio_property_value(v, 3) == 10);
+    EXPECT(m->num_face_properties == 1 && brio_property_value(m->face_properties, 0) == 7);
     brio_mesh_free(m);
 }
 

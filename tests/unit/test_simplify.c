@@ -4,6 +4,7 @@
 #include "failing_allocator.h"
 #include "points.h"
 #include "random_surfaces.h"
+#include "mesh/back_off.h"
 #include "mesh/split_vertices.h"
 
 static brio_context *ctx;
@@ -14,7 +15,7 @@ static brio_context *ctx;
 static brio_status simplify_within(brio_context *c, brio_mesh *mesh, size_t target, double longest, double tolerance) {
     double *spacing = malloc((mesh->num_vertices + 1) * sizeof *spacing);
     for (size_t v = 0; v < mesh->num_vertices; v++) spacing[v] = 1;
-    brio_collapse_options o = {target, spacing, longest, tolerance};
+    brio_collapse_options o = {.target_faces = target, .spacing = spacing, .longest = longest, .tolerance = tolerance};
     brio_status status = brio_collapse_edges(c, mesh, &o);
     free(spacing);
     return status;
@@ -557,6 +558,146 @@ static void what_is_refused_stays(void) {
     brio_mesh_free(mesh);
 }
 
+/* --- triangles that cross --- */
+
+static int64_t crossings_of(const brio_mesh *mesh) {
+    int64_t pairs = -1;
+    EXPECT(brio_mesh_self_intersections(ctx, mesh, &pairs) == BRIO_OK);
+    return pairs;
+}
+
+/* The hulls of 2,000 points of a sphere and of the same points `shrunk`. */
+static brio_mesh *two_spheres(double shrunk) {
+    enum { N = 2000 };
+    double *points = malloc(2 * 3 * N * sizeof *points);
+    brio_mesh *hull = NULL;
+    sphere_points(3, N, points);
+    EXPECT(brio_convex_hull(ctx, points, N, NULL, &hull, NULL) == BRIO_OK);
+    size_t n = hull->num_vertices, f = hull->num_faces;
+    uint32_t *corners = malloc(6 * f * sizeof *corners);
+    for (size_t i = 0; i < 3 * n; i++) points[i] = hull->vertices[i], points[3 * n + i] = shrunk * hull->vertices[i];
+    for (size_t t = 0; t < f; t++) {
+        const uint32_t *c = hull->face_vertices + 3 * t;
+        for (size_t k = 0; k < 3; k++) corners[3 * t + k] = c[k], corners[3 * (f + t) + k] = (uint32_t)n + c[2 - k];
+    }
+    brio_mesh *both = triangle_mesh(ctx, points, 2 * n, corners, 2 * f);
+    brio_mesh_free(hull);
+    free(points);
+    free(corners);
+    return both;
+}
+
+/* A shell thinner than the triangles that are left: its sides ran through each other. */
+static void sides_of_a_shell_do_not_come_to_cross(void) {
+    brio_mesh *free_of_care = two_spheres(0.995), *careful = two_spheres(0.995), *again = two_spheres(0.995);
+    brio_collapse_options o = {.target_faces = 160, .longest = INFINITY, .tolerance = INFINITY};
+    EXPECT(crossings_of(careful) == 0);
+    EXPECT(brio_collapse_edges(ctx, free_of_care, &o) == BRIO_OK && crossings_of(free_of_care) > 10);
+    EXPECT(simplify_to(careful, 1600, 0) == BRIO_OK && crossings_of(careful) == 0);
+    EXPECT(careful->num_faces == 1600, "%zu faces", careful->num_faces);
+    brio_certificate c = certify(careful);
+    EXPECT(c.closed && c.manifold && c.oriented && c.components == 2 && c.genus == 0);
+    brio_certificate_free(&c);
+    brio_context_set_threads(ctx, 3);
+    EXPECT(simplify_to(again, 1600, 0) == BRIO_OK && same_mesh(careful, again));
+    brio_context_set_threads(ctx, 0);
+    brio_mesh_free(free_of_care);
+    brio_mesh_free(careful);
+    brio_mesh_free(again);
+}
+
+/* Spheres that cross already, or coincide, which leaves nothing to do: whatever crosses does not become more. */
+static void crossings_do_not_become_more(void) {
+    for (int i = 0; i < 3; i++) {
+        brio_mesh *mesh = two_spheres((double[]){-1, -0.9999, 1}[i]);
+        int64_t before = crossings_of(mesh);
+        EXPECT(before > 0 && simplify_to(mesh, 2000, 0) == BRIO_OK);
+        EXPECT(crossings_of(mesh) <= before, "%lld pairs of %lld", (long long)crossings_of(mesh), (long long)before);
+        EXPECT(mesh->num_faces >= 2000 && (i == 2 || mesh->num_faces < 7900), "%zu faces", mesh->num_faces);
+        brio_mesh_free(mesh);
+    }
+}
+
+/* --- any mesh --- */
+
+/* A grid of quads with a fin that meets it along its middle row, a face turned round, one with a corner twice. */
+static brio_mesh *quads_with_a_fin(void) {
+    enum { N = 12 };
+    brio_mesh *mesh = NULL;
+    double points[3 * (N + 1) * (N + 3)];
+    uint64_t offsets[N * N + N + 3] = {0};
+    uint32_t corners[4 * (N * N + N + 2)];
+    size_t n = 0, c = 0, f = 0;
+    void *number;
+    for (int y = 0; y <= N; y++)
+        for (int x = 0; x <= N; x++, n++) points[3 * n] = x, points[3 * n + 1] = y, points[3 * n + 2] = 0.01 * x * y;
+    for (int x = 0; x <= N; x++, n++) points[3 * n] = x, points[3 * n + 1] = N / 2, points[3 * n + 2] = 3;
+    for (uint32_t y = 0; y <= N; y++)
+        for (uint32_t x = 0; x < N; x++) {
+            uint32_t at = (y < N ? y : N / 2) * (N + 1) + x, up = y < N ? at + N + 1 : (N + 1) * (N + 1) + x;
+            const uint32_t quad[4] = {at, at + 1, up + 1, up};
+            for (uint32_t k = 0; k < 4; k++) corners[c++] = quad[f == 30 ? 3 - k : k];
+            offsets[++f] = c;
+        }
+    memcpy(corners + c, (uint32_t[]){0, 1, 0}, 3 * sizeof *corners);
+    offsets[++f] = c + 3;
+    EXPECT(brio_mesh_new(ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, points, n) == BRIO_OK);
+    EXPECT(brio_mesh_set_faces(mesh, offsets, corners, f) == BRIO_OK);
+    EXPECT(brio_mesh_add_face_property(mesh, "number", BRIO_SCALAR_INT32, &number) == BRIO_OK);
+    for (int32_t i = 0; i < (int32_t)f; i++) ((int32_t *)number)[i] = i;
+    return mesh;
+}
+
+static void any_mesh_is_simplified(void) {
+    brio_mesh *mesh = quads_with_a_fin();
+    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_certificate before = certify(mesh);
+    o.target_faces = 40;
+    EXPECT(brio_mesh_simplify(ctx, mesh, &o) == BRIO_ERR_ARGUMENT);
+    o.any = 1;
+    EXPECT(brio_mesh_simplify(ctx, mesh, &o) == BRIO_OK, "%s", brio_message(ctx));
+    brio_certificate after = certify(mesh);
+    /* one is an edge of the face with a corner twice */
+    EXPECT(before.nonmanifold_edges == 13 && after.nonmanifold_edges == 12, "%zu and %zu edges",
+           before.nonmanifold_edges, after.nonmanifold_edges);
+    EXPECT(after.components == 1 && after.area > 0.98 * before.area && after.area < 1.02 * before.area);
+    EXPECT(is_sound(mesh) && mesh->num_faces < 2 * 157 / 2 && mesh->num_properties == 0, "%zu faces", mesh->num_faces);
+    const brio_property *number = brio_mesh_face_property(mesh, "number");
+    for (size_t f = 1; f < mesh->num_faces; f++)
+        EXPECT(brio_property_value(number, f - 1) <= brio_property_value(number, f) &&
+               brio_property_value(number, f) < 156);
+    brio_certificate_free(&before);
+    brio_certificate_free(&after);
+    brio_mesh_free(mesh);
+}
+
+static void edges_of_its_own_are_refused(void) {
+    brio_mesh *mesh = random_mesh(ctx, 5);
+    const uint32_t edge[2] = {0, 1};
+    EXPECT(brio_mesh_set_edges(mesh, edge, 1) == BRIO_OK);
+    EXPECT(simplify_to(mesh, 10, 0) == BRIO_ERR_ARGUMENT);
+    brio_mesh_free(mesh);
+}
+
+/* --- vertices that go back --- */
+
+static void vertices_go_back_until_nothing_crosses(void) {
+    brio_mesh *mesh = two_spheres(0.99);
+    size_t n = mesh->num_vertices, moved = 0, there = 0;
+    double *before = malloc(3 * n * sizeof *before), *after = malloc(3 * n * sizeof *after);
+    brio_rng rng = brio_rng_new(8);
+    memcpy(before, mesh->vertices, 3 * n * sizeof *before);
+    for (size_t i = 0; i < 3 * n; i++) mesh->vertices[i] += 0.02 * (brio_rng_double(&rng) - 0.5);
+    memcpy(after, mesh->vertices, 3 * n * sizeof *after);
+    EXPECT(crossings_of(mesh) > 100);
+    EXPECT(brio_back_off(ctx, mesh, before, &moved) == BRIO_OK && crossings_of(mesh) == 0);
+    for (size_t v = 0; v < n; v++) there += !memcmp(mesh->vertices + 3 * v, after + 3 * v, 3 * sizeof *after);
+    EXPECT(moved > 0 && there == n - moved && there > n / 10, "%zu of %zu went back", moved, n);
+    free(before);
+    free(after);
+    brio_mesh_free(mesh);
+}
+
 SUITE(test_simplify) {
     ctx = new_context();
     RUN(closed_surfaces_keep_components_and_genus);
@@ -579,6 +720,11 @@ SUITE(test_simplify) {
     RUN(component_at_one_position_collapses);
     RUN(what_is_refused_stays);
     RUN(refused_memory_is_a_status_and_leaves_nothing);
+    RUN(sides_of_a_shell_do_not_come_to_cross);
+    RUN(crossings_do_not_become_more);
+    RUN(any_mesh_is_simplified);
+    RUN(edges_of_its_own_are_refused);
+    RUN(vertices_go_back_until_nothing_crosses);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
     return harness_end();

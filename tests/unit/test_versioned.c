@@ -187,9 +187,10 @@ ENDS_WITH(brio_read_notes, rounded_column);
 ENDS_WITH(brio_merge_stats, edges);
 ENDS_WITH(brio_convert_stats, degenerate);
 ENDS_WITH(brio_convert_options, crs);
-ENDS_WITH(brio_mesh_simplify_options, tolerance);
+ENDS_WITH(brio_mesh_simplify_options, reserved_int);
 ENDS_WITH(brio_generate_options, reserved_int);
-ENDS_WITH(brio_mesh, metadata);
+ENDS_WITH(brio_mesh, face_properties);
+ENDS_WITH(brio_coverage, left_out);
 ENDS_WITH(brio_alpha_complex, triangulation2);
 ENDS_WITH(brio_restricted_stats, cut_seconds);
 

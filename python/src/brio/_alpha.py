@@ -100,7 +100,7 @@ class AlphaComplex:
                   "singular_edges": int(((self.values[1] <= alpha) & (self.solid[1] > alpha)).sum())}
         offsets = np.arange(0, 3 * len(triangles) + 1, 3, dtype=np.uint64)
         corners = place[triangles.ravel()]
-        return _native.mesh(vertices, offsets, corners, None, np.ascontiguousarray(place[border]), {}, None), counts
+        return _native.mesh(vertices, offsets, corners, None, np.ascontiguousarray(place[border]), {}, None, {}), counts
 
 
 def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0,

@@ -1,4 +1,4 @@
-"""Meshes: vertices with polygons, tetrahedra, edges, and properties of the vertices."""
+"""Meshes: vertices with polygons, tetrahedra, edges, and properties of vertices and polygons."""
 
 import os
 from collections.abc import Callable
@@ -90,7 +90,7 @@ def as_polygons(faces: Any) -> tuple[NDArray[np.uint64], Indices]:
 
 
 class Mesh:
-    """Points, polygons, tetrahedra or edges over them, and properties of the points.
+    """Points, polygons, tetrahedra or edges over them, and properties of points and polygons.
 
     Parameters
     ----------
@@ -100,6 +100,8 @@ class Mesh:
     edges : array_like of int, shape (e, 2), optional
     properties : dict of arrays, optional
         Each with one row a vertex.
+    face_properties : dict of arrays, optional
+        Each with one row a face.
 
     Attributes
     ----------
@@ -112,6 +114,8 @@ class Mesh:
     edges : ndarray of uint32, shape (e, 2)
         Edges of their own, such as those of a medial axis.
     properties : dict of ndarray
+    face_properties : dict of ndarray
+        Of the polygons: row f belongs to polygon f.
     normals : ndarray of float64, shape (n, 3)
         Of the vertices; 0 where there are no faces.
     certificate : Certificate
@@ -127,9 +131,10 @@ class Mesh:
 
     _handle: Any
     properties: Properties
+    face_properties: Properties
 
     def __init__(self, vertices: Any, faces: Any = None, *, tetrahedra: Any = None, edges: Any = None,
-                 properties: dict[str, Any] | None = None) -> None:
+                 properties: dict[str, Any] | None = None, face_properties: dict[str, Any] | None = None) -> None:
         rows = as_rows(vertices, "vertices")
         offsets, corners = (None, None) if faces is None else as_polygons(faces)
         tets = None if tetrahedra is None else as_indices(tetrahedra, "tetrahedra", 4)
@@ -138,8 +143,10 @@ class Mesh:
             if indices is not None and indices.size and indices.max() >= len(rows):
                 raise ArgumentError(f"{name}: there is no vertex {indices.max()}; there are {len(rows)}",
                                     np.flatnonzero(indices.ravel() >= len(rows)))
-        self._take(_native.mesh(rows, offsets, corners, tets, ends, {}, None))
+        self._take(_native.mesh(rows, offsets, corners, tets, ends, {}, None, {}))
         self.properties = as_properties({} if properties is None else properties, len(rows))
+        self.face_properties = as_properties({} if face_properties is None else face_properties,
+                                             len(self.face_offsets) - 1, "face property", "face")
 
     @classmethod
     def _of(cls, handle: Any) -> Any:
@@ -158,10 +165,14 @@ class Mesh:
         self.edges: Indices = np.asarray(views["edges"])
         self._steps: Floats = np.stack([np.asarray(views["coordinate_step"]), np.asarray(views["coordinate_origin"])])
         self.properties = {k: np.asarray(v) for k, v in views["properties"].items()}
+        self.face_properties = {k: np.asarray(v) for k, v in views["face_properties"].items()}
 
     def _sound_properties(self) -> Properties:
         """The properties, of which the caller may have put any into the dict."""
         return as_properties(self.properties, len(self.vertices))
+
+    def _sound_face_properties(self) -> Properties:
+        return as_properties(self.face_properties, len(self.face_offsets) - 1, "face property", "face")
 
     @property
     def polygons(self) -> list[list[int]]:
@@ -194,7 +205,8 @@ class Mesh:
     def simplify(self, faces: int = 0, *, tolerance: float = 0, progress: bool | Progress | None = None) -> "Mesh":
         """Simplifies a surface of triangles: edges collapse, those of least error first (Garland and Heckbert 1997).
 
-        Components, genus and boundary stay; the surface stays manifold and oriented, and its vertices keep properties.
+        Components, genus and boundary stay; the surface stays manifold and oriented, and its vertices and triangles keep
+        properties.
 
         Parameters
         ----------
@@ -264,10 +276,12 @@ class Mesh:
             kept: Indices = moved[(moved >= 0).all(axis=1)].astype(np.uint32)
             return kept if len(kept) else None
 
+        of_faces = {name: values[~lost] for name, values in self._sound_face_properties().items()}
         faces = (offsets, left) if len(offsets) > 1 else (None, None)
         mesh: Mesh = Mesh._of(_native.mesh(np.ascontiguousarray(self.vertices[chosen]), *faces, rest(self.tetrahedra),
-                                           rest(self.edges), {}, self._steps))
+                                           rest(self.edges), {}, self._steps, {}))
         mesh.properties = properties
+        mesh.face_properties = of_faces
         return mesh
 
     def carry_properties(self, source: "Mesh", samples: Any = None, *, threads: int = 0,
@@ -360,7 +374,7 @@ class Mesh:
 
         Old vertices keep their indices and positions. A new vertex receives the mean of the properties of its edge's
         ends or, for properties that are no floating-point numbers, those of one end. Properties keep names, shapes and
-        types.
+        types. Triangles have the properties of the one that they are part of.
 
         Returns
         -------
@@ -373,20 +387,34 @@ class Mesh:
         16
         """
         properties = self._sound_properties()
-        handle = self._copy(for_means(properties, len(self.vertices)))
+        handle = self._copy(for_means(properties, len(self.vertices)), self._face_numbers())
         with reporting(progress) as report:
             mesh: Mesh = Mesh._of(_native.mesh_subdivided(handle, as_count(levels, "levels"), report))
         mesh.properties = from_means(mesh.properties, properties)
+        self._carry_face_properties(mesh)
         return mesh
 
     def _changed(self, change: Callable[[Any], Any]) -> "Mesh":
-        """Returns what `change` makes of this mesh with its vertices numbered; properties follow the numbers."""
+        """Returns what `change` makes of this mesh with vertices and faces numbered; properties follow the numbers."""
         properties = self._sound_properties()
         numbers = {"number": np.arange(len(self.vertices), dtype=np.uint32)}
-        mesh: Mesh = Mesh._of(change(self._copy(numbers)))
+        mesh: Mesh = Mesh._of(change(self._copy(numbers, self._face_numbers())))
         rows = mesh.properties.pop("number")
         carry(properties, rows, mesh.properties)
+        self._carry_face_properties(mesh)
         return mesh
+
+    def _face_numbers(self) -> Properties:
+        """The number of each face, if properties are to follow it."""
+        if not self._sound_face_properties():
+            return {}
+        return {"number": np.arange(len(self.face_offsets) - 1, dtype=np.uint32)}
+
+    def _carry_face_properties(self, mesh: "Mesh") -> None:
+        """Gives a mesh whose faces have the numbers of faces of this one their properties."""
+        rows = mesh.face_properties.pop("number", None)
+        if rows is not None:
+            carry(self._sound_face_properties(), rows, mesh.face_properties)
 
     def self_intersections(self, *, threads: int = 0, progress: bool | Progress | None = None) -> int:
         """Counts, exactly, the pairs of faces that meet in more than common corners and edges."""
@@ -402,12 +430,12 @@ class Mesh:
         with reporting(progress) as report:
             return Distance(**_native.mesh_distance(self._handle, there, count, start, threads, report))
 
-    def _copy(self, properties: Properties) -> Any:
-        """Returns an object of the library with what this mesh has now."""
+    def _copy(self, properties: Properties, face_properties: Properties | None = None) -> Any:
+        """Returns an object of the library with what this mesh has now, and with these properties."""
         faces = self.face_offsets if len(self.face_offsets) > 1 else None
         return _native.mesh(self.vertices, faces, None if faces is None else self.face_vertices,
                             self.tetrahedra if len(self.tetrahedra) else None, self.edges if len(self.edges) else None,
-                            properties, self._steps)
+                            properties, self._steps, face_properties if face_properties and faces is not None else {})
 
     def write(self, path: str | os.PathLike[str], *, ascii: bool = False, float32: bool = False, compress: bool = False,
               comment: str | None = None, progress: bool | Progress | None = None) -> None:
@@ -428,7 +456,7 @@ class Mesh:
         comment : str, optional
             A line for the header.
         """
-        handle = self._copy(scalars(self._sound_properties()))
+        handle = self._copy(scalars(self._sound_properties()), scalars(self._sound_face_properties()))
         comment = None if comment is None else as_text(comment, "comment")
         with reporting(progress) as report:
             _native.write(as_path(path), handle, (ascii, float32, compress, comment), 0, report)
@@ -439,7 +467,7 @@ class Mesh:
         """Returns a trimesh.Trimesh or, without faces, a trimesh.PointCloud.
 
         Colours (see `vertex_colors`) become the colours of its vertices. A Trimesh has the normals of the properties nx, ny
-        and nz, and the properties as `vertex_attributes`; a PointCloud has the properties in its `metadata`.
+        and nz, and the properties as `vertex_attributes` and, if all polygons are triangles, `face_attributes`; a PointCloud has the properties in its `metadata`.
         """
         import trimesh
 
@@ -448,8 +476,11 @@ class Mesh:
         properties = {name: np.array(values) for name, values in self._sound_properties().items()}
         if not len(self.faces):
             return trimesh.PointCloud(np.array(self.vertices), colors=shown, metadata=properties)
+        triangles = len(self.faces) == len(self.face_offsets) - 1
+        of_faces = {name: np.array(values) for name, values in self._sound_face_properties().items() if triangles}
         return trimesh.Trimesh(np.array(self.vertices), self.faces.astype(np.int64), process=False, vertex_colors=shown,
-                               vertex_normals=normals_of(self._sound_properties()), vertex_attributes=properties)
+                               vertex_normals=normals_of(self._sound_properties()), vertex_attributes=properties,
+                               face_attributes=of_faces)
 
     def to_open3d(self) -> Any:
         """Returns an open3d.geometry.TriangleMesh or, without faces, a PointCloud.
@@ -510,6 +541,8 @@ class Mesh:
             out = pyvista.PolyData(np.array(self.vertices))
         for name, values in self._sound_properties().items():
             out.point_data[name] = np.array(values)
+        for name, values in self._sound_face_properties().items() if not len(self.tetrahedra) else ():
+            out.cell_data[name] = np.array(values)
         return out
 
     def to_meshio(self) -> Any:
@@ -518,6 +551,8 @@ class Mesh:
 
         sizes = np.diff(self.face_offsets).astype(np.int64)
         cells = []
+        of_faces = {name: [values[sizes == k] for k in np.unique(sizes)]
+                    for name, values in self._sound_face_properties().items()}
         for k in np.unique(sizes):
             starts = self.face_offsets[:-1][sizes == k].astype(np.int64)
             rows = self.face_vertices[starts[:, None] + np.arange(k)].astype(np.int64)
@@ -525,21 +560,23 @@ class Mesh:
         for kind, rows in (("tetra", self.tetrahedra), ("line", self.edges)):
             if len(rows):
                 cells.append((kind, rows.astype(np.int64)))
+                for values in of_faces.values():  # no other cells have properties
+                    values.append(np.zeros((len(rows), *values[0].shape[1:]), values[0].dtype))
         if not cells:
             cells = [("vertex", np.arange(len(self.vertices)).reshape(-1, 1))]
         data = {name: np.array(values) for name, values in self._sound_properties().items()}
-        return meshio.Mesh(np.array(self.vertices), cells, point_data=data)
+        return meshio.Mesh(np.array(self.vertices), cells, point_data=data, cell_data=of_faces if len(sizes) else {})
 
     def __getstate__(self) -> dict[str, Any]:
         """What pickle and copy take; the object of the library is made again."""
         return {name: value for name, value in self.__dict__.items() if name != "_handle"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(freeze_all(state))
+        self.__dict__.update(freeze_all({"face_properties": {}, **state}))
         views = {name: np.ascontiguousarray(state[name])
                  for name in ("vertices", "face_offsets", "face_vertices", "tetrahedra", "edges")}
         self._handle = _native.mesh(views["vertices"], views["face_offsets"], views["face_vertices"],
-                                    views["tetrahedra"], views["edges"], {}, self._steps)
+                                    views["tetrahedra"], views["edges"], {}, self._steps, {})
         self.__dict__.update({name: frozen(array) for name, array in views.items()})
 
     def __repr__(self) -> str:

@@ -9,6 +9,7 @@
 #include "io/convert/source.h"
 #include "io/row_format.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -110,6 +111,11 @@ static void name_losses(conversion *c, const brio_mesh *m) {
     if (m->num_properties && nameless) lose(c, "names of properties");
     for (size_t i = 0; i < m->num_properties && !asks_writer(c); i++)
         if (!brio_format_holds_property(c->format, m, i)) lose(c, m->properties[i].name);
+    for (size_t i = 0; i < m->num_face_properties && m->num_faces; i++) {
+        char name[64 + sizeof " of faces"];
+        snprintf(name, sizeof name, "%s of faces", m->face_properties[i].name);
+        if (!brio_format_holds_face_property(c->format, m, i)) lose(c, name);
+    }
     name_metadata(c, m);
 }
 
@@ -274,7 +280,7 @@ done:
 static brio_status write_whole(void *user, const brio_mesh *mesh) {
     conversion *c = user;
     brio_status status = BRIO_OK;
-    brio_colour_plan colours = {.to = brio_format_row_of(c->format)->colours};
+    brio_colour_plan colours = brio_format_colours(c->format);
     brio_mesh shown;
     brio_write_options o = c->write;
     o.format = c->format;

@@ -35,7 +35,8 @@ typedef struct {
     uint64_t rows; /* of its arrays */
     brio_vtk_piece piece;
     brio_vtk_cells cells[BRIO_VTK_SECTION_END];
-    brio_vtk_point_data point_data;
+    brio_vtk_data point_data, cell_data;
+    brio_vtk_face_rows rows_of_faces;
     char word[WORD];
 } legacy_reader;
 
@@ -226,6 +227,8 @@ static brio_status take_array(legacy_reader *r, const char *name, uint64_t compo
         BRIO_TRY(skip_others(r, type, count));
     if (r->owner == POINT_DATA && brio_vtk_is_kept(&array) && rows == r->piece.num_points) {
         BRIO_TRY(brio_vtk_keep_array(&r->point_data, r->stream, &array, &values));
+    } else if (r->owner == CELL_DATA && brio_vtk_is_kept(&array) && rows == brio_vtk_cells_of(&r->piece)) {
+        BRIO_TRY(brio_vtk_keep_array(&r->cell_data, r->stream, &array, &values));
     } else {
         snprintf(full, sizeof full, "%s%s", *name ? name : "array without a name", whose[r->owner]);
         BRIO_TRY(brio_builder_leave_out(r->builder, full));
@@ -339,7 +342,7 @@ static brio_status add_cells(legacy_reader *r) {
         if (!r->piece.num_cells[k]) continue;
         BRIO_REQUIRE(r->stream->ctx, k != BRIO_VTK_CELLS || r->cells[k].types.bytes, BRIO_ERR_FORMAT,
                      "%s: cells without CELL_TYPES", r->stream->name);
-        BRIO_TRY(brio_vtk_add_cells(r->builder, &r->cells[k]));
+        BRIO_TRY(brio_vtk_add_cells(r->builder, &r->cells[k], &r->rows_of_faces));
     }
 done:
     return status;
@@ -512,7 +515,7 @@ done:
 
 brio_status brio_vtk_legacy_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
-    legacy_reader r = {.stream = s, .builder = b};
+    legacy_reader r = {.stream = s, .builder = b, .cell_data.of_cells = true};
     BRIO_TRY(take_header(&r));
     for (;;) {
         BRIO_TRY(next_word(&r));
@@ -522,12 +525,15 @@ brio_status brio_vtk_legacy_read(brio_stream *s, brio_builder *b) {
     if (!r.has_points) BRIO_TRY(expected(&r, "POINTS"));
     BRIO_TRY(brio_vtk_finish_point_data(&r.point_data, b));
     BRIO_TRY(add_cells(&r));
+    BRIO_TRY(brio_vtk_finish_cell_data(&r.cell_data, b, &r.rows_of_faces, brio_vtk_cells_of(&r.piece)));
 done:
     for (int k = 0; k < BRIO_VTK_SECTION_END; k++) {
         brio_release(s->ctx, r.cells[k].connectivity.bytes);
         brio_release(s->ctx, r.cells[k].offsets.bytes);
         brio_release(s->ctx, r.cells[k].types.bytes);
     }
-    brio_vtk_point_data_free(s->ctx, &r.point_data);
+    brio_release(s->ctx, r.rows_of_faces.row);
+    brio_vtk_data_free(s->ctx, &r.point_data);
+    brio_vtk_data_free(s->ctx, &r.cell_data);
     return status;
 }

@@ -1,9 +1,11 @@
 /* Writes VTK's legacy file of an unstructured grid, binary or as text, of version 3.0, which all programs of VTK read: points,
- * tetrahedra, polygons and edges as cells (without any of them a vertex cell for each point), and properties as a field.
+ * tetrahedra, polygons and edges as cells (without any of them a vertex cell for each point), and properties as a
+ * field; cells that are no faces have 0.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "io/formats.h"
 #include "io/scalar.h"
+#include "mesh/properties.h"
 #include <inttypes.h>
 #include <string.h>
 
@@ -77,7 +79,8 @@ done:
 /* --- properties --- */
 
 /* Writes the line of an array. In a name %20 stands for a blank. */
-static brio_status put_array_line(const legacy_writer *w, const char *name, int components, brio_scalar type) {
+static brio_status put_array_line(const legacy_writer *w, const char *name, int components, uint64_t rows,
+                                  brio_scalar type) {
     static const char *const types[] = {[BRIO_SCALAR_INT8] = "char",     [BRIO_SCALAR_UINT8] = "unsigned_char",
                                         [BRIO_SCALAR_INT16] = "short",   [BRIO_SCALAR_UINT16] = "unsigned_short",
                                         [BRIO_SCALAR_INT32] = "int",     [BRIO_SCALAR_UINT32] = "unsigned_int",
@@ -90,28 +93,45 @@ static brio_status put_array_line(const legacy_writer *w, const char *name, int 
         else
             BRIO_TRY(brio_output_bytes(w->out, name, 1));
     }
-    BRIO_TRY(brio_output_format(w->out, " %d %zu %s\n", components, w->mesh->num_vertices, types[type]));
+    BRIO_TRY(brio_output_format(w->out, " %d %" PRIu64 " %s\n", components, rows, types[type]));
+done:
+    return status;
+}
+
+/* The properties of points or of faces, given as those of points, and the rows of 0 round them. */
+typedef struct {
+    const brio_mesh *of;
+    uint64_t before, behind;
+} owner;
+
+static brio_status put_row(const legacy_writer *w, const brio_property *const *of, int count, const uint64_t *row) {
+    brio_status status = BRIO_OK;
+    static const char zero[8];
+    const brio_property none = {.type = of[0]->type, .data = (void *)(uintptr_t)zero};
+    for (int k = 0; k < count; k++) BRIO_TRY(put(w, k ? ' ' : 0, row ? of[k] : &none, row ? (size_t)*row : 0));
+    if (w->text) BRIO_TRY(brio_output_string(w->out, "\n"));
 done:
     return status;
 }
 
 /* Writes properties as one array.   name  NULL: that of the property. */
-static brio_status put_array(const legacy_writer *w, const char *name, const brio_property *const *of, int count) {
+static brio_status put_array(const legacy_writer *w, const owner *o, const char *name, const brio_property *const *of,
+                             int count) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(put_array_line(w, name ? name : of[0]->name, count, of[0]->type));
-    for (size_t v = 0; v < w->mesh->num_vertices; v++) {
-        for (int k = 0; k < count; k++) BRIO_TRY(put(w, k ? ' ' : 0, of[k], v));
-        if (w->text) BRIO_TRY(brio_output_string(w->out, "\n"));
-    }
+    uint64_t rows = o->of->num_vertices;
+    BRIO_TRY(put_array_line(w, name ? name : of[0]->name, count, o->before + rows + o->behind, of[0]->type));
+    for (uint64_t i = 0; i < o->before; i++) BRIO_TRY(put_row(w, of, count, NULL));
+    for (uint64_t i = 0; i < rows; i++) BRIO_TRY(put_row(w, of, count, &i));
+    for (uint64_t i = 0; i < o->behind; i++) BRIO_TRY(put_row(w, of, count, NULL));
     BRIO_TRY(brio_output_string(w->out, "\n"));
 done:
     return status;
 }
 
-/* Colours of bytes and normals are one array each, unless its name is taken. */
-static brio_status put_properties(const legacy_writer *w) {
+/* Writes properties under a title. Colours of bytes and normals are one array each, unless its name is taken. */
+static brio_status put_properties(const legacy_writer *w, const char *title, const owner *o) {
     brio_status status = BRIO_OK;
-    const brio_mesh *m = w->mesh;
+    const brio_mesh *m = o->of;
     brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
     const char *name = colour.count == 4 ? "RGBA" : "RGB";
     if (colour.count && (colour.of[0]->type != BRIO_SCALAR_UINT8 || brio_mesh_property(m, name))) colour.count = 0;
@@ -119,15 +139,16 @@ static brio_status put_properties(const legacy_writer *w) {
     size_t arrays =
         m->num_properties + 2 - (size_t)(colour.count ? colour.count : 1) - (size_t)(normal.count ? normal.count : 1);
     if (!m->num_properties) return BRIO_OK;
-    BRIO_TRY(brio_output_format(w->out, "POINT_DATA %zu\nFIELD FieldData %zu\n", m->num_vertices, arrays));
+    BRIO_TRY(brio_output_format(w->out, "%s %" PRIu64 "\nFIELD FieldData %zu\n", title,
+                                o->before + m->num_vertices + o->behind, arrays));
     for (size_t i = 0; i < m->num_properties; i++) {
         const brio_property *p = &m->properties[i];
         if (colour.count && p == colour.of[0])
-            BRIO_TRY(put_array(w, name, colour.of, colour.count));
+            BRIO_TRY(put_array(w, o, name, colour.of, colour.count));
         else if (normal.count && p == normal.of[0])
-            BRIO_TRY(put_array(w, "Normals", normal.of, normal.count));
+            BRIO_TRY(put_array(w, o, "Normals", normal.of, normal.count));
         else if (!brio_channels_have(&colour, p) && !brio_channels_have(&normal, p))
-            BRIO_TRY(put_array(w, NULL, &p, 1));
+            BRIO_TRY(put_array(w, o, NULL, &p, 1));
     }
 done:
     return status;
@@ -164,7 +185,7 @@ done:
 
 brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job) {
     brio_status status = BRIO_OK;
-    const brio_mesh *m = job->mesh;
+    const brio_mesh *m = job->mesh, faces = brio_mesh_faces_as_points(m);
     legacy_writer w = {.out = out, .mesh = m, .text = job->options->ascii, .single = job->options->float32};
     uint64_t corners = (m->num_faces ? m->face_offsets[m->num_faces] : 0) + 4 * (uint64_t)m->num_tetrahedra +
                        2 * (uint64_t)m->num_edges;
@@ -181,7 +202,8 @@ brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job) {
     BRIO_TRY(brio_output_format(out, "\nCELL_TYPES %" PRIu64 "\n", w.num_cells));
     BRIO_TRY(put_types(&w));
     BRIO_TRY(brio_output_string(out, "\n"));
-    BRIO_TRY(put_properties(&w));
+    BRIO_TRY(put_properties(&w, "POINT_DATA", &(owner){m, 0, 0}));
+    if (m->num_faces) BRIO_TRY(put_properties(&w, "CELL_DATA", &(owner){&faces, m->num_tetrahedra, m->num_edges}));
 done:
     return status;
 }

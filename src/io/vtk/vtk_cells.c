@@ -5,6 +5,7 @@
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "io/vtk/vtk_cells.h"
+#include "base/memory.h"
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
@@ -177,9 +178,10 @@ static brio_status add_cell(const cell *c) {
     }
 }
 
-brio_status brio_vtk_add_cells(brio_builder *b, const brio_vtk_cells *cells) {
+brio_status brio_vtk_add_cells(brio_builder *b, const brio_vtk_cells *cells, brio_vtk_face_rows *rows) {
     brio_status status = BRIO_OK;
     cell c = {.builder = b, .cells = cells};
+    uint64_t first_row = brio_vtk_first_row(cells->piece, cells->section);
     for (; c.number < cells->piece->num_cells[cells->section]; c.number++) {
         double to = number_of(&cells->offsets, c.number);
         if (c.number % BETWEEN_REPORTS == 0) BRIO_TRY(brio_progress(b->ctx, "read", 1));
@@ -189,6 +191,10 @@ brio_status brio_vtk_add_cells(brio_builder *b, const brio_vtk_cells *cells) {
         c.count = (uint64_t)to - c.from;
         BRIO_TRY(add_cell(&c));
         c.from += c.count;
+        while (rows && rows->count < b->mesh->num_faces) {
+            BRIO_TRY(BRIO_RESERVE(b->ctx, rows->row, rows->capacity, rows->count + 1));
+            rows->row[rows->count++] = first_row + c.number;
+        }
     }
 done:
     return status;

@@ -33,25 +33,44 @@ static brio_status read_file_tag(brio_stream *s, brio_vtk_header *h, const char 
     return BRIO_OK;
 }
 
+uint64_t brio_vtk_cells_of(const brio_vtk_piece *piece) {
+    uint64_t cells = 0;
+    for (int k = 0; k < BRIO_VTK_SECTION_END; k++) cells += piece->num_cells[k];
+    return cells;
+}
+
+uint64_t brio_vtk_first_row(const brio_vtk_piece *piece, brio_vtk_section section) {
+    static const brio_vtk_section order[] = {BRIO_VTK_OTHER, BRIO_VTK_CELLS, BRIO_VTK_LINES, BRIO_VTK_POLYS,
+                                             BRIO_VTK_STRIPS};
+    uint64_t row = piece->first_cell;
+    for (size_t k = 0; order[k] != section; k++) row += piece->num_cells[order[k]];
+    return row;
+}
+
 static brio_status read_piece(brio_stream *s, brio_vtk_header *h, const char *tag) {
-    static const char *const counts[BRIO_VTK_SECTION_END] = {[BRIO_VTK_CELLS] = "NumberOfCells",
+    static const char *const counts[BRIO_VTK_SECTION_END] = {[BRIO_VTK_OTHER] = "NumberOfVerts",
+                                                             [BRIO_VTK_CELLS] = "NumberOfCells",
                                                              [BRIO_VTK_LINES] = "NumberOfLines",
                                                              [BRIO_VTK_STRIPS] = "NumberOfStrips",
                                                              [BRIO_VTK_POLYS] = "NumberOfPolys"};
     brio_status status = BRIO_OK;
     char value[BRIO_XML_VALUE];
     brio_vtk_piece piece = {.first_point = 0};
+    uint64_t cells = 0;
     if (!h->known) return brio_xml_bad(s, "VTKFile before Piece");
     if (h->num_pieces) {
         const brio_vtk_piece *last = &h->pieces[h->num_pieces - 1];
         if (__builtin_add_overflow(last->first_point, last->num_points, &piece.first_point))
             return brio_xml_bad(s, "fewer than 2^64 points");
+        cells = piece.first_cell = last->first_cell + brio_vtk_cells_of(last);
     }
     BRIO_TRY(brio_xml_count(s, tag, "NumberOfPoints", &piece.num_points));
-    for (int k = BRIO_VTK_CELLS; k < BRIO_VTK_SECTION_END; k++) {
+    for (int k = 0; k < BRIO_VTK_SECTION_END; k++) {
+        if (!counts[k]) continue;
         bool needed = k == BRIO_VTK_CELLS && !h->polygonal;
         if (needed || (h->polygonal && brio_xml_attribute(tag, counts[k], value)))
             BRIO_TRY(brio_xml_count(s, tag, counts[k], &piece.num_cells[k]));
+        if (__builtin_add_overflow(cells, piece.num_cells[k], &cells)) return brio_xml_bad(s, "fewer than 2^64 cells");
     }
     BRIO_TRY(BRIO_RESERVE(s->ctx, h->pieces, h->piece_capacity, h->num_pieces + 1));
     h->pieces[h->num_pieces++] = piece;
@@ -100,7 +119,8 @@ brio_status brio_vtk_header_array(brio_stream *s, const brio_vtk_header *h, cons
     if (!h->num_pieces) return brio_xml_bad(s, "Piece before DataArray");
     a->piece = h->num_pieces - 1;
     while (a->type < BRIO_VTK_TYPE_END && !brio_xml_attribute_is(tag, "type", type_names[a->type])) a->type++;
-    if (a->type == BRIO_VTK_TYPE_END && h->section == BRIO_VTK_POINT_DATA) return BRIO_OK; /* words, or bits */
+    if (a->type == BRIO_VTK_TYPE_END && (h->section == BRIO_VTK_POINT_DATA || h->section == BRIO_VTK_CELL_DATA))
+        return BRIO_OK; /* words, or bits */
     if (a->type == BRIO_VTK_TYPE_END) return brio_xml_bad(s, "a DataArray of type Int8 to UInt64, Float32 or Float64");
     if (brio_xml_attribute(tag, "NumberOfComponents", value))
         BRIO_TRY(brio_xml_count(s, tag, "NumberOfComponents", &a->components));

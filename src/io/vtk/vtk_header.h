@@ -10,11 +10,11 @@ enum { BRIO_VTK_INT64 = BRIO_SCALAR_END, BRIO_VTK_UINT64, BRIO_VTK_TYPE_END };
 
 /* Where an array is. VTU has CELLS; VTP has LINES, STRIPS and POLYS. */
 typedef enum {
-    BRIO_VTK_OTHER,
-    BRIO_VTK_CELL_DATA, /* passed over, as FIELD_DATA */
-    BRIO_VTK_FIELD_DATA,
+    BRIO_VTK_OTHER,      /* also cells that are points */
+    BRIO_VTK_FIELD_DATA, /* passed over */
     BRIO_VTK_POINTS,
     BRIO_VTK_POINT_DATA,
+    BRIO_VTK_CELL_DATA,
     BRIO_VTK_CELLS,
     BRIO_VTK_LINES,
     BRIO_VTK_STRIPS,
@@ -36,8 +36,10 @@ typedef struct brio_vtk_array {
 } brio_vtk_array;
 
 typedef struct brio_vtk_piece {
-    uint64_t first_point, num_points;         /* first_point: the points of the pieces before */
-    uint64_t num_cells[BRIO_VTK_SECTION_END]; /* of the sections from BRIO_VTK_CELLS on */
+    uint64_t first_point, num_points; /* first_point: the points of the pieces before */
+    uint64_t first_cell;              /* likewise of all cells */
+    uint64_t
+        num_cells[BRIO_VTK_SECTION_END]; /* of the sections from BRIO_VTK_CELLS on, and of points in BRIO_VTK_OTHER */
 } brio_vtk_piece;
 
 typedef struct brio_vtk_header {
@@ -51,6 +53,11 @@ typedef struct brio_vtk_header {
     size_t num_pieces, piece_capacity;
     brio_vtk_section section;
 } brio_vtk_header;
+
+/** Returns the number of cells of a piece. */
+uint64_t brio_vtk_cells_of(const brio_vtk_piece *piece);
+/** Returns the first row that a section of a piece has in cell data: points come first, then lines, polygons, strips. */
+uint64_t brio_vtk_first_row(const brio_vtk_piece *piece, brio_vtk_section section);
 
 /** Takes what a tag says, except DataArray. */
 brio_status brio_vtk_header_tag(brio_stream *s, brio_vtk_header *header, const char *tag);

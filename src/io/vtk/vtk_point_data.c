@@ -1,9 +1,10 @@
-/* Point data of VTU and VTP files as properties.
+/* Point data of VTU, VTP and VTK files as properties, and what cell data have in common with them.
  *
  * A column is a component of an array, and grows from piece to piece. An array of one component is a property of its
  * name, one of several components is name_0, name_1, ... Normals become nx, ny, nz, and colours of bytes red, green,
  * blue, alpha, which other formats have, too. Integers of 64 bits become doubles. */
 #include "base/memory.h"
+#include "base/utf8.h"
 #include "io/scalar.h"
 #include "io/vtk/vtk_values.h"
 #include <inttypes.h>
@@ -22,13 +23,13 @@ bool brio_vtk_is_kept(const brio_vtk_array *array) {
 /* --- columns --- */
 
 /* Returns the first column of an array, or NULL. The others follow it. */
-static brio_vtk_column *find(const brio_vtk_point_data *data, const brio_vtk_array *a) {
+static brio_vtk_column *find(const brio_vtk_data *data, const brio_vtk_array *a) {
     for (size_t i = 0; i < data->num_columns; i += (size_t)data->columns[i].components)
         if (!strcmp(data->columns[i].source, a->name)) return &data->columns[i];
     return NULL;
 }
 
-static brio_status add_columns(brio_vtk_point_data *data, const brio_vtk_decoder *d) {
+static brio_status add_columns(brio_vtk_data *data, const brio_vtk_decoder *d) {
     brio_status status = BRIO_OK;
     const brio_vtk_array *a = d->array;
     BRIO_REQUIRE(d->stream->ctx, data->num_columns + a->components <= BRIO_MOST_NUMBERS, BRIO_ERR_FORMAT,
@@ -42,6 +43,12 @@ static brio_status add_columns(brio_vtk_point_data *data, const brio_vtk_decoder
     }
 done:
     return status;
+}
+
+brio_status brio_vtk_leave_out(const brio_vtk_data *data, brio_builder *b, const char *array) {
+    char name[BRIO_XML_VALUE + 16];
+    snprintf(name, sizeof name, "%s%s", *array ? array : "array without a name", data->of_cells ? " of cells" : "");
+    return brio_builder_leave_out(b, name);
 }
 
 /* --- reading --- */
@@ -97,20 +104,20 @@ done:
     return status;
 }
 
-brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
-                                     const brio_vtk_piece *piece) {
+brio_status brio_vtk_read_data(brio_vtk_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
+                               uint64_t first, uint64_t rows) {
     brio_status status = BRIO_OK;
     brio_vtk_column *columns = find(data, d->array);
     size_t row = (size_t)d->array->components * brio_vtk_type_size(d->array->type), got;
-    uint64_t rows = piece->num_points, end = piece->first_point + rows;
-    if (!columns && piece->first_point) return brio_builder_leave_out(b, d->array->name);
+    uint64_t end = first + rows;
+    if (!columns && first) return brio_vtk_leave_out(data, b, d->array->name);
     if (!columns) BRIO_TRY(add_columns(data, d));
     if (!columns) columns = &data->columns[data->num_columns - d->array->components];
     if (columns->components != d->array->components || columns->file_type != d->array->type) return BRIO_OK;
     if (columns->rows == end && rows)
         return brio_fail(d->stream->ctx, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": two arrays %s", d->stream->name,
                          brio_stream_offset(d->stream), d->array->name);
-    if (columns->rows != piece->first_point) return BRIO_OK;
+    if (columns->rows != first) return BRIO_OK;
     BRIO_TRY(brio_vtk_expect_rows(d, bytes, rows, row));
     if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(reserve(columns, d, rows));
     if (!data->chunk) BRIO_TRY(BRIO_ALLOC(d->stream->ctx, data->chunk, CHUNK));
@@ -118,16 +125,16 @@ brio_status brio_vtk_read_point_data(brio_vtk_point_data *data, brio_builder *b,
         BRIO_TRY(brio_vtk_decoder_take(d, data->chunk, CHUNK / row * row, &got));
         if (!got) break;
         if (columns->rows + got / row > end || got % row)
-            return brio_vtk_bad_rows(d, columns->rows - piece->first_point + got / row, rows);
+            return brio_vtk_bad_rows(d, columns->rows - first + got / row, rows);
         BRIO_TRY(append(columns, d, data->chunk, got / row));
-        d->stream->row = columns->rows - piece->first_point;
+        d->stream->row = columns->rows - first;
     }
-    if (columns->rows != end) return brio_vtk_bad_rows(d, columns->rows - piece->first_point, rows);
+    if (columns->rows != end) return brio_vtk_bad_rows(d, columns->rows - first, rows);
 done:
     return status;
 }
 
-brio_status brio_vtk_keep_array(brio_vtk_point_data *data, brio_stream *s, const brio_vtk_array *array,
+brio_status brio_vtk_keep_array(brio_vtk_data *data, brio_stream *s, const brio_vtk_array *array,
                                 const brio_vtk_values *values) {
     brio_status status = BRIO_OK;
     const brio_vtk_decoder d = {.stream = s, .array = array};
@@ -148,28 +155,35 @@ static bool is_colour(const brio_vtk_column *c) {
     return false;
 }
 
-/* Chooses the name of a property: that of the column, or with _2, _3, ... behind it where that is taken. */
-static void choose_name(brio_builder *b, const brio_vtk_column *c, char name[64]) {
+void brio_vtk_choose_name(const brio_vtk_data *data, brio_builder *b, const brio_vtk_column *c, char name[64]) {
     static const char *const normal[] = {"nx", "ny", "nz"}, *const colour[] = {"red", "green", "blue", "alpha"};
-    if (c->components == 3 && !strcmp(c->source, "Normals"))
-        brio_builder_new_name(b, normal[c->component], name);
-    else if (is_colour(c))
-        brio_builder_new_name(b, colour[c->component], name);
+    char part[64];
+    const char *source = c->source;
+    if (c->components == 3 && !strcmp(c->source, "Normals")) {
+        source = normal[c->component];
+    } else if (is_colour(c)) {
+        source = colour[c->component];
+    } else if (c->components > 1) {
+        brio_numbered_name(part, sizeof part, c->source, c->component);
+        source = part;
+    }
+    if (data->of_cells)
+        brio_builder_new_face_name(b, source, name);
     else
-        brio_builder_component_name(b, c->source, (uint64_t)c->component, (uint64_t)c->components, name);
+        brio_builder_new_name(b, source, name);
 }
 
-brio_status brio_vtk_finish_point_data(brio_vtk_point_data *data, brio_builder *b) {
+brio_status brio_vtk_finish_point_data(brio_vtk_data *data, brio_builder *b) {
     brio_status status = BRIO_OK;
     char name[64];
     for (size_t i = 0; i < data->num_columns; i++) {
         brio_vtk_column *c = &data->columns[i];
         if (c->rows != b->mesh->num_vertices) {
-            BRIO_TRY(brio_builder_leave_out(b, c->source));
+            BRIO_TRY(brio_vtk_leave_out(data, b, c->source));
             continue;
         }
         if (c->rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
-        choose_name(b, c, name);
+        brio_vtk_choose_name(data, b, c, name);
         void *block = c->data;
         c->data = NULL;
         if (block)
@@ -181,7 +195,7 @@ done:
     return status;
 }
 
-void brio_vtk_point_data_free(brio_context *ctx, brio_vtk_point_data *data) {
+void brio_vtk_data_free(brio_context *ctx, brio_vtk_data *data) {
     for (size_t i = 0; i < data->num_columns; i++) brio_release(ctx, data->columns[i].data);
     brio_release(ctx, data->columns);
     brio_release(ctx, data->chunk);

@@ -22,7 +22,8 @@ typedef struct {
     brio_builder *builder;
     brio_vtk_header header;
     brio_vtk_decoder decoder;
-    brio_vtk_point_data point_data;
+    brio_vtk_data point_data, cell_data;
+    brio_vtk_face_rows rows_of_faces;
     brio_vtk_cells *cells; /* the sections of the pieces */
     size_t num_cells, cells_capacity;
     brio_vtk_array *appended;
@@ -137,7 +138,7 @@ static brio_status add_cells(vtk_reader *r) {
                          BRIO_ERR_FORMAT, "%s: expected arrays connectivity and offsets of the cells%s",
                          r->stream->name, k == BRIO_VTK_CELLS ? ", and types" : "");
             r->cells[i].piece = &r->header.pieces[p];
-            BRIO_TRY(brio_vtk_add_cells(r->builder, &r->cells[i]));
+            BRIO_TRY(brio_vtk_add_cells(r->builder, &r->cells[i], r->cell_data.num_columns ? &r->rows_of_faces : NULL));
         }
 done:
     return status;
@@ -148,7 +149,7 @@ done:
 static bool is_kept(const brio_vtk_array *a) {
     if (a->section < BRIO_VTK_POINTS) return false;
     if (a->section == BRIO_VTK_POINTS) return true;
-    if (a->section == BRIO_VTK_POINT_DATA) return brio_vtk_is_kept(a);
+    if (a->section == BRIO_VTK_POINT_DATA || a->section == BRIO_VTK_CELL_DATA) return brio_vtk_is_kept(a);
     return a->components == 1 && (!strcmp(a->name, "connectivity") || !strcmp(a->name, "offsets") ||
                                   (a->section == BRIO_VTK_CELLS && !strcmp(a->name, "types")));
 }
@@ -158,12 +159,17 @@ static brio_status read_array(vtk_reader *r, const brio_vtk_array *a, brio_vtk_e
     brio_status status = BRIO_OK;
     uint64_t bytes = 0;
     const brio_vtk_piece *piece = &r->header.pieces[a->piece];
-    brio_stream_element(r->stream, a->name[0] ? a->name : "array", piece->num_points);
+    uint64_t cells = brio_vtk_cells_of(piece);
+    brio_stream_element(r->stream, a->name[0] ? a->name : "array",
+                        a->section == BRIO_VTK_CELL_DATA ? cells : piece->num_points);
     BRIO_TRY(brio_vtk_decoder_open(&r->decoder, a, encoding, &bytes));
     if (a->section == BRIO_VTK_POINTS)
         BRIO_TRY(read_points(r, bytes, piece));
     else if (a->section == BRIO_VTK_POINT_DATA)
-        BRIO_TRY(brio_vtk_read_point_data(&r->point_data, r->builder, &r->decoder, bytes, piece));
+        BRIO_TRY(
+            brio_vtk_read_data(&r->point_data, r->builder, &r->decoder, bytes, piece->first_point, piece->num_points));
+    else if (a->section == BRIO_VTK_CELL_DATA)
+        BRIO_TRY(brio_vtk_read_data(&r->cell_data, r->builder, &r->decoder, bytes, piece->first_cell, cells));
     else
         BRIO_TRY(read_cells(r, bytes, a));
 done:
@@ -267,14 +273,16 @@ static void free_reader(vtk_reader *r) {
     brio_release(ctx, r->appended);
     brio_release(ctx, r->order);
     brio_release(ctx, r->rows);
-    brio_vtk_point_data_free(ctx, &r->point_data);
+    brio_release(ctx, r->rows_of_faces.row);
+    brio_vtk_data_free(ctx, &r->point_data);
+    brio_vtk_data_free(ctx, &r->cell_data);
     brio_vtk_decoder_free(&r->decoder);
     brio_vtk_header_free(ctx, &r->header);
 }
 
 brio_status brio_vtk_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
-    vtk_reader r = {.stream = s, .builder = b, .decoder.stream = s};
+    vtk_reader r = {.stream = s, .builder = b, .decoder.stream = s, .cell_data.of_cells = true};
     r.decoder.header = &r.header;
     BRIO_TRY(read_file(&r));
     BRIO_REQUIRE(s->ctx, r.header.num_pieces, BRIO_ERR_FORMAT, "%s: no Piece", s->name);
@@ -283,6 +291,7 @@ brio_status brio_vtk_read(brio_stream *s, brio_builder *b) {
                  "%s: no array of points", s->name);
     BRIO_TRY(brio_vtk_finish_point_data(&r.point_data, b));
     BRIO_TRY(add_cells(&r));
+    BRIO_TRY(brio_vtk_finish_cell_data(&r.cell_data, b, &r.rows_of_faces, last->first_cell + brio_vtk_cells_of(last)));
 done:
     free_reader(&r);
     return status;

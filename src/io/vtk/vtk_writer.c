@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "io/scalar.h"
 #include "io/vtk/vtk_pack.h"
+#include "mesh/properties.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -30,6 +31,7 @@ void brio_vtk_writer_free(brio_vtk_writer *w) {
     brio_release(w->out->ctx, w->appended);
     brio_release(w->out->ctx, w->part);
     brio_release(w->out->ctx, w->names);
+    brio_release(w->out->ctx, w->properties);
     brio_progress_part(w->out->ctx, w->bar, 0, 1);
 }
 
@@ -194,19 +196,17 @@ static void fill_coordinates(void *user, uint64_t first, size_t count, void *to)
     for (size_t i = 0; i < count; i++) ((float *)to)[i] = (float)from[i];
 }
 
+/* Numbers of a property, or of a colour: those of a point come one after the other. */
 static void fill_property(void *user, uint64_t first, size_t count, void *to) {
-    const brio_property *p = user;
-    size_t size = brio_scalar_size(p->type);
-    memcpy(to, (const char *)p->data + first * size, count * size);
-}
-
-/* Numbers of colours: those of a point come one after the other. */
-static void fill_colours(void *user, uint64_t first, size_t count, void *to) {
-    const brio_channels *colour = user;
+    const brio_vtk_property *p = user;
+    size_t size = brio_scalar_size(p->of.of[0]->type), channels = (size_t)p->of.count;
     for (size_t i = 0; i < count; i++) {
-        uint64_t point = (first + i) / (uint64_t)colour->count;
-        int channel = (int)((first + i) % (uint64_t)colour->count);
-        ((uint8_t *)to)[i] = ((const uint8_t *)colour->of[channel]->data)[point];
+        uint64_t row = (first + i) / channels - p->first;
+        const brio_property *channel = p->of.of[(first + i) % channels];
+        if (row < p->rows) /* of rows before the first one, the difference has wrapped round */
+            memcpy((char *)to + i * size, (const char *)channel->data + row * size, size);
+        else
+            memset((char *)to + i * size, 0, size);
     }
 }
 
@@ -225,17 +225,40 @@ static bool is_taken(char (*names)[64], size_t count, const char *name) {
 }
 
 /* XML cannot represent control characters, which become blanks; a name that is taken then gets _2, _3 and so on. */
-static brio_status make_names(brio_vtk_writer *w) {
-    const brio_mesh *m = w->job->mesh;
-    brio_status status = BRIO_ALLOC(w->out->ctx, w->names, m->num_properties);
-    for (size_t i = 0; i < m->num_properties && status == BRIO_OK; i++) {
+static void make_names(const brio_mesh *m, char (*names)[64]) {
+    for (size_t i = 0; i < m->num_properties; i++) {
         char plain[64];
         snprintf(plain, sizeof plain, "%s", m->properties[i].name);
         for (char *c = plain; *c; c++)
             if ((unsigned char)*c < ' ') *c = ' ';
-        strcpy(w->names[i], plain);
-        for (size_t n = 2; is_taken(w->names, i, w->names[i]); n++) brio_numbered_name(w->names[i], 64, plain, n);
+        strcpy(names[i], plain);
+        for (size_t n = 2; is_taken(names, i, names[i]); n++) brio_numbered_name(names[i], 64, plain, n);
     }
+}
+
+/* Writes the properties of points or of faces, which are given as points.   before, behind  rows that are 0.
+ * names, properties  room for them, which stays until the end of the file. */
+static brio_status write_properties(brio_vtk_writer *w, const brio_mesh *m, uint64_t before, uint64_t behind,
+                                    char (*names)[64], brio_vtk_property *properties) {
+    brio_status status = BRIO_OK;
+    const brio_channels colour = colour_of(m);
+    make_names(m, names);
+    for (size_t i = 0; i < m->num_properties; i++) {
+        const brio_property *p = &m->properties[i];
+        bool joins = brio_channels_have(&colour, p);
+        brio_vtk_source source = {names[i],      p->type,       1, before + m->num_vertices + behind,
+                                  fill_property, properties + i};
+        properties[i] = (brio_vtk_property){{.of = {p}, .count = 1}, before, m->num_vertices};
+        if (joins && p != colour.of[0]) continue;
+        if (joins) {
+            properties[i].of = colour;
+            source.name = colour.count == 4 ? "RGBA" : "RGB";
+            source.components = colour.count;
+            source.count *= (uint64_t)colour.count;
+        }
+        BRIO_TRY(brio_vtk_write_array(w, &source));
+    }
+done:
     return status;
 }
 
@@ -243,25 +266,26 @@ brio_status brio_vtk_write_points(brio_vtk_writer *w) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = w->job->mesh;
     const brio_scalar type = w->job->options->float32 ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_FLOAT64;
+    BRIO_TRY(BRIO_ALLOC(w->out->ctx, w->names, m->num_properties + m->num_face_properties));
+    BRIO_TRY(BRIO_ALLOC(w->out->ctx, w->properties, m->num_properties + m->num_face_properties));
     BRIO_TRY(brio_output_string(w->out, "<Points>\n"));
     BRIO_TRY(brio_vtk_write_array(
         w, &(brio_vtk_source){"Points", type, 3, 3 * (uint64_t)m->num_vertices, fill_coordinates, w}));
     BRIO_TRY(brio_output_string(w->out, "</Points>\n<PointData>\n"));
-    BRIO_TRY(make_names(w));
-    w->colour = colour_of(m);
-    for (size_t i = 0; i < m->num_properties; i++) {
-        brio_property *p = &m->properties[i];
-        bool first = w->colour.count && p == w->colour.of[0];
-        const char *name = w->colour.count == 4 ? "RGBA" : "RGB";
-        if (first)
-            BRIO_TRY(brio_vtk_write_array(w, &(brio_vtk_source){name, BRIO_SCALAR_UINT8, w->colour.count,
-                                                                (uint64_t)w->colour.count * m->num_vertices,
-                                                                fill_colours, &w->colour}));
-        if (brio_channels_have(&w->colour, p)) continue;
-        BRIO_TRY(
-            brio_vtk_write_array(w, &(brio_vtk_source){w->names[i], p->type, 1, m->num_vertices, fill_property, p}));
-    }
+    BRIO_TRY(write_properties(w, m, 0, 0, w->names, w->properties));
     BRIO_TRY(brio_output_string(w->out, "</PointData>\n"));
+done:
+    return status;
+}
+
+brio_status brio_vtk_write_cell_data(brio_vtk_writer *w, uint64_t before, uint64_t behind) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = w->job->mesh, faces = brio_mesh_faces_as_points(m);
+    if (!m->num_faces || !m->num_face_properties) return BRIO_OK;
+    BRIO_TRY(brio_output_string(w->out, "<CellData>\n"));
+    BRIO_TRY(
+        write_properties(w, &faces, before, behind, w->names + m->num_properties, w->properties + m->num_properties));
+    BRIO_TRY(brio_output_string(w->out, "</CellData>\n"));
 done:
     return status;
 }

@@ -29,6 +29,12 @@ typedef struct brio_vtk_appended {
     size_t packed_size, capacity;
 } brio_vtk_appended;
 
+/* Properties of points or faces that are written as one array, and the rows of the array that are theirs; all others are 0. */
+typedef struct brio_vtk_property {
+    brio_channels of;
+    uint64_t first, rows;
+} brio_vtk_property;
+
 typedef struct brio_vtk_writer {
     brio_output *out;
     const brio_write_job *job;
@@ -37,9 +43,9 @@ typedef struct brio_vtk_writer {
     uint64_t offset;  /* of the next array in the appended data */
     brio_vtk_appended *appended;
     size_t num_appended, appended_capacity;
-    char *part;           /* numbers on their way to the output */
-    char (*names)[64];    /* of the properties, as XML has them */
-    brio_channels colour; /* that are written as one array, as programs of VTK show them; count 0: none */
+    char *part;                    /* numbers on their way to the output */
+    char (*names)[64];             /* of the properties of the points, then of the faces, as XML has them */
+    brio_vtk_property *properties; /* likewise */
     brio_bar bar;
     uint64_t compressed; /* bytes that have been compressed */
 } brio_vtk_writer;
@@ -51,6 +57,8 @@ void brio_vtk_writer_free(brio_vtk_writer *w);
 brio_status brio_vtk_begin(brio_vtk_writer *w);
 /** Writes the sections of the points and of their properties. */
 brio_status brio_vtk_write_points(brio_vtk_writer *w);
+/** Writes the section of the properties of the faces, if there are some.   before, behind  cells that are no faces. */
+brio_status brio_vtk_write_cell_data(brio_vtk_writer *w, uint64_t before, uint64_t behind);
 /** Writes an array of the open section. It must be valid until the end of the file. */
 brio_status brio_vtk_write_array(brio_vtk_writer *w, const brio_vtk_source *source);
 /** Ends the piece and the file. */

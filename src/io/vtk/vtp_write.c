@@ -1,5 +1,5 @@
 /* Writes VTP, VTK's XML file of polygonal data: polygons, and edges as lines. Without either, writes one vertex cell
- * for each point.
+ * for each point. The rows of cell data are those of edges, then of polygons.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "io/vtk/vtk_writer.h"
@@ -73,6 +73,7 @@ brio_status brio_vtp_write(brio_output *out, const brio_write_job *job) {
     BRIO_TRY(write_section(&w, &(section){"Verts", w.num_verts, w.num_verts, fill_verts, fill_verts_ends}));
     BRIO_TRY(write_section(&w, &(section){"Lines", m->num_edges, 2 * m->num_edges, fill_lines, fill_lines_ends}));
     BRIO_TRY(write_section(&w, &(section){"Polys", m->num_faces, w.num_corners, fill_polys, fill_polys_ends}));
+    BRIO_TRY(brio_vtk_write_cell_data(&w.xml, m->num_edges, 0));
     BRIO_TRY(brio_vtk_end(&w.xml));
 done:
     brio_vtk_writer_free(&w.xml);

@@ -78,6 +78,7 @@ brio_status brio_vtu_write(brio_output *out, const brio_write_job *job) {
                                 w.num_cells));
     BRIO_TRY(brio_vtk_write_points(&w.xml));
     BRIO_TRY(write_cells(&w));
+    BRIO_TRY(brio_vtk_write_cell_data(&w.xml, m->num_tetrahedra, m->num_edges));
     BRIO_TRY(brio_vtk_end(&w.xml));
 done:
     brio_vtk_writer_free(&w.xml);

@@ -37,8 +37,10 @@
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "reconstruct/noise/sample_noise.h"
 #include "reconstruct/noise/smooth_surface.h"
+#include "mesh/back_off.h"
 #include "reconstruct/open_surface/open_surface.h"
 #include <math.h>
+#include <string.h>
 
 static const brio_labeled_delaunay_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
 
@@ -82,6 +84,7 @@ typedef struct {
     uint32_t *faces;       /* #F by 3 */
     size_t num_faces;
     float *confidence; /* #P, or NULL */
+    brio_triangle_facts of_faces;
     brio_labeled_delaunay_stats stats;
     double lap;
 } reconstruction;
@@ -320,7 +323,7 @@ static brio_status open_surface(reconstruction *r) {
     brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL,
                            .proven = r->is_open};
     if (o->open > 0) rule = (brio_hole_rule){.choice = BRIO_HOLES_WIDER, .most = o->open};
-    BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &u));
+    BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &r->of_faces, &u));
     r->stats.left_out = before - r->num_faces;
     r->stats.holes = u.holes;
     r->stats.bridges = u.bridges;
@@ -357,6 +360,8 @@ static brio_status make_mesh(reconstruction *r, const double *points, brio_mesh 
                              .moved = r->stats.smoothed,
                              .spacing = r->spacing,
                              .confidence = r->confidence,
+                             .bridge = r->of_faces.bridge,
+                             .size = r->of_faces.size,
                              .simplify = r->options->simplify != 0,
                              .faces = r->faces,
                              .num_faces = r->num_faces};
@@ -394,7 +399,10 @@ static void forget_labels(reconstruction *r) {
     brio_release(r->ctx, r->label);
     brio_release(r->ctx, r->faces);
     brio_release(r->ctx, r->confidence);
+    brio_release(r->ctx, r->of_faces.bridge);
+    brio_release(r->ctx, r->of_faces.size);
     r->dual = (brio_pole_vectors){0};
+    r->of_faces = (brio_triangle_facts){0};
     r->label = NULL, r->faces = NULL, r->confidence = NULL;
     r->num_faces = r->stats.specks = r->stats.handles = 0;
 }
@@ -426,6 +434,33 @@ static brio_status find_sheets(reconstruction *r, brio_bar bar, double from, dou
     return status;
 }
 
+/* Smooths the surface, as far as faces do not cross: those of a Delaunay triangulation did not. */
+static brio_status smooth(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_mesh mesh = {.size = sizeof mesh,
+                      .context = r->ctx,
+                      .num_vertices = r->num_points,
+                      .vertices = r->points,
+                      .num_faces = r->num_faces,
+                      .face_vertices = r->faces};
+    double *before = NULL;
+    const brio_bar bar = brio_progress_bar(r->ctx);
+    BRIO_TRY(BRIO_ALLOC(r->ctx, mesh.face_offsets, r->num_faces + 1));
+    BRIO_TRY(BRIO_ALLOC(r->ctx, before, 3 * r->num_points));
+    for (size_t f = 0; f <= r->num_faces; f++) mesh.face_offsets[f] = 3 * f;
+    memcpy(before, r->points, 3 * r->num_points * sizeof *before);
+    brio_progress_part(r->ctx, bar, 0, 0.5);
+    BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
+    brio_progress_part(r->ctx, bar, 0.5, 1);
+    BRIO_TRY(brio_back_off(r->ctx, &mesh, before, NULL));
+    lap(r, &r->stats.noise_seconds);
+done:
+    brio_progress_part(r->ctx, bar, 0, 1);
+    brio_release(r->ctx, mesh.face_offsets);
+    brio_release(r->ctx, before);
+    return status;
+}
+
 static brio_status find_surface(reconstruction *r, const double *points) {
     brio_status status = BRIO_OK;
     const brio_bar bar = brio_progress_bar(r->ctx);
@@ -439,8 +474,7 @@ static brio_status find_surface(reconstruction *r, const double *points) {
     BRIO_TRY(find_faces(r, bar, 0.4, by_itself ? 0.7 : 0.95));
     if (by_itself && r->stats.holes > 0 && !r->own) BRIO_TRY(find_sheets(r, bar, 0.7, 0.95));
     brio_progress_part(r->ctx, bar, 0.95, 1);
-    if (r->stats.smoothed) BRIO_TRY(brio_smooth_surface(r->ctx, r->points, r->num_points, r->faces, r->num_faces));
-    lap(r, &r->stats.noise_seconds);
+    if (r->stats.smoothed) BRIO_TRY(smooth(r));
 done:
     brio_progress_part(r->ctx, bar, 0, 1);
     return status;
@@ -460,6 +494,8 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->label);
     brio_release(r->ctx, r->faces);
     brio_release(r->ctx, r->confidence);
+    brio_release(r->ctx, r->of_faces.bridge);
+    brio_release(r->ctx, r->of_faces.size);
 }
 
 brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,

@@ -9,7 +9,9 @@
 #include "base/scale.h"
 #include "mesh/properties.h"
 #include "mesh/simplify.h"
+#include "reconstruct/labeled_delaunay/face_confidence.h"
 #include <math.h>
+#include <string.h>
 
 /* The longest edge that may collapse, and how far a vertex may be from the planes of its triangles, in spacings.
  * FEWEST: the share of the triangles that is aimed at. As for the power crust, but the edges of this surface are a
@@ -57,6 +59,25 @@ static brio_status add_confidence(const filling *x) {
     return status;
 }
 
+/* Says of each face whether it is a bridge and, if that is asked of vertices, how sure it is. */
+static brio_status add_face_properties(const filling *x) {
+    brio_status status = BRIO_OK;
+    const brio_sample_surface *s = x->s;
+    void *bridge, *confidence;
+    BRIO_TRY(brio_mesh_add_face_property(x->mesh, "bridge", BRIO_SCALAR_UINT8, &bridge));
+    memcpy(bridge, s->bridge, x->mesh->num_faces);
+    if (!s->confidence) return BRIO_OK;
+    const float *of_vertex = brio_mesh_property(x->mesh, "confidence")->data;
+    BRIO_TRY(brio_mesh_add_face_property(x->mesh, "confidence", BRIO_SCALAR_FLOAT32, &confidence));
+    for (size_t f = 0; f < x->mesh->num_faces; f++) {
+        float corners[3];
+        for (size_t k = 0; k < 3; k++) corners[k] = of_vertex[x->mesh->face_vertices[3 * f + k]];
+        ((float *)confidence)[f] = brio_face_confidence(corners, s->size[f]);
+    }
+done:
+    return status;
+}
+
 static void take_faces(const filling *x) {
     brio_sample_surface *s = x->s;
     for (size_t c = 0; c < 3 * s->num_faces; c++) s->faces[c] = x->vertex[s->order[s->faces[c]]] - 1;
@@ -81,6 +102,7 @@ static brio_status simplify(const filling *x, uint32_t *samples) {
     brio_collapse_options o = {.target_faces = (size_t)(FEWEST * (double)mesh->num_faces),
                                .spacing = spacing,
                                .longest = LONGEST_COLLAPSE,
+                               .embedded = true,
                                .tolerance = COLLAPSE_TOLERANCE};
     BRIO_TRY(brio_collapse_edges(mesh->context, mesh, &o));
     for (size_t v = 0; samples && v < mesh->num_vertices; v++) samples[v] = ((uint32_t *)sample)[v];
@@ -103,6 +125,7 @@ brio_status brio_surface_mesh(brio_sample_surface *s, brio_mesh *mesh, uint32_t 
     if (s->confidence) BRIO_TRY(add_confidence(&x));
     BRIO_TRY(BRIO_ALLOC(ctx, mesh->face_offsets, s->num_faces + 1));
     take_faces(&x);
+    BRIO_TRY(add_face_properties(&x));
     if (s->simplify)
         BRIO_TRY(simplify(&x, samples));
     else

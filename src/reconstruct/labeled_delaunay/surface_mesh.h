@@ -15,6 +15,8 @@ typedef struct {
     bool moved;              /* whether the samples in `placed` are elsewhere than the caller's points */
     const double *spacing;   /* #S: in order, of the unit of `placed` */
     const float *confidence; /* #S: in order, or NULL */
+    const uint8_t *bridge;   /* #F */
+    const float *size;       /* #F: the radius of the circle of each triangle, by the usual one */
     bool simplify;           /* whether edges are collapsed */
     uint32_t *faces;         /* #F by 3; the mesh takes them */
     size_t num_faces;

@@ -1,7 +1,8 @@
 /* Smoothing of a surface: every vertex moves along the normal of the surface fitted to its neighbours onto that surface,
- * PASSES times. The neighbours are found along edges, breadth first, whole rings at a time until there are MORE: not in
- * space, where a thin wall has its other side. Rings reach round a limb or a rim, too: neighbours whose normals are not
- * within 73 degrees of the vertex's own do not count.
+ * PASSES times. Vertices of the rim stay: beyond them the surface is not known, and it would shrink. The neighbours are
+ * found along edges, breadth first, whole rings at a time until there are MORE: not in space, where a thin wall has its
+ * other side. Rings reach round a limb or a rim, too: neighbours whose normals are not within 73 degrees of the vertex's
+ * own do not count.
  *
  * A triangle that would look the other way than before holds its vertices back: they move half as far, after HALVINGS
  * not at all. A surface that was smoothed has no triangles inside out that it did not have before.
@@ -30,6 +31,7 @@ static const uint32_t NOBODY = UINT32_MAX;
 typedef struct {
     size_t *first;  /* #P + 1: the vertices that faces join to p are next[first[p]] to next[first[p + 1] - 1] */
     uint32_t *next; /* 3 #F: the corner after p of each face at p */
+    uint8_t *rim;   /* #P: whether the vertex is at a rim */
     const double *from;
     double *to;
     double (*normal)[3]; /* #P: sums over the faces of their normals, as long as twice their areas */
@@ -50,6 +52,20 @@ static brio_status list_neighbours(brio_context *ctx, smoothing *s, size_t num_p
 done:
     brio_release(ctx, place);
     return status;
+}
+
+/* Returns whether a face has a corner p followed by q. */
+static bool has_half_edge(const smoothing *s, uint32_t p, uint32_t q) {
+    for (size_t e = s->first[p]; e < s->first[p + 1]; e++)
+        if (s->next[e] == q) return true;
+    return false;
+}
+
+/* Marks the vertices of edges of one face. */
+static void mark_rims(const smoothing *s, size_t num_points) {
+    for (uint32_t p = 0; p < num_points; p++)
+        for (size_t e = s->first[p]; e < s->first[p + 1]; e++)
+            if (!has_half_edge(s, s->next[e], p)) s->rim[p] = s->rim[s->next[e]] = 1;
 }
 
 /* Distinct vertices in the order in which they came, and a hash table of them. */
@@ -123,7 +139,7 @@ static void smooth_part(void *user, size_t begin, size_t end, int thread) {
     batch b;
     b.count = 0;
     for (size_t p = begin; p < end; p++) {
-        if (s->first[p + 1] > s->first[p]) add_vertex(s, (uint32_t)p, &b);
+        if (s->first[p + 1] > s->first[p] && !s->rim[p]) add_vertex(s, (uint32_t)p, &b);
         if (b.count == BRIO_SURFACE_BATCH) smooth_batch(s, &b);
     }
     smooth_batch(s, &b);
@@ -202,6 +218,8 @@ brio_status brio_smooth_surface(brio_context *ctx, double *points, size_t num_po
     BRIO_TRY(BRIO_ALLOC(ctx, t.held, num_points));
     memcpy(before, points, 3 * num_points * sizeof *before);
     s.from = from, t.before = before;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.rim, num_points));
+    mark_rims(&s, num_points);
     for (int pass = 0; pass < PASSES; pass++) {
         BRIO_TRY(brio_progress(ctx, "smooth", (double)pass / PASSES));
         memcpy(from, points, 3 * num_points * sizeof *from);
@@ -213,6 +231,7 @@ brio_status brio_smooth_surface(brio_context *ctx, double *points, size_t num_po
 done:
     brio_release(ctx, s.first);
     brio_release(ctx, s.next);
+    brio_release(ctx, s.rim);
     brio_release(ctx, from);
     brio_release(ctx, before);
     brio_release(ctx, s.normal);

@@ -104,13 +104,14 @@ static void report_unseen(const brio_triangle_net *n, const double *radius, cons
     if (largest) report_largest(n, radius, largest, out);
 }
 
-/* Moves the triangles that stay to the front. Returns their number. */
-static size_t move_faces(const uint8_t *part, uint32_t *faces, size_t num_faces) {
+/* Moves the triangles that stay to the front, and what is known of them. Returns their number. */
+static size_t move_faces(uint8_t *part, float *size, uint32_t *faces, size_t num_faces) {
     size_t kept = 0;
     for (size_t f = 0; f < num_faces; f++) {
         if (part[f] == BRIO_TRIANGLE_GONE) continue;
         for (size_t k = 0; k < 3; k++) faces[3 * kept + k] = faces[3 * f + k];
-        kept++;
+        size[kept] = size[f];
+        part[kept++] = part[f] == BRIO_TRIANGLE_BRIDGE;
     }
     return kept;
 }
@@ -124,18 +125,21 @@ static bool is_any_open(const brio_triangle_net *n, const brio_hole_list *holes)
 }
 
 brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_rule *rule, uint32_t *faces,
-                              size_t *num_faces, brio_unseen *unseen) {
+                              size_t *num_faces, brio_triangle_facts *facts, brio_unseen *unseen) {
     brio_status status = BRIO_OK;
     brio_context *ctx = points->ctx;
     brio_triangle_net net = {.ctx = ctx};
     brio_hole_list holes = {.ctx = ctx};
     double *radius = NULL, *usual = NULL, spacing = 0;
     uint8_t *part = NULL;
+    float *size = NULL;
+    *facts = (brio_triangle_facts){NULL, NULL};
     BRIO_TRY(brio_triangle_net_new(ctx, points->points, points->num_points, faces, *num_faces, &net));
     net.outside = points->outside;
     BRIO_TRY(BRIO_ALLOC(ctx, radius, *num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, usual, *num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, part, *num_faces));
+    BRIO_TRY(BRIO_ALLOC(ctx, size, *num_faces));
     BRIO_TRY(brio_face_sizes(&net, radius, usual));
     if (rule->choice == BRIO_HOLES_WIDER) BRIO_TRY(find_spacing(&net, &spacing));
     brio_hole_rule scaled = {rule->choice, rule->most * spacing, rule->proven};
@@ -145,12 +149,16 @@ brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_
         BRIO_TRY(brio_keep_single_fans(&net, part));
     }
     report_unseen(&net, radius, usual, part, &holes, unseen);
-    *num_faces = move_faces(part, faces, *num_faces);
+    for (size_t f = 0; f < *num_faces; f++) size[f] = (float)(radius[f] / usual[f]);
+    *num_faces = move_faces(part, size, faces, *num_faces);
+    *facts = (brio_triangle_facts){part, size};
+    part = NULL, size = NULL;
 done:
     brio_triangle_net_free(&net);
     brio_hole_list_free(&holes);
     brio_release(ctx, radius);
     brio_release(ctx, usual);
     brio_release(ctx, part);
+    brio_release(ctx, size);
     return status;
 }

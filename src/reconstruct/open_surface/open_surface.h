@@ -22,12 +22,19 @@ typedef struct {
     double far_share;         /* of the area: what is over five usual radii away from the samples of its triangle */
 } brio_unseen;
 
+/** What is known of each triangle that stays, for the caller to free (brio_release). */
+typedef struct {
+    uint8_t *bridge; /* whether it belongs to a bridge */
+    float *size;     /* the radius of its circle, by the usual one; INFINITY if its corners are collinear */
+} brio_triangle_facts;
+
 /** Finds what of a manifold no sample shows, and removes the triangles that span holes that stay open. What is left
  *  is a manifold with boundary, maybe empty.
  *  faces      *num_faces by 3, read and written: Delaunay triangles of the points.
  *  rule       its radius is in spacings: the median distance from a vertex to its nearest neighbour.
+ *  facts      receives what is known of the triangles that stay.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
 brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_rule *rule, uint32_t *faces,
-                              size_t *num_faces, brio_unseen *unseen);
+                              size_t *num_faces, brio_triangle_facts *facts, brio_unseen *unseen);
 
 #endif

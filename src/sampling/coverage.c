@@ -1,0 +1,312 @@
+/* How well points cover a surface, and the surface the points.
+ *
+ * The spacing at a point is what it would be on a square grid that has as many points within the distance of the sixth nearest
+ * one. Faces are cut into fans, and these into parts of about two spacings, at most GRID to a side: each part's middle is so many
+ * spacings away from the nearest point, those of that point. Faces that are over SUSPECT somewhere and meet across edges are a bridge
+ * if one of them is over FAR.
+ *
+ * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure the
+ *           sampling). */
+#include "base/finite.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/scale.h"
+#include "base/team.h"
+#include "base/union_find.h"
+#include "base/vector.h"
+#include "base/versioned.h"
+#include "mesh/closest_point.h"
+#include "mesh/edge_rings.h"
+#include "query/nearest_points.h"
+#include <stdlib.h>
+#include <string.h>
+
+/* In spacings: LEFT_OUT and FAR as the contract says; SUSPECT chosen, as for the bridges of surfaces. */
+static const double LEFT_OUT = 2, SUSPECT = 2.5, FAR = 5;
+enum { NEIGHBOURS = 6, GRID = 12, BATCH = 1 << 14, ITEMS_A_CHUNK = 64, HUGE_EXPONENT = 100 };
+
+/* What is known of a face. */
+typedef struct {
+    double area, far_area;
+    double ratio, distance; /* at its widest place, in spacings and as a length */
+    double widest[3];
+} face_facts;
+
+typedef struct {
+    brio_context *ctx;
+    const brio_mesh *mesh;
+    brio_point_tree tree;
+    double *spacing; /* in the order of the tree */
+    brio_triangle_tree faces;
+    face_facts *of;
+    const double *points;
+    uint8_t *left_out;
+    size_t first;
+} coverage;
+
+/* Returns the spacing at a point of the tree: 0 where too many coincide. */
+static double spacing_at(const brio_point_tree *tree, size_t place) {
+    brio_near_point near[BRIO_NEAR_ROOM];
+    static const double GRID_SHARE = 0.72360125455826767; /* the root of pi / 6 */
+    for (size_t wanted = NEIGHBOURS + 1; wanted <= BRIO_MOST_NEAR; wanted = wanted < 32 ? 32 : 2 * wanted) {
+        size_t found = brio_nearest_points(tree, tree->point[place], wanted, INFINITY, near);
+        brio_sort_near_points(tree, near, found);
+        size_t last = found > NEIGHBOURS ? NEIGHBOURS : found - 1;
+        while (last + 1 < found && !(near[last].square > 0)) last++;
+        if (near[last].square > 0 || found < wanted) return GRID_SHARE * sqrt(near[last].square);
+    }
+    return 0;
+}
+
+static void measure_spacings(void *user, size_t begin, size_t end, int thread) {
+    const coverage *c = user;
+    (void)thread;
+    for (size_t i = c->first + begin; i < c->first + end; i++) c->spacing[i] = spacing_at(&c->tree, i);
+}
+
+/* Returns how far a place is from the nearest point, and writes the spacing there. */
+static double distance_of(const coverage *c, const double *p, double *spacing) {
+    brio_near_point near[BRIO_NEAR_ROOM];
+    brio_nearest_points(&c->tree, p, 1, INFINITY, near);
+    *spacing = c->spacing[near[0].place];
+    return sqrt(near[0].square);
+}
+
+/* Looks at one part of a face, of the given area. */
+static void look(const coverage *c, const double *p, double area, face_facts *f) {
+    double spacing, d = distance_of(c, p, &spacing), ratio = spacing > 0 ? d / spacing : 0;
+    if (ratio > FAR) f->far_area += area;
+    if (ratio <= f->ratio) return;
+    f->ratio = ratio;
+    f->distance = d;
+    memcpy(f->widest, p, sizeof f->widest);
+}
+
+static void look_at_triangle(const coverage *c, const double *const t[3], face_facts *f) {
+    double u[3], v[3], n[3], p[3], spacing;
+    for (int k = 0; k < 3; k++) {
+        u[k] = t[1][k] - t[0][k], v[k] = t[2][k] - t[0][k];
+        p[k] = (t[0][k] + t[1][k] + t[2][k]) / 3;
+    }
+    brio_cross(u, v, n);
+    double area = 0.5 * brio_length(n),
+           longest = sqrt(fmax(brio_dot(u, u), fmax(brio_dot(v, v), brio_square_distance(t[1], t[2]))));
+    f->area += area;
+    distance_of(c, p, &spacing);
+    double wanted = spacing > 0 ? ceil(longest / (2 * spacing)) : 1;
+    int parts = wanted < 1 ? 1 : wanted > GRID ? GRID : (int)wanted;
+    for (int i = 0; i < parts; i++)
+        for (int j = 0; j < 2 * (parts - i) - 1; j++) { /* triangles of the row, every second one upside down */
+            double x = (j / 2 + (j % 2 ? 2.0 : 1.0) / 3) / parts, y = (i + (j % 2 ? 2.0 : 1.0) / 3) / parts;
+            for (int k = 0; k < 3; k++) p[k] = t[0][k] + x * u[k] + y * v[k];
+            look(c, p, area / (parts * parts), f);
+        }
+}
+
+static void look_at_faces(void *user, size_t begin, size_t end, int thread) {
+    const coverage *c = user;
+    const brio_mesh *m = c->mesh;
+    (void)thread;
+    for (size_t f = c->first + begin; f < c->first + end; f++) {
+        c->of[f] = (face_facts){.area = 0};
+        for (uint64_t h = m->face_offsets[f] + 2; h < m->face_offsets[f + 1]; h++) {
+            const uint64_t corner[3] = {m->face_offsets[f], h - 1, h};
+            const double *t[3];
+            for (int k = 0; k < 3; k++) t[k] = m->vertices + 3 * (size_t)m->face_vertices[corner[k]];
+            look_at_triangle(c, t, &c->of[f]);
+        }
+    }
+}
+
+static void look_at_points(void *user, size_t begin, size_t end, int thread) {
+    const coverage *c = user;
+    (void)thread;
+    for (size_t i = c->first + begin; i < c->first + end; i++) {
+        double closest[3], most = LEFT_OUT * c->spacing[i];
+        size_t triangle;
+        bool near = brio_closest_within(&c->faces, c->tree.point[i], most * most, closest, &triangle) < INFINITY;
+        c->left_out[c->tree.index[i]] = most > 0 && !near;
+    }
+}
+
+/* Runs over all items in threads, and reports. */
+static brio_status run(coverage *c, size_t count, double from, double to, void (*body)(void *, size_t, size_t, int)) {
+    brio_status status = BRIO_OK;
+    for (c->first = 0; c->first < count; c->first += BATCH) {
+        size_t part = count - c->first < BATCH ? count - c->first : BATCH;
+        BRIO_TRY(brio_progress(c->ctx, "coverage", from + (to - from) * (double)c->first / (double)count));
+        BRIO_TRY(brio_for_chunks(c->ctx, brio_threads(c->ctx, part, ITEMS_A_CHUNK), part, ITEMS_A_CHUNK, body, c));
+    }
+done:
+    return status;
+}
+
+/* --- bridges --- */
+
+/* Joins suspicious faces across edges: parent[f] leads to the first face of its set. */
+static brio_status join_faces(const coverage *c, uint32_t *parent) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = c->mesh;
+    uint32_t *ring = NULL, *face = NULL;
+    BRIO_TRY(brio_edge_rings(c->ctx, m, &ring));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, face, m->face_offsets[m->num_faces]));
+    for (uint32_t f = 0; f < m->num_faces; f++) {
+        parent[f] = f;
+        for (uint64_t h = m->face_offsets[f]; h < m->face_offsets[f + 1]; h++) face[h] = f;
+    }
+    for (uint64_t h = 0; h < m->face_offsets[m->num_faces]; h++)
+        if (c->of[face[h]].ratio > SUSPECT && c->of[face[ring[h]]].ratio > SUSPECT)
+            brio_unite(parent, face[h], face[ring[h]], true);
+done:
+    brio_release(c->ctx, ring);
+    brio_release(c->ctx, face);
+    return status;
+}
+
+/* Sums up what is known of the faces. Afterwards of[f].ratio of the first face of a bridge is that of the bridge, and its area,
+ * distance and place are the bridge's. */
+static brio_status sum_up(const coverage *c, uint8_t *bridge, brio_coverage *out) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = c->mesh;
+    uint32_t *parent = NULL;
+    double all = 0, far = 0, bridges = 0, largest = 0;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, parent, m->num_faces));
+    BRIO_TRY(join_faces(c, parent));
+    for (uint32_t f = 0; f < m->num_faces; f++) all += c->of[f].area, far += c->of[f].far_area;
+    for (uint32_t f = 0; f < m->num_faces; f++) {
+        face_facts *of = &c->of[f], *root = &c->of[brio_find(parent, f)];
+        if (of == root || !(of->ratio > SUSPECT)) continue;
+        root->area += of->area;
+        if (of->distance > root->distance) {
+            root->distance = of->distance;
+            memcpy(root->widest, of->widest, sizeof root->widest);
+        }
+        root->ratio = fmax(root->ratio, of->ratio);
+    }
+    for (uint32_t f = 0; f < m->num_faces; f++) {
+        uint32_t first = brio_find(parent, f);
+        const face_facts *root = &c->of[first];
+        bool is_bridge = root->ratio > FAR;
+        if (bridge) bridge[f] = is_bridge;
+        if (!is_bridge || first != f) continue;
+        out->bridges++;
+        bridges += root->area;
+        if (root->area <= largest) continue;
+        largest = root->area;
+        out->bridge_radius = root->distance;
+        memcpy(out->bridge_centre, root->widest, sizeof root->widest);
+    }
+    out->far_share = all > 0 ? far / all : 0;
+    out->bridge_share = all > 0 ? bridges / all : 0;
+done:
+    brio_release(c->ctx, parent);
+    return status;
+}
+
+/* --- the whole --- */
+
+static brio_status measure_points(coverage *c, size_t num_points) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_point_tree_new(c->ctx, c->points, num_points, &c->tree));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->spacing, num_points));
+    BRIO_TRY(run(c, num_points, 0, 0.3, measure_spacings));
+done:
+    return status;
+}
+
+static brio_status judge_faces(coverage *c, uint8_t *bridge, brio_coverage *out) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->of, c->mesh->num_faces));
+    BRIO_TRY(run(c, c->mesh->num_faces, 0.3, 0.7, look_at_faces));
+    BRIO_TRY(sum_up(c, bridge, out));
+done:
+    return status;
+}
+
+/* Counts the points that the surface leaves.   left_out  NULL, or receives them. */
+static brio_status judge_points(coverage *c, size_t num_points, uint8_t *left_out, size_t *count) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_triangle_tree_new(c->ctx, c->mesh, &c->faces));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->left_out, num_points));
+    BRIO_TRY(run(c, num_points, 0.7, 1, look_at_points));
+    *count = 0;
+    for (size_t i = 0; i < num_points; i++) *count += c->left_out[i];
+    if (left_out) memcpy(left_out, c->left_out, num_points);
+done:
+    return status;
+}
+
+/* A surface and points, of any size, in a unit in which squares neither overflow nor vanish. */
+typedef struct {
+    coverage c;
+    brio_mesh scaled;
+    double *vertices, *places;
+    int exponent;
+} comparison;
+
+static brio_status begin(comparison *x, brio_context *ctx, const brio_mesh *mesh, const double *points,
+                         size_t num_points) {
+    brio_status status = BRIO_OK;
+    *x = (comparison){.c = {.ctx = ctx, .mesh = mesh, .points = points}, .scaled = *mesh};
+    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the surface"));
+    BRIO_TRY(brio_refuse_vertices(ctx, points, num_points, "the points"));
+    BRIO_REQUIRE(ctx, mesh->num_faces && num_points, BRIO_ERR_ARGUMENT,
+                 "a surface and points are needed: %zu faces, %zu points", mesh->num_faces, num_points);
+    int exponent = brio_exponent(
+        fmax(brio_greatest(mesh->vertices, 3 * mesh->num_vertices), brio_greatest(points, 3 * num_points)));
+    if (abs(exponent) > HUGE_EXPONENT) {
+        x->exponent = exponent;
+        BRIO_TRY(BRIO_ALLOC(ctx, x->vertices, 3 * mesh->num_vertices));
+        BRIO_TRY(BRIO_ALLOC(ctx, x->places, 3 * num_points));
+        brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, x->vertices);
+        brio_scale(ctx, points, 3 * num_points, -exponent, x->places);
+        x->scaled.vertices = x->vertices;
+        x->c.mesh = &x->scaled;
+        x->c.points = x->places;
+    }
+    BRIO_TRY(measure_points(&x->c, num_points));
+done:
+    return status;
+}
+
+static void end(comparison *x) {
+    brio_context *ctx = x->c.ctx;
+    brio_point_tree_free(ctx, &x->c.tree);
+    brio_triangle_tree_free(ctx, &x->c.faces);
+    brio_release(ctx, x->c.spacing);
+    brio_release(ctx, x->c.of);
+    brio_release(ctx, x->c.left_out);
+    brio_release(ctx, x->vertices);
+    brio_release(ctx, x->places);
+}
+
+brio_status brio_mesh_coverage(brio_context *ctx, const brio_mesh *mesh, const double *points, size_t num_points,
+                               uint8_t *bridge, brio_coverage *out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    comparison x = {.c.ctx = ctx};
+    brio_coverage found = {.size = sizeof found};
+    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_coverage, out));
+    BRIO_TRY(begin(&x, ctx, mesh, points, num_points));
+    BRIO_TRY(judge_faces(&x.c, bridge, &found));
+    BRIO_TRY(judge_points(&x.c, num_points, NULL, &found.left_out));
+    found.bridge_radius = ldexp(found.bridge_radius, x.exponent);
+    for (int k = 0; k < 3; k++) found.bridge_centre[k] = ldexp(found.bridge_centre[k], x.exponent);
+    BRIO_GIVE(brio_coverage, out, &found);
+done:
+    end(&x);
+    return status;
+}
+
+brio_status brio_mesh_left_out(brio_context *ctx, const brio_mesh *mesh, const double *points, size_t num_points,
+                               uint8_t *left_out, size_t *count) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    comparison x = {.c.ctx = ctx};
+    BRIO_TRY(begin(&x, ctx, mesh, points, num_points));
+    BRIO_TRY(judge_points(&x.c, num_points, left_out, count));
+done:
+    end(&x);
+    return status;
+}
