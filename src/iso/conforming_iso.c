@@ -409,6 +409,7 @@ brio_status brio_conforming_surface(brio_context *ctx, const brio_implicit_grid 
     s.layer = s.row * ((size_t)grid->cells[1] + 1);
     *out = NULL;
     BRIO_TRY(brio_implicit_check(ctx, grid));
+    BRIO_TRY(brio_implicit_progress(ctx, grid, 0, 0));
     BRIO_TRY(settle_grid(ctx, &settled, &s.least));
     BRIO_TRY(slab_start(&s));
     BRIO_TRY(fill_upper_layer(&s, 0));

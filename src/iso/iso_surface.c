@@ -295,6 +295,7 @@ brio_status brio_marched_surface(brio_context *ctx, const brio_implicit_grid *gr
     m.layer = m.row * ((size_t)grid->cells[1] + 1);
     *out = NULL;
     BRIO_TRY(brio_implicit_check(ctx, grid));
+    BRIO_TRY(brio_implicit_progress(ctx, grid, 0, 0));
     for (int i = 0; i < 2; i++) {
         BRIO_TRY(BRIO_ALLOC(ctx, m.value[i], m.layer));
         BRIO_TRY(BRIO_ALLOC(ctx, m.edge_vertex[i], m.layer * DIRECTIONS));

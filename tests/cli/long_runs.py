@@ -69,6 +69,8 @@ RUNS = {
     "generate": ["generate scan -n {n:3000000} -o {out}.ply", "generate solid --kind machined --resolution {r:260} -o {out}.ply",
                  "generate ball -n {n:20000000} -o {out}.ply", "generate clusters -n {n:9000000} -o {out}.ply"],
     "subdivide": ["subdivide {coarse.ply} --levels 5 -o {out}.ply"],
+    "simplify": ["simplify {dense.ply} --faces {n:20000} -o {out}.ply", "simplify {dense.ply} --error 0.001 -o {out}.ply"],
+    "terrain": ["terrain {ball.ply} -o {out}.ply", "terrain {ball.ply} --raster {out}.asc --cell 0.001 -o {out2}.ply"],
     "locate": ["locate {few.ply} --at {big.ply} -o {out}.csv", "locate {ball.ply} --plane xy --at {ball.ply} -o {out}.npy"],
     "restricted": ["restricted {solid.ply} --surface {dense.ply} -o {out}.ply"],
     "interpolate": ["interpolate {small.ply} --at {scan.ply} --property view -o {out}.ply"],

@@ -4,8 +4,8 @@
 - What is one thing that such points have not, as a surface or a solid, is no answer (exit 3), with a sentence that says what
   they are. A hull of any dimension is one; of no points there is none. Values are interpolated between points: of none, or of
   points at one place, there are none.
-- A command that needs faces says so: `check`, `compare` and `restricted` that the file is not of their kind (exit 2), `subdivide` that there is
-  nothing to subdivide (exit 3).
+- A command that needs faces says so: `check`, `compare` and `restricted` that the file is not of their kind (exit 2), `subdivide` and
+  `simplify` that there is nothing to work on (exit 3).
 """
 
 import re
@@ -51,9 +51,11 @@ RUNS = {
     "medial {p} -o {o}.ply": ("3333333", SOLID),
     "offset {p} --distance 0.1 -o {o}.ply": ("3333333", SOLID),
     "check {p}": ("2222222", r"expected faces or tetrahedra to check, found points only"),
-    "compare {p} {p}": ("2222222", r"expected a surface, found no faces"),
+    "compare {p} {p}": ("2222222", r"expected a surface at least once, found no faces"),
     "restricted {p} --surface {p}": ("2222222", r"expected a surface, found no faces"),
     "subdivide {p} -o {o}.ply": ("3333333", r"has no faces"),
+    "simplify {p} --faces 4 -o {o}.ply": ("3333333", r"has no faces"),
+    "terrain {p} -o {o}.ply": ("3333300", r"points? on the map make no triangle"),
 }
 # read no points
 OTHERS = {"generate", "iso"}

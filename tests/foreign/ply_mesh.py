@@ -7,7 +7,7 @@ TYPES = {"char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4"
 
 
 def read(path):
-    """A dictionary: of each element the array of its rows, or a list of its lists."""
+    """A dictionary: of each element the array of its rows, or a list of its lists. What stands behind a list is passed over."""
     with open(path, "rb") as file:
         data = file.read()
     at = data.index(b"end_header\n") + len("end_header\n")
@@ -26,11 +26,11 @@ def read(path):
             at += count * kind.itemsize
             continue
         size, item = (numpy.dtype("<" + TYPES[word]) for word in properties[0][1:3])
-        rows = []
+        rows, behind = [], sum(numpy.dtype(TYPES[p[0]]).itemsize for p in properties[1:])
         for _ in range(count):
             corners = int(numpy.frombuffer(data, size, 1, at)[0])
             rows.append(numpy.frombuffer(data, item, corners, at + size.itemsize).tolist())
-            at += size.itemsize + corners * item.itemsize
+            at += size.itemsize + corners * item.itemsize + behind
         result[name] = rows
     return result
 
