@@ -31,7 +31,7 @@ brio_status brio_restriction_sort(brio_restriction *r) {
     for (size_t i = 0; i < r->num_crossings; i++) index[i] = (uint32_t)i;
     brio_sort_indices(index, r->num_crossings, compare_crossings, r->crossing);
     for (size_t i = 0; i < r->num_crossings; i++) sorted[i] = r->crossing[index[i]];
-    memcpy(r->crossing, sorted, r->num_crossings * sizeof *sorted);
+    for (size_t i = 0; i < r->num_crossings; i++) r->crossing[i] = sorted[i];
 done:
     brio_release(r->ctx, index);
     brio_release(r->ctx, sorted);

@@ -123,7 +123,7 @@ class IdleOptions(CliTest):
 
     def test_no_option_is_ignored_in_silence(self):
         idle = set()
-        for mode in MODES:
+        for mode in MODES if os.environ.get("BRIO_LONG") else MODES[::2]:
             plain = self.result(mode)
             self.assertEqual(plain[0] in (0, 5), True, "%s\n%s" % (mode, plain[2]))
             given = re.findall(r"--([a-z0-9-]+)", mode) + (["distance"] if " -D " in mode else []) + (
@@ -132,7 +132,8 @@ class IdleOptions(CliTest):
                 if option not in ANYWHERE and option not in given and self.is_idle(mode, plain, option, takes):
                     idle.add((mode, option))
         self.assertEqual(idle - IDLE, set())
-        self.assertEqual(IDLE - idle, set(), "no exceptions any more")
+        if os.environ.get("BRIO_LONG"):
+            self.assertEqual(IDLE - idle, set(), "no exceptions any more")
 
 
 if __name__ == "__main__":
