@@ -1,10 +1,11 @@
 /* Vertices that have moved go back until their faces cross no others.
  *
- * A vertex has taken all of its way, half, a quarter, or nothing of it. All faces that cross others are found exactly, and their
- * vertices take the next smaller share; then again, since a face may cross others because of a vertex that went back. Of
- * two faces that cross and did not cross before, some vertex has not gone back all its way, so that the rounds end: a
- * vertex takes part in three at most. What still crosses after a round crosses a face of a vertex that has just gone back. Shares are of the way that the vertex took at first, so that rounds do not add up
- * errors. */
+ * A vertex has taken all of its way, half, a quarter, or nothing of it. Of the faces with a vertex that moved, all that
+ * cross others are found exactly, and the vertices of both take the next smaller share. Then again, since a face may cross
+ * others because of a vertex that went back. Of two faces that cross and did not cross before, some vertex has not gone
+ * back all its way, so that the rounds end: a vertex takes part in three at most. What still crosses after a round crosses
+ * a face of a vertex that has just gone back. Shares are of the way that the vertex took at first, so that rounds do not add
+ * up errors. */
 #include "mesh/back_off.h"
 #include "base/memory.h"
 #include "mesh/crossing_faces.h"
@@ -27,6 +28,14 @@ static bool step_back(const brio_mesh *mesh, const uint8_t *crosses, uint8_t *st
         changed |= now[v];
     }
     return changed;
+}
+
+/* Marks the vertices that are elsewhere than before. */
+static void mark_moved(const brio_mesh *mesh, const double *before, uint8_t *now) {
+    for (size_t v = 0; v < mesh->num_vertices; v++) {
+        const double *a = before + 3 * v, *b = mesh->vertices + 3 * v;
+        now[v] = a[0] != b[0] || a[1] != b[1] || a[2] != b[2];
+    }
 }
 
 /* Marks the faces with a vertex that has changed. */
@@ -53,13 +62,15 @@ brio_status brio_back_off(brio_context *ctx, brio_mesh *mesh, const double *befo
     int64_t pairs;
     double from = 0.5;
     BRIO_TRY(BRIO_ALLOC(ctx, crosses, mesh->num_faces));
+    BRIO_TRY(BRIO_ALLOC(ctx, changed, mesh->num_faces));
+    BRIO_TRY(BRIO_ALLOC(ctx, now, n));
+    mark_moved(mesh, before, now);
+    mark_changed(mesh, now, changed);
     brio_progress_part(ctx, bar, 0, from);
-    BRIO_TRY(brio_crossing_faces(ctx, mesh, NULL, crosses, &pairs));
+    BRIO_TRY(brio_crossing_faces(ctx, mesh, changed, crosses, &pairs));
     if (pairs) {
-        BRIO_TRY(BRIO_ALLOC(ctx, changed, mesh->num_faces));
         BRIO_TRY(BRIO_ALLOC(ctx, after, 3 * n));
         BRIO_TRY(BRIO_ALLOC_ZERO(ctx, step, n));
-        BRIO_TRY(BRIO_ALLOC(ctx, now, n));
         memcpy(after, mesh->vertices, 3 * n * sizeof *after);
         while (pairs && step_back(mesh, crosses, step, now)) {
             place(mesh, before, after, step);

@@ -36,7 +36,8 @@ typedef struct {
     uint32_t *order; /* faces with three corners or more, along the curve */
     size_t count;
     box *nodes;
-    box *faces; /* in the order of the mesh */
+    box *faces;       /* in the order of the mesh */
+    uint32_t *beside; /* NULL, or #order + 1: how many faces before each place are not asked about */
 } tree;
 
 typedef struct {
@@ -56,10 +57,11 @@ static void box_add(box *b, const double *low, const double *high) {
     }
 }
 
-static bool boxes_meet(const box *a, const box *b) {
-    for (int k = 0; k < 3; k++)
-        if (a->low[k] > b->high[k] || b->low[k] > a->high[k]) return false;
-    return true;
+/* Which side misses cannot be predicted, so there is no branch. */
+static inline bool boxes_meet(const box *a, const box *b) {
+    bool meet = true;
+    for (int k = 0; k < 3; k++) meet &= (a->low[k] <= b->high[k]) & (b->low[k] <= a->high[k]);
+    return meet;
 }
 
 static const double *corner(const brio_mesh *m, uint64_t h) {
@@ -141,7 +143,17 @@ done:
     return status;
 }
 
+/* Counts the faces that are not asked about. */
+static brio_status count_beside(brio_context *ctx, tree *t, const uint8_t *only) {
+    brio_status status = BRIO_ALLOC(ctx, t->beside, t->count + 1);
+    if (status != BRIO_OK) return status;
+    t->beside[0] = 0;
+    for (size_t i = 0; i < t->count; i++) t->beside[i + 1] = t->beside[i] + !only[t->order[i]];
+    return BRIO_OK;
+}
+
 static void tree_free(brio_context *ctx, tree *t) {
+    brio_release(ctx, t->beside);
     brio_release(ctx, t->order);
     brio_release(ctx, t->nodes);
     brio_release(ctx, t->faces);
@@ -186,6 +198,11 @@ static void mark(uint8_t *crosses, size_t face) {
     __atomic_store_n(&crosses[face], 1, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
 
+/* Returns whether the faces of a range up to place `at` find all their pairs with the face there by themselves. */
+static bool is_done(const tree *t, range r, size_t at) {
+    return r.high <= at + 1 && (!t->beside || t->beside[r.low] == t->beside[r.high]);
+}
+
 /* Counts the faces that cross the face at place `at` of the order and come after `at` in the order, or are not asked about.
  * only     NULL, or #F: the faces that are asked about.
  * crosses  NULL, or #F: set to 1 for the faces of these pairs. */
@@ -198,7 +215,7 @@ static int64_t count_crossing(const tree *t, size_t at, const uint8_t *only, uin
     stack[depth++] = (range){0, 0, t->count};
     while (depth > 0) {
         range r = stack[--depth];
-        if ((!only && r.high <= at + 1) || !boxes_meet(&t->nodes[r.node], &t->faces[face])) continue;
+        if (is_done(t, r, at) || !boxes_meet(&t->nodes[r.node], &t->faces[face])) continue;
         if (r.high - r.low > LEAF_FACES) {
             size_t middle = r.low + (r.high - r.low) / 2, child = 2 * r.node + 1;
             stack[depth++] = (range){child, r.low, middle};
@@ -241,6 +258,7 @@ brio_status brio_crossing_faces(brio_context *ctx, const brio_mesh *mesh, const 
     if (crosses && mesh->num_faces) memset(crosses, 0, mesh->num_faces);
     BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
     BRIO_TRY(tree_new(ctx, mesh, &t));
+    if (only) BRIO_TRY(count_beside(ctx, &t, only));
     for (; b.first < t.count; b.first += BATCH) {
         size_t faces = t.count - b.first < BATCH ? t.count - b.first : BATCH;
         BRIO_TRY(brio_progress(ctx, "self-intersections", (double)b.first / (double)t.count));

@@ -1,5 +1,8 @@
 /* Decides whether two triangles meet in more than what they share, by exact orientations only.
  *
+ * Most triangles of a surface whose boxes meet are neighbours, and in the projection along an axis a line through an edge of
+ * one keeps them apart. This is tried first, with bounds of errors only: neighbours in one plane would need exact arithmetic.
+ *
  * Triangles that share nothing meet when an edge of one meets the other triangle. With one common corner, the
  * intersection is convex and contains the corner. If it contains more, a ray from the corner runs in both triangles
  * and leaves one of them through the edge opposite to the corner. So one of the two opposite edges meets the other
@@ -9,6 +12,7 @@
  * An edge off the triangle's plane meets the triangle when its three orientations with the triangle's sides do not
  * have opposite signs. In one plane the test uses projections along an axis that keeps the triangle's area nonzero. */
 #include "mesh/triangles_cross.h"
+#include "base/vector.h"
 #include <math.h>
 
 typedef const double *point;
@@ -31,12 +35,17 @@ static int orient3d(point a, point b, point c, point d) {
 
 /* --- in a plane: coordinates x and y --- */
 
-/* Returns the sign of the area of abc. The exact case is an orientation with a fourth point straight above a. */
-static int orient2d(const double *a, const double *b, const double *c) {
+/* Returns the sign of the area of abc, or 0 if rounding may have decided it. */
+static inline int sure_orient2d(const double *a, const double *b, const double *c) {
     double left = (b[0] - a[0]) * (c[1] - a[1]), right = (b[1] - a[1]) * (c[0] - a[0]);
     double error = RELATIVE_ERROR * (fabs(left) + fabs(right)) + ABSOLUTE_ERROR;
-    if (left - right > error) return 1;
-    if (left - right < -error) return -1;
+    return (left - right > error) - (left - right < -error);
+}
+
+/* Returns the sign of the area of abc. The exact case is an orientation with a fourth point straight above a. */
+static int orient2d(const double *a, const double *b, const double *c) {
+    int sure = sure_orient2d(a, b, c);
+    if (sure) return sure;
     double p[4][3] = {{a[0], a[1], 0}, {b[0], b[1], 0}, {c[0], c[1], 0}, {a[0], a[1], 1}};
     return brio_orient3d(p[0], p[1], p[2], p[3]);
 }
@@ -156,6 +165,43 @@ static bool cross_unless_flat(const point t[3], const point u[3]) {
     return true;
 }
 
+/* --- apart in a projection --- */
+
+/* Returns the axis along which a triangle shows the most area, about. */
+static int broad_axis(const point t[3]) {
+    double a[3], b[3], normal[3];
+    for (int k = 0; k < 3; k++) a[k] = t[1][k] - t[0][k], b[k] = t[2][k] - t[0][k];
+    brio_cross(a, b, normal);
+    for (int k = 0; k < 3; k++) normal[k] = fabs(normal[k]);
+    if (normal[0] > normal[1]) return normal[0] > normal[2] ? 0 : 2;
+    return normal[1] > normal[2] ? 1 : 2;
+}
+
+/* Returns whether it is sure that a line through an edge of t has t on one side and u on the other, in the projection: then
+ * t and u meet at most in corners that they share, or in that edge. */
+static bool edge_parts(const point t[3], const double flat_t[3][2], const point u[3], const double flat_u[3][2]) {
+    int side = sure_orient2d(flat_t[0], flat_t[1], flat_t[2]);
+    for (int i = 0; i < 3 && side; i++) {
+        int next = (i + 1) % 3, beyond = 0;
+        for (; beyond < 3; beyond++)
+            if (sure_orient2d(flat_t[i], flat_t[next], flat_u[beyond]) != -side && !same(u[beyond], t[i]) &&
+                !same(u[beyond], t[next]))
+                break;
+        if (beyond == 3) return true;
+    }
+    return false;
+}
+
+/* Returns whether it is sure, and quick to see, that t and u meet at most in what they share. */
+static bool apart_in_projection(const point t[3], const point u[3]) {
+    double flat_t[3][2], flat_u[3][2];
+    int axis = broad_axis(t);
+    for (int i = 0; i < 3; i++) project(t[i], axis, flat_t[i]), project(u[i], axis, flat_u[i]);
+    return edge_parts(t, (const double(*)[2])flat_t, u, (const double(*)[2])flat_u) ||
+           edge_parts(u, (const double(*)[2])flat_u, t, (const double(*)[2])flat_t);
+}
+
 bool brio_triangles_cross(const double *const t[3], const double *const u[3]) {
+    if (apart_in_projection(t, u)) return false;
     return cross_unless_flat(t, u) && area_axis(t) < 3 && area_axis(u) < 3;
 }

@@ -111,6 +111,34 @@ static void random_pairs_in_general_position(void) {
     EXPECT(general > 15000 && crossing > 2000, "%d of %d", crossing, general);
 }
 
+/* Which axis the projection takes, and which corner comes first, must not matter: also with common corners, in one plane, and
+ * without area. Whole coordinates are sheared exactly. */
+static void sheared_pairs_cross_as_before(void) {
+    int crossing = 0, sharing = 0;
+    for (uint64_t trial = 0; trial < 20000; trial++) {
+        brio_rng rng = brio_rng_new(trial);
+        uint64_t most = 2 + brio_rng_below(&rng, 4), flat = brio_rng_below(&rng, 3), common = brio_rng_below(&rng, 3);
+        double p[18], s[18];
+        const double *t[3] = {p, p + 3, p + 6}, *u[3] = {p + 9, p + 12, p + 15}, *a[3], *b[3];
+        for (int i = 0; i < 18; i++) p[i] = i % 3 == 2 && !flat ? 1 : (double)brio_rng_below(&rng, most);
+        for (uint64_t c = 0; c < common; c++)
+            memcpy(p + 9 + 3 * brio_rng_below(&rng, 3), p + 3 * brio_rng_below(&rng, 3), 3 * sizeof *p);
+        int to = (int)brio_rng_below(&rng, 3), from = (to + 1) % 3, other = (to + 2) % 3;
+        double by = (double)brio_rng_below(&rng, 7) - 3, also = (double)brio_rng_below(&rng, 7) - 3;
+        for (int v = 0; v < 18; v += 3) {
+            s[v] = p[v + to] + by * p[v + from] + also * p[v + other];
+            s[v + 1] = p[v + other] + also * p[v + from], s[v + 2] = p[v + from];
+        }
+        int turn = (int)brio_rng_below(&rng, 3);
+        for (int i = 0; i < 3; i++) a[i] = s + 3 * ((i + turn) % 3), b[i] = s + 9 + 3 * ((2 * i + turn) % 3);
+        bool cross = brio_triangles_cross(t, u);
+        EXPECT(brio_triangles_cross(a, b) == cross, "trial %llu", (unsigned long long)trial);
+        EXPECT(brio_triangles_cross(b, a) == cross, "trial %llu", (unsigned long long)trial);
+        crossing += cross, sharing += common > 0;
+    }
+    EXPECT(crossing > 2000 && sharing > 5000, "%d, %d", crossing, sharing);
+}
+
 /* --- whole meshes --- */
 
 /* A tetrahedron at each place; two at a distance less than 1 cross. */
@@ -203,6 +231,7 @@ SUITE(test_self_intersections) {
     RUN(pairs_apart_touching_and_crossing);
     RUN(one_ulp_decides);
     RUN(random_pairs_in_general_position);
+    RUN(sheared_pairs_cross_as_before);
     RUN(tetrahedra_that_interpenetrate);
     RUN(every_pair_of_a_pencil);
     RUN(polygons_count_once);
