@@ -291,6 +291,12 @@ static void do_part(void *user, const brio_member *m) {
     }
 }
 
+static void do_whole_part(void *user, const brio_member *m) {
+    loop *l = user;
+    size_t begin = brio_part(l->n, m->thread, m->threads), end = brio_part(l->n, m->thread + 1, m->threads);
+    if (begin < end) do_some(l, begin, end, BRIO_LOOK_EVERY, m);
+}
+
 /* Works on chunks until none is left. A chunk is as much work as is worth a look. */
 static void do_chunks(void *user, const brio_member *m) {
     loop *l = user;
@@ -313,6 +319,10 @@ static brio_status run_loop(brio_context *ctx, int threads, brio_work_fn work, l
 
 brio_status brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user) {
     return run_loop(ctx, threads, do_part, &(loop){.body = body, .user = user, .n = n});
+}
+
+brio_status brio_for_parts(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user) {
+    return run_loop(ctx, threads, do_whole_part, &(loop){.body = body, .user = user, .n = n});
 }
 
 brio_status brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user) {

@@ -51,9 +51,14 @@ bool brio_may_look(const brio_context *ctx);
 void brio_barrier(const brio_member *member);
 
 /** Divides [0, n) into equal parts in the order of the threads, and calls body for each piece of each part, in ascending
- *  order. Between pieces the calling thread looks (brio_look): where the callback asks to stop, all threads do.
+ *  order. A part has many pieces: body's work is to be in proportion to its piece (else: brio_for_parts). Between pieces the calling thread looks (brio_look): where the callback asks to stop, all threads do.
  *  Returns BRIO_OK or BRIO_ERR_CANCELLED: then some of the pieces were left out. */
 brio_status brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user)
+    __attribute__((warn_unused_result));
+
+/** Divides [0, n) as brio_for does, and calls body once for each part: for a body that reads all data, whatever its part is. So
+ *  it takes a slice of the data that is read within half a second. Looks at the end. */
+brio_status brio_for_parts(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user)
     __attribute__((warn_unused_result));
 
 /** Calls body for chunks of [0, n). Each chunk goes to the next thread that is free, in ascending order. Looks between chunks,

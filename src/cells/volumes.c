@@ -109,7 +109,7 @@ brio_status brio_diagram_add_volumes(const brio_diagram *d, double *volume) {
     for (; v.first < d->num_finite; v.first += size) {
         v.count = d->num_finite - v.first < size ? d->num_finite - v.first : size;
         BRIO_TRY(brio_for(d->ctx, threads, v.count, find_some, &v));
-        BRIO_TRY(brio_for(d->ctx, threads, d->num_vertices, add_some, &v));
+        BRIO_TRY(brio_for_parts(d->ctx, threads, d->num_vertices, add_some, &v));
         if (v.first < shown) continue;
         BRIO_TRY(brio_progress(d->ctx, "cells", 0.4 + 0.4 * ((double)v.first / (double)d->num_finite)));
         shown += d->num_finite / SLICES;

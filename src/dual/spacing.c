@@ -9,8 +9,8 @@
 #include <assert.h>
 #include <math.h>
 
-/* NEAREST: derived, the mean degree of a triangulated surface. SAMPLES_A_THREAD: chosen. */
-enum { NEAREST = 6, SAMPLES_A_THREAD = 1 << 12 };
+/* NEAREST: derived, the mean degree of a triangulated surface. SAMPLES_A_THREAD, SLICE: chosen. */
+enum { NEAREST = 6, SAMPLES_A_THREAD = 1 << 12, SLICE = 1 << 20 };
 
 typedef struct {
     float square[NEAREST]; /* ascending */
@@ -30,7 +30,7 @@ static void offer(neighbours *n, uint32_t sample, float square) {
 }
 
 typedef struct {
-    const brio_tetrahedron *tet;
+    const brio_tetrahedron *tet; /* the slice that all threads read */
     size_t num_tets, num_samples;
     const double *points;
     neighbours *list; /* #samples */
@@ -46,12 +46,17 @@ static void offer_edge(const measuring *m, uint32_t a, uint32_t b, size_t begin,
     if (to_b) offer(&m->list[b], a, (float)square);
 }
 
-static void measure_part(void *user, size_t begin, size_t end, int thread) {
+static void offer_slice(void *user, size_t begin, size_t end, int thread) {
     const measuring *m = user;
     (void)thread;
     for (size_t i = 0; i < m->num_tets; i++)
         for (int j = 1; j < 4; j++)
             for (int k = 0; k < j; k++) offer_edge(m, m->tet[i].vertex[j], m->tet[i].vertex[k], begin, end);
+}
+
+static void measure_part(void *user, size_t begin, size_t end, int thread) {
+    const measuring *m = user;
+    (void)thread;
     for (size_t s = begin; s < end; s++) {
         double sum = 0;
         for (uint32_t i = 0; i < m->list[s].count; i++) sum += sqrt((double)m->list[s].square[i]);
@@ -62,13 +67,17 @@ static void measure_part(void *user, size_t begin, size_t end, int thread) {
 brio_status brio_sample_spacing(brio_context *ctx, const brio_triangulation *t, const double *points,
                                 size_t num_samples, double *spacing) {
     brio_status status = BRIO_OK;
-    measuring m = {.tet = brio_triangulation_tetrahedra(t),
-                   .num_tets = brio_triangulation_stats(t)->tetrahedra,
-                   .num_samples = num_samples,
-                   .points = points,
-                   .spacing = spacing};
+    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
+    size_t count = brio_triangulation_stats(t)->tetrahedra;
+    int threads = brio_threads(ctx, num_samples, SAMPLES_A_THREAD);
+    measuring m = {.num_samples = num_samples, .points = points, .spacing = spacing};
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, m.list, num_samples));
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, num_samples, SAMPLES_A_THREAD), num_samples, measure_part, &m));
+    for (size_t first = 0; first < count; first += SLICE) {
+        m.tet = tet + first;
+        m.num_tets = count - first < SLICE ? count - first : SLICE;
+        BRIO_TRY(brio_for_parts(ctx, threads, num_samples, offer_slice, &m));
+    }
+    BRIO_TRY(brio_for(ctx, threads, num_samples, measure_part, &m));
 done:
     brio_release(ctx, m.list);
     return status;

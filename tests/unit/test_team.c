@@ -172,6 +172,26 @@ static void loops_look_and_stop(void) {
     }
 }
 
+static void count_calls(void *user, size_t begin, size_t end, int thread) {
+    (void)begin, (void)end, (void)thread;
+    __atomic_fetch_add((size_t *)user, 1, __ATOMIC_RELAXED);
+}
+
+/* Bodies that read all data were called for each piece of their part: spacings and stars of a million samples took minutes. */
+static void whole_parts_are_one_call_each(void) {
+    for (int k = 0; k < NUM_THREADS; k++) {
+        brio_context *ctx = context_with(THREADS[k]);
+        int threads = brio_threads(ctx, 1 << 20, 1);
+        wish a = {0, 0, pthread_self(), false};
+        size_t calls = 0;
+        EXPECT(brio_for_parts(ctx, threads, 1 << 20, count_calls, &calls) == BRIO_OK && calls == (size_t)threads, "%zu",
+               calls);
+        brio_context_set_progress(ctx, ask, &a);
+        EXPECT(brio_for_parts(ctx, threads, 1 << 20, count_calls, &calls) == BRIO_ERR_CANCELLED && !a.elsewhere);
+        brio_context_free(ctx);
+    }
+}
+
 /* --- hosts --- */
 
 enum { N = 60000 };
@@ -349,6 +369,7 @@ SUITE(test_team) {
     RUN(barriers_order_what_members_write);
     RUN(work_within_work_runs_alone);
     RUN(loops_look_and_stop);
+    RUN(whole_parts_are_one_call_each);
     RUN(child_after_fork_works);
     RUN(refused_threads_are_fewer_threads);
     RUN(stack_of_64_kibibytes_is_enough);

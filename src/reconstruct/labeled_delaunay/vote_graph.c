@@ -24,7 +24,7 @@
 #include <math.h>
 
 /* PARTS: sums of the energy that are added up in order. All chosen. */
-enum { TETS_A_THREAD = 1 << 11, SAMPLES_A_THREAD = 1 << 12, PARTS = 256 };
+enum { TETS_A_THREAD = 1 << 11, SAMPLES_A_THREAD = 1 << 12, PARTS = 256, SLICE = 1 << 20 };
 
 /* In log-odds, of a facet of the area of an equilateral triangle whose sides are one spacing: AREA is its weight in any
  * case, DOUBT is added if its samples see both of its tetrahedra in one direction. Larger facets weigh more, up to
@@ -140,7 +140,8 @@ static void weigh_votes(void *user, size_t begin, size_t end, int thread) {
 
 typedef struct {
     const builder *b;
-    size_t *next; /* #P: how many entries a star has, then where the next one goes */
+    size_t *next;      /* #P: how many entries a star has, then where the next one goes */
+    size_t first, end; /* the slice of the tetrahedra that all threads read */
 } lister;
 
 /* The two steps of listing, for parts of the samples. Every thread reads all tetrahedra, in ascending order. */
@@ -149,7 +150,7 @@ static void count_entries(void *user, size_t begin, size_t end, int thread) {
     const lister *l = user;
     const brio_pole_vectors *v = l->b->dual;
     (void)thread;
-    for (size_t tet = 0; tet < v->t.count; tet++)
+    for (size_t tet = l->first; tet < l->end; tet++)
         for (int i = 0; i < num_samples(v, tet); i++) {
             size_t p = v->t.tet[tet].vertex[i];
             if (p - begin < end - begin) l->next[p]++;
@@ -160,11 +161,22 @@ static void write_entries(void *user, size_t begin, size_t end, int thread) {
     const lister *l = user;
     const brio_pole_vectors *v = l->b->dual;
     (void)thread;
-    for (size_t tet = 0; tet < v->t.count; tet++)
+    for (size_t tet = l->first; tet < l->end; tet++)
         for (int i = 0; i < num_samples(v, tet); i++) {
             size_t p = v->t.tet[tet].vertex[i];
             if (p - begin < end - begin) l->b->g->star[l->next[p]++] = brio_facet_of((uint32_t)tet, i);
         }
+}
+
+static brio_status for_slices(lister *l, int threads, brio_part_fn step) {
+    brio_status status = BRIO_OK;
+    size_t count = l->b->dual->t.count;
+    for (l->first = 0; l->first < count; l->first = l->end) {
+        l->end = count - l->first < SLICE ? count : l->first + SLICE;
+        BRIO_TRY(brio_for_parts(l->b->g->ctx, threads, l->b->dual->num_points, step, l));
+    }
+done:
+    return status;
 }
 
 /* Lists the stars of the samples. */
@@ -175,10 +187,10 @@ static brio_status list_stars(const builder *b) {
     size_t n = b->dual->num_points;
     int threads = brio_threads(g->ctx, n, SAMPLES_A_THREAD);
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, l.next, n));
-    BRIO_TRY(brio_for(g->ctx, threads, n, count_entries, &l));
+    BRIO_TRY(for_slices(&l, threads, count_entries));
     g->first[n] = brio_counts_to_places(l.next, 1, n, 0);
     for (size_t p = 0; p < n; p++) g->first[p] = l.next[p];
-    BRIO_TRY(brio_for(g->ctx, threads, n, write_entries, &l));
+    BRIO_TRY(for_slices(&l, threads, write_entries));
 done:
     brio_release(g->ctx, l.next);
     return status;
