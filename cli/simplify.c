@@ -32,7 +32,7 @@ static brio_status simplify(run *r) {
     if (!mesh->num_faces) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: has no faces", r->operands[0]);
     if (mesh->num_edges || mesh->num_tetrahedra)
         FAIL(r, BRIO_ERR_NO_ANSWER, "%s: has %s: only faces are simplified", r->operands[0],
-             mesh->num_edges ? "edges of its own" : "tetrahedra");
+             mesh->num_edges ? "edges that no face has" : "tetrahedra");
     size_t before = mesh->num_faces;
     o.target_faces = (size_t)a->faces;
     o.tolerance = a->error;
@@ -58,7 +58,7 @@ const command cli_simplify = {
     .description =
         "Edges collapse, those that change the surface least first. Components, handles and borders stay, and no faces "
         "come to cross each other. Vertices and faces that stay keep their properties.",
-    .examples = "brio simplify mesh.ply --faces 10000 -o small.ply\nat most so many triangles\n"
+    .examples = "brio simplify mesh.ply --faces 10000 -o small.ply\nat most 10,000 triangles\n"
                 "brio simplify mesh.stl --error 0.01 -o small.stl\nas few as stay within a hundredth\n",
     .outputs = CLI_MESH_OUTPUTS,
     .group = GROUP_FILES,

@@ -32,7 +32,7 @@ typedef struct arguments {
 /* What is known of a surface before it is looked at. */
 typedef struct {
     bool open;        /* it may end where the points do */
-    bool leaves_many; /* so many samples are on no face that those left out are counted */
+    bool leaves_many; /* samples on no face are enough in number for those left out to be counted */
 } outcome;
 
 static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},

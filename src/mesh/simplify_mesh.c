@@ -41,7 +41,7 @@ brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_me
     BRIO_REQUIRE(ctx, o.target_faces > 0 || o.tolerance > 0, BRIO_ERR_ARGUMENT,
                  "neither a number of faces nor a tolerance to simplify to");
     BRIO_REQUIRE(ctx, !mesh->num_edges && !mesh->num_tetrahedra, BRIO_ERR_ARGUMENT,
-                 "a mesh with edges or tetrahedra of its own: only faces are simplified");
+                 "a mesh with tetrahedra, or with edges that no face has: only faces are simplified");
     BRIO_TRY(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, NULL));
     if (o.any) BRIO_TRY(brio_mesh_take_apart(ctx, mesh));
     int exponent = exponent_of(mesh);

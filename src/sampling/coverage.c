@@ -1,9 +1,9 @@
 /* How well points cover a surface, and the surface the points.
  *
  * The spacing at a point is what it would be on a square grid that has as many points within the distance of the sixth nearest
- * one. Faces are cut into fans, and these into parts of about two spacings, at most GRID to a side: each part's middle is so many
- * spacings away from the nearest point, those of that point. Faces that are over SUSPECT somewhere and meet across edges are a bridge
- * if one of them is over FAR.
+ * one. Faces are cut into fans, and these into parts of about two spacings, at most GRID to a side. The distance of a
+ * part is that of its middle from the nearest point, in spacings at that point. Faces that are over SUSPECT somewhere and
+ * meet across edges are a bridge if one of them is over FAR.
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure the
  *           sampling). */
