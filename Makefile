@@ -29,7 +29,7 @@ check-all:
 	@sh scripts/setup.sh check
 	@sh scripts/check.sh $(JOBS) all
 
-# Each fuzzer for some minutes of processor time: docs/reliability.md. FUZZ="--subjects read write" runs some of them.
+# Each fuzzer for some minutes of processor time: docs/measured/reliability.md. FUZZ="--subjects read write" runs some of them.
 MINUTES := 1
 fuzz:
 	@sh scripts/setup.sh fuzz
@@ -37,7 +37,7 @@ fuzz:
 	cmake --build build-fuzz -j $(JOBS)
 	/usr/bin/python3 tests/fuzz/run.py build-fuzz --minutes $(MINUTES) --jobs $(JOBS) $(FUZZ)
 
-# Faults at every point of runs: docs/reliability.md. Small blocks are mappings here, so that small inputs have scratch files.
+# Faults at every point of runs: docs/measured/reliability.md. Small blocks are mappings here, so that small inputs have scratch files.
 # FAULTS="--groups formats --kinds 'read fails'" runs some of them.
 faults:
 	@sh scripts/setup.sh check
@@ -48,7 +48,7 @@ faults:
 	build-faults/fault_truncated tests/fuzz/corpus/read
 	/usr/bin/python3 tests/faults/memory_limit.py build-faults/brio || [ $$? = 77 ]
 
-# Results against CGAL, Qhull, voro++ and GUDHI: docs/reliability.md. CROSSCHECK="--sets 200 --points 10000" compares less.
+# Results against CGAL, Qhull, voro++ and GUDHI: docs/measured/reliability.md. CROSSCHECK="--sets 200 --points 10000" compares less.
 crosscheck:
 	@sh scripts/setup.sh crosscheck
 	cmake -S . -B build-crosscheck -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_CROSSCHECK=ON
@@ -56,7 +56,7 @@ crosscheck:
 	/usr/bin/python3 tests/oracles/crosscheck.py build-crosscheck $(CROSSCHECK)
 
 # Results against brute force in exact integers, spoiled results against the checks, changed points against the same points:
-# docs/reliability.md. INPUTS says how many.
+# docs/measured/reliability.md. INPUTS says how many.
 bruteforce mutations: INPUTS := 1000000
 metamorphic: INPUTS := 10000
 bruteforce mutations metamorphic:
@@ -66,12 +66,12 @@ bruteforce mutations metamorphic:
 	build/$@ --inputs $(INPUTS)
 
 # Lines and branches of src and cli that the tests and the fuzzers' inputs reach: a table, and pages in out/coverage.
-# COVERAGE="-R unit" runs some of the tests: docs/reliability.md.
+# COVERAGE="-R unit" runs some of the tests: docs/measured/reliability.md.
 coverage:
 	@sh scripts/setup.sh coverage
 	@sh scripts/coverage.sh $(JOBS) $(COVERAGE)
 
-# The locks, by the model checker spin: docs/reliability.md.
+# The locks, by the model checker spin: docs/measured/reliability.md.
 model:
 	@sh scripts/setup.sh model
 	@sh tests/model/run.sh || [ $$? = 77 ]
@@ -115,7 +115,7 @@ python-fuzz:
 	@sh scripts/setup.sh check
 	@JOBS=$(JOBS) MINUTES=$(MINUTES) sh scripts/python.sh fuzz
 
-# BENCH="--runs 5 --only uniform_1m happy_raw" measures less, BENCH="--sizes 1e4 1e5 1e6 1e7" more: docs/benchmarks.md.
+# BENCH="--runs 5 --only uniform_1m happy_raw" measures less, BENCH="--sizes 1e4 1e5 1e6 1e7" more: docs/measured/benchmarks.md.
 bench: all
 	@sh scripts/setup.sh bench
 	cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_PEERS=ON
@@ -124,11 +124,11 @@ bench: all
 	/usr/bin/python3 bench/bench.py $(BRIO) build-bench out/bench.csv $(BENCH)
 	/usr/bin/python3 bench/plot.py out/bench.csv out
 
-# Judges surfaces of models of known topology, of generated solids, and of every shared set: docs/quality.md.
-# QUALITY="--parts corpus --samplings even" measures less: docs/benchmarks.md.
+# Judges surfaces of models of known topology, of generated solids, and of every shared set: docs/measured/quality.md.
+# QUALITY="--parts corpus --samplings even" measures less: docs/measured/benchmarks.md.
 quality: all
 	@sh scripts/setup.sh quality
-	/usr/bin/python3 bench/quality/quality.py $(BRIO) docs $(QUALITY)
+	/usr/bin/python3 bench/quality/quality.py $(BRIO) docs/measured $(QUALITY)
 
 # The tables of src/reconstruct/labeled_delaunay/vote_weight.c, from generated solids with odd seeds: out/votes.txt.
 votes: all
@@ -136,13 +136,13 @@ votes: all
 	/usr/bin/python3 bench/quality/make_corpus.py out/solids-choose --seeds 1-120 --half choose --brio $(BRIO)
 	/usr/bin/python3 bench/quality/measure_votes.py out/solids-choose --brio $(BRIO) --counts out/votes.npz >out/votes.txt
 
-# The thesis' experiments at a fourth of their size; THESIS="--full --report docs/thesis-experiments.md" for all of it.
-# Root, for the limits of memory: docs/benchmarks.md.
+# The thesis' experiments at a fourth of their size; THESIS="--full --report docs/measured/thesis-experiments.md" for all of it.
+# Root, for the limits of memory: docs/measured/benchmarks.md.
 thesis: all
 	@sh scripts/setup.sh thesis
 	/usr/bin/python3 bench/thesis/thesis.py $(BRIO) $(THESIS)
 
-# Other processors, systems and compilers give the same bits: docs/machines.md.
+# Other processors, systems and compilers give the same bits: docs/measured/machines.md.
 machines:
 	@sh scripts/setup.sh machines
 	/usr/bin/python3 tests/machines/machines.py . out/machines

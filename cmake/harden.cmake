@@ -1,4 +1,4 @@
-# What makes an error of memory harder to exploit: docs/reliability.md, "Flags". Not for builds with a sanitizer, which find such
+# What makes an error of memory harder to exploit: docs/measured/reliability.md, "Flags". Not for builds with a sanitizer, which find such
 # errors themselves, nor without optimization, where the C library cannot check sizes.
 option(BRIO_HARDEN "Compile and link with checks against exploits of memory errors" OFF)
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # analyze.sh JOBS [FILE...]: clang-tidy (.clang-tidy), cppcheck and gcc's analyzer over the sources, or some of them. Fails on
 # findings that scripts/analysis.txt does not explain, and where a tool fails. A tool that is missing is left out, with a line
-# that says so. docs/reliability.md: "Analysis".
+# that says so. docs/measured/reliability.md: "Analysis".
 set -u
 cd "$(dirname "$0")/.." || exit 1
 jobs=$1

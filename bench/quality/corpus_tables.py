@@ -1,4 +1,4 @@
-"""The tables of docs/quality.md about closed models of known topology (corpus.py)."""
+"""The tables of docs/measured/quality.md about closed models of known topology (corpus.py)."""
 import collections
 import math
 import statistics

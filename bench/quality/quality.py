@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the surfaces of brio are worth: makes docs/quality.md, and the CSV files beside it that the page shows.
+"""What the surfaces of brio are worth: makes docs/measured/quality.md, and the CSV files beside it that the page shows.
 
     quality.py BRIO DOCS [--parts PART ...] [--only NAME ...] [--methods NAME ...] [--samplings NAME ...]
                [--solids FOLDER] [--poisson PYTHON] [--processes N]
@@ -133,7 +133,7 @@ so that a surface is at distance 0 from itself and no floor has to be taken off.
 
 CORPORA = [('corpus', 'Models of known topology', '''%d closed models beside the project, organic and mechanical. The log-odds of the
 default method were measured on generated solids, a few of its constants were compared on these models, too
-([decisions/011](decisions/011-samples-vote.md)). ''' + JUDGED),
+([decisions/011](../decisions/011-samples-vote.md)). ''' + JUDGED),
            ('solids', 'Generated solids', '%d solids of `brio generate solid`, even seeds: none was used to choose a constant. ' + JUDGED)]
 
 

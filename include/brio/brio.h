@@ -153,7 +153,7 @@ BRIO_API int brio_context_threads(const brio_context *ctx);
  *  share of the whole call that is done, in [0, 1]. Between stages they repeat what they said last; before the first stage
  *  that is "start" and 0, or what the call before said last. A result other than 0 cancels the call, which then frees
  *  everything and returns BRIO_ERR_CANCELLED: at the latest half a second of processor time after the callback would have
- *  said so, on the machines and inputs of docs/reliability.md. */
+ *  said so, on the machines and inputs of docs/measured/reliability.md. */
 typedef int (*brio_progress_fn)(const char *stage, double fraction, void *user);
 /** Sets the progress callback; NULL removes it. */
 BRIO_API void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user);
@@ -2253,7 +2253,7 @@ BRIO_API brio_status brio_generate_solid(brio_context *ctx, brio_solid_kind kind
  * Memory estimates
  *
  * Each estimates the bytes that the function of its name holds at its peak, the result included and the caller's arrays
- * not. The estimates are within 15 % on the inputs of docs/performance.md; other inputs can need more. To make sure, set
+ * not. The estimates are within 15 % on the inputs of docs/measured/performance.md; other inputs can need more. To make sure, set
  * the limit of the context: work over it fails with BRIO_ERR_NO_MEMORY.
  */
 

@@ -2,7 +2,7 @@
 
 All times but those of two threads are processor time of one thread, conversion of arrays included. What is compared runs in
 turns, and medians are shown: of processes of their own for C, of one process for Python. --write puts the table, and all
-that is said of the run, between the marks of a page: docs/python/performance.md.
+that is said of the run, between the marks of a page: docs/measured/python.md.
 """
 
 import argparse

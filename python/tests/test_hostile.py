@@ -291,7 +291,7 @@ INTERRUPT = pathlib.Path(__file__).parent.parent / "bench" / "interrupt.py"
 @pytest.mark.parametrize("work", ["delaunay", "plane", "labeled-delaunay", "power-crust", "voronoi", "alpha", "locate",
                                   "natural", "natural2"])
 def test_interrupt(alone, work):
-    """A signal ends a call, wherever in the call it comes. How soon: docs/python/performance.md."""
+    """A signal ends a call, wherever in the call it comes. How soon: docs/measured/python.md."""
     assert alone(INTERRUPT.read_text(), work).startswith(work)
 
 

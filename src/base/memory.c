@@ -146,7 +146,7 @@ static size_t mapped_size(size_t size) {
 }
 
 /* Uses pages of the usual size: clearing a huge page at its first touch displaces everything else from the caches.
- * Measured: this cost the triangulation of four million points a fifth of its time (docs/performance.md). */
+ * Measured: this cost the triangulation of four million points a fifth of its time (docs/measured/performance.md). */
 static void *map_anonymous(size_t size) {
     void *base = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     return base == MAP_FAILED ? NULL : base;

@@ -1,7 +1,7 @@
 /* Memory estimates.
  *
  * The constants are those of the data structures or measured, as said beside them; measurement adjusts them here and
- * nowhere else. docs/performance.md compares the estimates with the peaks of many inputs. An input that no estimate
+ * nowhere else. docs/measured/performance.md compares the estimates with the peaks of many inputs. An input that no estimate
  * foresees meets the memory limit of the context, which refuses memory while the work runs. */
 #include "base/float_state.h"
 #include "base/versioned.h"

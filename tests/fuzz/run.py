@@ -4,7 +4,7 @@ Each runs for N minutes of processor time, from its committed corpus and what ea
 row for each: executions, executions a second of processor time, edges of the program that were reached, findings. An input
 that makes a fuzzer stop is a finding, kept in out/fuzz/findings. The exit status is 1 if there is one.
 out/fuzz/results.json has the sums of all runs: executions, minutes, the most edges, findings, of each fuzzer; --table prints
-them as docs/reliability.md has them, and runs nothing. With --total, earlier minutes count: each fuzzer runs for what it lacks.
+them as docs/measured/reliability.md has them, and runs nothing. With --total, earlier minutes count: each fuzzer runs for what it lacks.
 --jobs: so many fuzzers at a time.
 --keep: afterwards adds to the committed corpus the smallest inputs that reach all that was reached, those under 700 bytes.
 """

@@ -1881,7 +1881,7 @@ BRIO_API brio_status brio_generate_solid(brio_context *ctx, brio_solid_kind kind
  * Memory estimates
  *
  * Each estimates the bytes that the function of its name holds at its peak, the result included and the caller's arrays
- * not. The estimates are within 15 % on the inputs of docs/performance.md; other inputs can need more. To make sure, set
+ * not. The estimates are within 15 % on the inputs of docs/measured/performance.md; other inputs can need more. To make sure, set
  * the limit of the context: work over it fails with BRIO_ERR_NO_MEMORY.
  */
 

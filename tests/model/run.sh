@@ -1,6 +1,6 @@
 #!/bin/sh
 # run.sh: has the model checker spin try every interleaving of the models of this folder; then breaks each model in several
-# ways, each of which has to be found. Exit status 77, with a reason, where there is no spin. docs/reliability.md: "Locks".
+# ways, each of which has to be found. Exit status 77, with a reason, where there is no spin. docs/measured/reliability.md: "Locks".
 set -u
 cd "$(dirname "$0")" || exit 1
 for tool in spin "${CC:-cc}"; do

@@ -221,17 +221,17 @@ class Verdicts(unittest.TestCase):
 
 class Page(unittest.TestCase):
     def test_the_page_is_what_its_results_give(self):
-        page = os.path.join(ROOT, "docs", "thesis-experiments.md")
+        page = os.path.join(ROOT, "docs", "measured", "thesis-experiments.md")
         facts = report.kept(page[:-len("md")] + "json")
         with tempfile.TemporaryDirectory() as folder:
             again = os.path.join(folder, "page.md")
             report.write(again, facts, "images/thesis/")
             with open(page) as a, open(again) as b:
                 self.assertEqual(a.read().splitlines(), b.read().splitlines(),
-                                 "docs/thesis-experiments.md was edited, or the generator was: thesis.py --again")
+                                 "docs/measured/thesis-experiments.md was edited, or the generator was: thesis.py --again")
 
     def test_every_plot_of_the_page_is_there(self):
-        docs = os.path.join(ROOT, "docs")
+        docs = os.path.join(ROOT, "docs", "measured")
         with open(os.path.join(docs, "thesis-experiments.md")) as f:
             named = {part.split(")")[0] for part in f.read().split("](")[1:]}
         plots = {name for name in named if name.endswith(".svg")}
@@ -239,7 +239,7 @@ class Page(unittest.TestCase):
         self.assertEqual(plots, {"images/thesis/" + name for name in (os.listdir(folder) if os.path.isdir(folder) else [])})
 
     def test_figures_of_the_results_are_those_of_the_generator(self):
-        facts = report.kept(os.path.join(ROOT, "docs", "thesis-experiments.json"))
+        facts = report.kept(os.path.join(ROOT, "docs", "measured", "thesis-experiments.json"))
         self.assertEqual(list(facts["figures"]), [f.name for f in report.figures_of(facts)])
 
 

@@ -112,7 +112,7 @@ def table(rows, version):
     lines = ["# scipy's own tests, run with brio's classes", "",
              "Of scipy %s: %s, with" % (version, ", ".join("`%s.py`" % name.replace(".", "/") for name in MODULES)),
              "%s replaced. Written by" % ", ".join("`%s`" % name for name in NAMES),
-             "`python/tests/scipys/run_scipys_tests.py --write docs/python/scipy-tests.md`; `make check` runs the same tests",
+             "`python/tests/scipys/run_scipys_tests.py --write docs/measured/scipy-tests.md`; `make check` runs the same tests",
              "and holds every outcome against this page.", "",
              "%d tests: %s." % (len(rows), ", ".join("%d %s" % (n, what) for what, n in sorted(counts.items()))), "",
              "Left out, because they test what brio does not have: " +
@@ -132,7 +132,7 @@ def main():
     text = table(rows, version)
     if options.write:
         pathlib.Path(options.write).write_text(text, encoding="utf-8")
-    kept = HERE.parents[2] / "docs/python/scipy-tests.md"
+    kept = HERE.parents[2] / "docs/measured/scipy-tests.md"
     if kept.exists() and not options.write and kept.read_text(encoding="utf-8") != text:
         before = set(kept.read_text(encoding="utf-8").splitlines())
         wrong += ["not in %s: %s" % (kept.name, line) for line in text.splitlines() if line not in before]
