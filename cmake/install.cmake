@@ -1,9 +1,9 @@
-# Installation: the library, its header, the program, and what CMake and pkg-config need to find them.
+# Installation: the library, its headers, the program, and what CMake and pkg-config need to find them.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS brio EXPORT brioTargets)
 install(TARGETS brio-cli)
-install(FILES ${PROJECT_SOURCE_DIR}/include/brio/brio.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/brio)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/brio DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 install(FILES docs/which-method.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}) # errors refer to the first by name
 
 # CMake: find_package(brio), then link with brio::brio.

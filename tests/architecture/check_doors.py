@@ -25,7 +25,7 @@ def body_of(name, sources):
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
-    header = (root / "include/brio/brio.h").read_text(encoding="utf-8")
+    header = "".join(path.read_text(encoding="utf-8") for path in sorted((root / "include/brio").glob("*.h")))
     sources = {path.relative_to(root): path.read_text(encoding="utf-8") for path in sorted((root / "src").rglob("*.c"))}
     names = sorted(set(DECLARED.findall(header)))
     wrong = []

@@ -1,6 +1,6 @@
 """check_versions.py ROOT LIBRARY [CMAKE CC]: what docs/versions.md promises.
 
-1. LIBRARY shows the functions that exported.txt lists and nothing else, and the header declares the same.
+1. LIBRARY shows the functions that exported.txt lists and nothing else, and the headers declare the same.
 2. With CMAKE and CC: a shared library is built, all of whose structs of options, statistics and results have one more field, at
    their end. It exports the same functions, and a program compiled with the frozen header of this version (brio_0_2.h) runs
    with it.
@@ -25,11 +25,17 @@ def run(*command, **more):
     return done.stdout
 
 
-def grow(header):
+def headers(root):
+    return sorted((root / "include/brio").glob("*.h"))
+
+
+def grow(root):
     """One more field for each struct that begins with its size."""
-    text = header.read_text(encoding="utf-8")
-    names = [match.group(2) for match in SIZED.finditer(text)]
-    header.write_text(SIZED.sub(r"\1\n    int later_field, reserved_later;\3", text), encoding="utf-8")
+    names = []
+    for header in headers(root):
+        text = header.read_text(encoding="utf-8")
+        names += [match.group(2) for match in SIZED.finditer(text)]
+        header.write_text(SIZED.sub(r"\1\n    int later_field, reserved_later;\3", text), encoding="utf-8")
     return names
 
 
@@ -49,8 +55,8 @@ def exported(library):
 
 def check_names(root, library, expected):
     declared = sorted(set(re.findall(r"BRIO_API\s+[\w\s*]*?\b(brio_\w+)\s*\(",
-                                     (root / "include/brio/brio.h").read_text(encoding="utf-8"))))
-    for title, names in (("exported by the library", exported(library)), ("declared by the header", declared)):
+                                     "".join(path.read_text(encoding="utf-8") for path in headers(root)))))
+    for title, names in (("exported by the library", exported(library)), ("declared by the headers", declared)):
         if names != expected:
             sys.exit("%s, not in exported.txt: %s\nin exported.txt, not %s: %s"
                      % (title, sorted(set(names) - set(expected)), title, sorted(set(expected) - set(names))))
@@ -63,7 +69,7 @@ def check_later_library(root, cmake, compiler, expected):
         folder = pathlib.Path(name)
         later = folder / "later"
         shutil.copytree(root, later, ignore=shutil.ignore_patterns("build", "build-*", ".git", "out"))
-        grown = grow(later / "include/brio/brio.h")
+        grown = grow(later)
         library = build(later, cmake, compiler, folder / "build")
         check_names(root, library, expected)
         (folder / "frozen/brio").mkdir(parents=True)
