@@ -3,16 +3,66 @@
  * Small arrays grow by half, large ones by an eighth: large arrays are mappings that grow without copying, and unused
  * capacity counts against the memory limit. Messages count points, faces and tetrahedra from 0, and show indices of
  * vertices as they are in the file. */
-#include "base/utf8.h"
 #include "io/builder.h"
+#include "base/memory.h"
+#include "base/utf8.h"
 #include "io/colour.h"
 #include "io/filter.h"
 #include "io/scalar.h"
-#include "base/memory.h"
 #include "mesh/properties.h"
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+/* --- files that end early --- */
+
+bool brio_salvage(brio_builder *b, brio_stream *s, uint64_t before, bool points, brio_status *status) {
+    char text[64];
+    bool may_lack_digits = *status == BRIO_OK && s->unended && s->row + 1 < s->rows;
+    bool fails = *status == BRIO_ERR_FORMAT && (s->truncated || s->unended);
+    if (!b->salvage || !(fails || may_lack_digits)) return false;
+    brio_mesh *m = b->mesh;
+    m->num_vertices -= (size_t)(brio_builder_count(b) - before);
+    b->num_corners = m->num_faces ? (size_t)m->face_offsets[m->num_faces] : 0;
+    s->begin = s->end; /* what is left of the row is no other row */
+    s->salvaged = true;
+    *status = BRIO_OK;
+    if (points) b->missing = s->rows - s->row;
+    if (points) return true;
+    snprintf(text, sizeof text, "%" PRIu64 " rows of %.30s", s->rows - s->row, s->element);
+    *status = brio_builder_leave_out(b, text);
+    return true;
+}
+
+/* --- places of scanners --- */
+
+/* Places of scanners as properties of the points that they saw. A place is written for each point: points are then
+ * complete in blocks, however many scans a file has, and the properties pass through all that properties pass through. */
+
+static const char *const NAMES[] = {"x_origin", "y_origin", "z_origin"};
+
+brio_status brio_plan_origins(brio_builder *b) {
+    brio_status status = BRIO_OK;
+    b->has_origins = false;
+    if (!b->origins) return BRIO_OK;
+    for (int k = 0; k < 3; k++)
+        if (brio_mesh_property(b->mesh, NAMES[k])) return BRIO_OK;
+    b->first_origin = b->mesh->num_properties;
+    for (int k = 0; k < 3; k++) BRIO_TRY(brio_builder_property(b, NAMES[k], BRIO_SCALAR_FLOAT64));
+    b->has_origins = true;
+done:
+    return status;
+}
+
+void brio_set_origins(brio_builder *b, size_t first, const double *place) {
+    for (size_t k = 0; k < 3 && b->has_origins; k++) {
+        double *value = b->mesh->properties[b->first_origin + k].data;
+        for (size_t v = first; v < b->mesh->num_vertices; v++) value[v] = place ? place[k] : (double)NAN;
+    }
+}
+
+/* --- the mesh --- */
 
 /* All chosen. */
 enum { FIRST_CAPACITY = 64, LARGE = 1 << 22, MOST_LEFT_OUT = 200 };

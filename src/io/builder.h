@@ -13,6 +13,7 @@
 #include "base/finite.h"
 #include "io/blocks.h"
 #include "io/limits.h"
+#include "io/stream.h"
 
 #define BRIO_MAX_VERTICES ((uint64_t)UINT32_MAX - 16)
 
@@ -118,5 +119,30 @@ brio_status brio_builder_edge(brio_builder *b, const double *indices);
 /** Releases unused memory, and checks all indices and coordinates. With `streams` hands on the last block. May also
  *  return BRIO_ERR_NOT_FINITE, and what the sink returns. */
 brio_status brio_builder_finish(brio_builder *b);
+
+/* --- files that end early --- */
+
+/* Keeps the whole rows of a file that ends early, where the caller asked for that (brio_builder.salvage). */
+
+/** Looks at the row s->row that was read, or could not be, because the file ended within it. A last line without its end is
+ *  such a row unless the file announces no row behind it: its last number may have lost digits.
+ *  before  the number of vertices before the row; what the row added disappears.
+ *  points  whether the rows are the points, which b->missing then counts; other rows are named as left out.
+ *  status  of the row; becomes that of this function if the row is given up.
+ *  Returns whether the row and all behind it are given up. */
+bool brio_salvage(brio_builder *b, brio_stream *s, uint64_t before, bool points, brio_status *status);
+
+/* --- places of scanners --- */
+
+/* Places of scanners as properties of the points that they saw. */
+
+/** Adds the properties x_origin, y_origin, z_origin (float64), if the caller asked for them (brio_read_options.origins) and
+ *  the file has none of these names. Call once all other properties are there, before the first vertex or with all of
+ *  them NaN. Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+brio_status brio_plan_origins(brio_builder *b);
+
+/** Gives the mesh's vertices from `first` on their place. Does nothing if there is no such property.
+ *  place  3; NULL: not known, which is NaN. */
+void brio_set_origins(brio_builder *b, size_t first, const double *place);
 
 #endif

@@ -19,7 +19,7 @@ brio_cells_format brio_cells_format_of(const char *path) {
 
 /* --- CSV --- */
 
-brio_status brio_cells_csv_write(brio_output *out, const brio_cells *cells) {
+static brio_status cells_csv_write(brio_output *out, const brio_cells *cells) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_output_string(out, "site,volume,area,faces,bounded,cx,cy,cz\n"));
     for (size_t c = 0; c < cells->num_cells; c++) {
@@ -35,7 +35,7 @@ done:
     return status;
 }
 
-brio_status brio_cells_faces_write(brio_output *out, const brio_cells *cells) {
+static brio_status cells_faces_write(brio_output *out, const brio_cells *cells) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_output_string(out, "site,neighbour,area,nx,ny,nz\n"));
     for (size_t c = 0; c < cells->num_cells; c++)
@@ -71,7 +71,7 @@ static brio_status write_npy_header(brio_output *out, size_t rows) {
     return status == BRIO_OK ? brio_output_bytes(out, text, whole) : status;
 }
 
-brio_status brio_cells_npy_write(brio_output *out, const brio_cells *cells) {
+static brio_status cells_npy_write(brio_output *out, const brio_cells *cells) {
     brio_status status = BRIO_OK;
     BRIO_TRY(write_npy_header(out, cells->num_cells));
     for (size_t c = 0; c < cells->num_cells; c++) {
@@ -116,11 +116,11 @@ static brio_status write_format(brio_output *out, const brio_cells *cells, brio_
     case BRIO_CELLS_FORMAT_VTU:
         return brio_cells_vtu_write(out, cells, comment);
     case BRIO_CELLS_FORMAT_NPY:
-        return brio_cells_npy_write(out, cells);
+        return cells_npy_write(out, cells);
     case BRIO_CELLS_FORMAT_CSV:
-        return brio_cells_csv_write(out, cells);
+        return cells_csv_write(out, cells);
     case BRIO_CELLS_FORMAT_FACES_CSV:
-        return brio_cells_faces_write(out, cells);
+        return cells_faces_write(out, cells);
     case BRIO_CELLS_FORMAT_AUTO:
     case BRIO_CELLS_FORMAT_END:
         break;

@@ -9,9 +9,6 @@ static inline uint64_t brio_cells_num_faces(const brio_cells *cells, size_t c) {
     return cells->face_offsets[c + 1] - cells->face_offsets[c];
 }
 
-brio_status brio_cells_csv_write(brio_output *out, const brio_cells *cells);
-brio_status brio_cells_faces_write(brio_output *out, const brio_cells *cells);
-brio_status brio_cells_npy_write(brio_output *out, const brio_cells *cells);
 /** comment  NULL: none. */
 brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, const char *comment);
 

@@ -42,10 +42,14 @@ brio_status brio_off_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtu_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
 brio_status brio_node_write(brio_output *out, const brio_write_job *job);
+/** Writes .node, .ele if there are tetrahedra or an old .ele, and what the options ask for of .neigh, .face and .edge.
+ *  All files are complete before any gets its name.
+ *  expected  an estimate of the bytes of a file, for progress.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
+brio_status brio_node_write_files(brio_context *ctx, const char *path, const brio_write_job *job, uint64_t expected);
 brio_status brio_stl_write(brio_output *out, const brio_write_job *job);
 brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job);
 brio_status brio_glb_write(brio_output *out, const brio_write_job *job);
-brio_status brio_ele_write(brio_output *out, const brio_write_job *job);
 
 /** A format's row of the table in format_table.c. */
 typedef struct brio_format_row {

@@ -8,8 +8,7 @@
 #include "io/little_endian.h"
 #include "io/npy_header.h"
 #include "io/row_format.h"
-#include "io/rows.h"
-#include "io/salvage.h"
+#include "io/builder.h"
 #include "io/scalar.h"
 #include <inttypes.h>
 #include <stdarg.h>

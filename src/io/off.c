@@ -11,7 +11,7 @@
 #include "io/formats.h"
 #include "io/little_endian.h"
 #include "io/number.h"
-#include "io/salvage.h"
+#include "io/builder.h"
 #include "io/textrow.h"
 #include "mesh/properties.h"
 #include <math.h>

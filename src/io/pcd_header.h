@@ -1,9 +1,36 @@
-/* The header of a PCD file. */
+/* What reader and writer of PCD files share: the header, and compressed columns. */
 #ifndef BRIO_IO_PCD_HEADER_H
 #define BRIO_IO_PCD_HEADER_H
 
 #include "io/limits.h"
 #include "io/stream.h"
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* --- compressed columns --- */
+
+/* LZF, the compression of PCD files. */
+
+enum { BRIO_LZF_MOST_RATIO = 88 /* bytes that one byte stands for, at most: 264 for 3 */ };
+
+/** Decompresses bytes. Returns whether they are sound and give exactly `size` bytes. */
+bool brio_lzf_decompress(const uint8_t *bytes, size_t count, uint8_t *out, size_t size);
+
+/** Returns room for any `count` bytes when compressed. */
+static inline size_t brio_lzf_room(size_t count) {
+    return count + count / 32 + 1;
+}
+
+enum { BRIO_LZF_TABLE = 1 << 14 };
+
+/** Compresses bytes.   count  below 2^32.   out  brio_lzf_room(count) bytes.   table  BRIO_LZF_TABLE numbers, workspace.
+ *  Returns the size of what was written. */
+size_t brio_lzf_compress(const uint8_t *bytes, size_t count, uint8_t *out, uint32_t *table);
+
+/* --- the header --- */
+
+/* The header of a PCD file. */
 
 enum { BRIO_PCD_MOST_NUMBERS = BRIO_MOST_NUMBERS /* of a point */ };
 

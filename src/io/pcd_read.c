@@ -8,10 +8,8 @@
 #include "base/memory.h"
 #include "io/formats.h"
 #include "io/little_endian.h"
-#include "io/lzf.h"
-#include "io/origins.h"
 #include "io/pcd_header.h"
-#include "io/salvage.h"
+#include "io/builder.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include <inttypes.h>

@@ -7,7 +7,7 @@
  * Based on: Rusu Cousins. 3D is here: Point Cloud Library. ICRA 2011; PCL's description of the format, version 0.7. */
 #include "base/memory.h"
 #include "io/little_endian.h"
-#include "io/lzf.h"
+#include "io/pcd_header.h"
 #include "io/row_format.h"
 #include "io/scalar.h"
 #include <inttypes.h>

@@ -9,7 +9,7 @@
 #include "io/crs.h"
 #include "io/formats.h"
 #include "io/ply_header.h"
-#include "io/salvage.h"
+#include "io/builder.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include <math.h>

@@ -8,7 +8,6 @@
 #include "base/team.h"
 #include "io/ply_header.h"
 #include "io/row_format.h"
-#include "io/rows.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include <inttypes.h>

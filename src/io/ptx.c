@@ -6,8 +6,7 @@
  *
  * Based on: Leica Geosystems. Description of the PTX format. */
 #include "io/formats.h"
-#include "io/origins.h"
-#include "io/salvage.h"
+#include "io/builder.h"
 #include "io/textrow.h"
 #include <inttypes.h>
 #include <math.h>

@@ -6,7 +6,6 @@
  *
  * Based on: Leica Geosystems. Description of the PTX format. */
 #include "base/memory.h"
-#include "io/row_format.h"
 #include "io/scans.h"
 #include <inttypes.h>
 #include <math.h>
@@ -18,13 +17,11 @@ enum { AXES = 3, COLOURS = 3, CELLS_A_POINT = 16 /* of a grid, at most; chosen *
 static const double BESIDE = 1e-30;
 
 typedef struct {
-    brio_scans scans;
-    bool *has; /* of each property: whether the file has a place for it */
+    brio_scans scans; /* first: BRIO_SCANS_ROWS */
+    bool *has;        /* of each property: whether the file has a place for it */
     size_t num_properties;
     bool has_colours;
     uint64_t cell; /* of the scan's grid, the next one */
-    bool rounds;
-    double moved; /* farthest of the last block */
 } ptx_writer;
 
 static bool has_grid(const brio_scan *scan) {
@@ -33,21 +30,6 @@ static bool has_grid(const brio_scan *scan) {
 }
 
 /* --- beginning --- */
-
-static brio_status survey(brio_context *ctx, const brio_write_job *job, void *state) {
-    ptx_writer *w = state;
-    return brio_scans_see(ctx, &w->scans, job->mesh);
-}
-
-static bool surveyed(void *state) {
-    (void)state;
-    return true;
-}
-
-static uint64_t surveyed_points(const void *state) {
-    const ptx_writer *w = state;
-    return w->scans.points;
-}
 
 /* Returns the colours, if they are bytes, without alpha. */
 static brio_channels colours_of(const brio_mesh *m) {
@@ -108,7 +90,7 @@ static brio_status write_coordinates(brio_output *out, ptx_writer *w, const doub
     for (int k = 0; k < AXES; k++) local[k] = place[k] == 0 ? point[k] : point[k] - place[k];
     if (local[0] == 0 && local[1] == 0 && local[2] == 0) local[0] = BESIDE;
     for (int k = 0; k < AXES; k++) far = fmax(far, fabs(local[k] + place[k] - point[k]));
-    w->moved = fmax(w->moved, far * sqrt(AXES));
+    w->scans.moved = fmax(w->scans.moved, far * sqrt(AXES));
     return brio_output_point(out, local);
 }
 
@@ -149,9 +131,9 @@ static brio_status write_rows(brio_output *out, const brio_write_job *job, void 
     brio_status status = BRIO_OK;
     ptx_writer *w = state;
     brio_scan_part part = {.end = 0};
-    w->moved = 0;
+    w->scans.moved = 0;
     while (brio_scans_next(&w->scans, job->mesh, &part)) BRIO_TRY(write_part(out, w, job->mesh, &part));
-    w->rounds |= w->moved > 0;
+    w->scans.rounds |= w->scans.moved > 0;
 done:
     return status;
 }
@@ -173,17 +155,6 @@ static bool renames(const void *state, size_t i) {
     return false;
 }
 
-static bool rounds(const void *state) {
-    const ptx_writer *w = state;
-    return w->rounds;
-}
-
-static double moved(const void *state, const brio_mesh *block) {
-    const ptx_writer *w = state;
-    (void)block;
-    return w->moved;
-}
-
 static void free_state(brio_context *ctx, void *state) {
     ptx_writer *w = state;
     brio_scans_free(ctx, &w->scans);
@@ -191,14 +162,10 @@ static void free_state(brio_context *ctx, void *state) {
 }
 
 const brio_row_format brio_ptx_rows = {.state = sizeof(ptx_writer),
-                                       .survey = survey,
-                                       .surveyed = surveyed,
-                                       .surveyed_points = surveyed_points,
+                                       BRIO_SCANS_ROWS,
                                        .begin = begin,
                                        .rows = write_rows,
                                        .end = end,
                                        .free = free_state,
                                        .renames = renames,
-                                       .lacks = lacks,
-                                       .rounds = rounds,
-                                       .moved = moved};
+                                       .lacks = lacks};

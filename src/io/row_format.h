@@ -13,7 +13,8 @@ typedef struct brio_row_format {
     bool comments; /* whether # % and // begin a comment in the line of names */
 
     /** Looks at a block before anything is written. NULL: the format need not know the points before it writes.
-     *  All blocks are shown, from the first to the last, then `surveyed` is asked, and all again until it is true. */
+     *  All blocks are shown, from the first to the last, then `surveyed` is asked, and all again until it is true.
+     *  surveyed  NULL: one pass is enough. */
     brio_status (*survey)(brio_context *ctx, const brio_write_job *job, void *state);
     bool (*surveyed)(void *state);
     uint64_t (*surveyed_points)(const void *state);
@@ -79,5 +80,12 @@ bool brio_row_writer_renames(const brio_row_writer *w, const brio_mesh *block, s
 brio_status brio_row_writer_end(brio_row_writer *w, const brio_mesh *last);
 /** Frees everything. A file that was not ended disappears. */
 void brio_row_writer_free(brio_row_writer *w);
+
+/* --- rows of properties --- */
+
+/* Points as rows of binary numbers: three coordinates, then the properties, packed, in this machine's byte order. */
+
+/** Writes the vertices of job->mesh. Threads encode chunks of rows; each chunk is written as a whole. */
+brio_status brio_rows_write(brio_output *out, const brio_write_job *job);
 
 #endif

@@ -51,7 +51,8 @@ static void note_cell(brio_scan *scan, double column, double row) {
     if ((uint64_t)row >= scan->rows) scan->rows = (uint64_t)row + 1;
 }
 
-brio_status brio_scans_see(brio_context *ctx, brio_scans *s, const brio_mesh *block) {
+/* Takes note of a block. */
+static brio_status see(brio_context *ctx, brio_scans *s, const brio_mesh *block) {
     brio_status status = BRIO_OK;
     const sources from = sources_of(block);
     if (!s->points) s->split = s->numbered = true;
@@ -74,6 +75,23 @@ brio_status brio_scans_see(brio_context *ctx, brio_scans *s, const brio_mesh *bl
     }
 done:
     return status;
+}
+
+brio_status brio_scans_survey(brio_context *ctx, const brio_write_job *job, void *state) {
+    return see(ctx, state, job->mesh);
+}
+
+uint64_t brio_scans_points(const void *state) {
+    return ((const brio_scans *)state)->points;
+}
+
+bool brio_scans_round(const void *state) {
+    return ((const brio_scans *)state)->rounds;
+}
+
+double brio_scans_moved(const void *state, const brio_mesh *block) {
+    (void)block;
+    return ((const brio_scans *)state)->moved;
 }
 
 brio_status brio_scans_settle(brio_context *ctx, brio_scans *s) {

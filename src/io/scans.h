@@ -5,7 +5,7 @@
 #ifndef BRIO_IO_SCANS_H
 #define BRIO_IO_SCANS_H
 
-#include "base/context.h"
+#include "io/row_format.h"
 
 /** A scan. */
 typedef struct brio_scan {
@@ -26,10 +26,19 @@ typedef struct brio_scans {
     double last[3];  /* the place of the last point */
     size_t current;  /* writing: the scan of the next point */
     uint64_t done;   /* writing: points of that scan that were written */
+    bool rounds;     /* writing: whether a coordinate was rounded, because it is relative to its scan's place */
+    double moved;    /* writing: how far a point of the last block is at most from where a reader finds it */
 } brio_scans;
 
-/** Takes note of a block.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
-brio_status brio_scans_see(brio_context *ctx, brio_scans *s, const brio_mesh *block);
+/** The functions of a format (row_format.h) whose state begins with a brio_scans, as far as all such formats share them. */
+brio_status brio_scans_survey(brio_context *ctx, const brio_write_job *job, void *state);
+uint64_t brio_scans_points(const void *state);
+bool brio_scans_round(const void *state);
+double brio_scans_moved(const void *state, const brio_mesh *block);
+#define BRIO_SCANS_ROWS                                                                                                \
+    .survey = brio_scans_survey, .surveyed_points = brio_scans_points, .rounds = brio_scans_round,                     \
+    .moved = brio_scans_moved
+
 /** Ends the pass over all blocks. */
 brio_status brio_scans_settle(brio_context *ctx, brio_scans *s);
 void brio_scans_free(brio_context *ctx, brio_scans *s);

@@ -8,16 +8,86 @@
  * announces, or, in a pipe, whether there is a byte 0 within its beginning.
  *
  * Based on: 3D Systems. Stereolithography interface specification. 1989. */
+#include "base/memory.h"
+#include "base/rng.h"
+#include "io/builder.h"
 #include "io/formats.h"
 #include "io/little_endian.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
-#include "io/weld.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
+
+/* --- coincident corners --- */
+
+/* Vertices by their positions, in a table with linear probing. -0 and 0 are the same position. */
+
+typedef struct brio_weld {
+    uint32_t *slots; /* vertex + 1 by the hash of its position; 0: none. At most half of the slots are used. */
+    size_t size;     /* a power of two */
+} brio_weld;
+
+enum { FIRST_SIZE = 1 << 10 }; /* chosen */
+
+static uint64_t hash_of(const double *point) {
+    uint64_t hash = 0;
+    for (int k = 0; k < 3; k++) {
+        double x = point[k] + 0.0; /* -0 becomes 0 */
+        uint64_t bits;
+        memcpy(&bits, &x, sizeof bits);
+        hash = brio_mix(hash ^ bits);
+    }
+    return hash;
+}
+
+/* Finds the slot of a position: the one that has its vertex, or the one that is free for it. */
+static size_t find_slot(const brio_weld *weld, const double *vertices, const double *point) {
+    size_t slot = hash_of(point) & (weld->size - 1);
+    for (; weld->slots[slot]; slot = (slot + 1) & (weld->size - 1)) {
+        const double *p = vertices + 3 * (size_t)(weld->slots[slot] - 1);
+        if (p[0] == point[0] && p[1] == point[1] && p[2] == point[2]) break;
+    }
+    return slot;
+}
+
+static brio_status grow(brio_weld *weld, const brio_builder *b) {
+    brio_status status = BRIO_OK;
+    size_t size = weld->size ? 2 * weld->size : FIRST_SIZE;
+    uint32_t *slots = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, slots, size));
+    brio_release(b->ctx, weld->slots);
+    *weld = (brio_weld){slots, size};
+    for (size_t v = 0; v < b->mesh->num_vertices; v++)
+        slots[find_slot(weld, b->mesh->vertices, b->mesh->vertices + 3 * v)] = (uint32_t)v + 1;
+done:
+    return status;
+}
+
+/* Finds the vertex at a position in the mesh under construction, or adds it.
+ *  weld  {0} before the first call; freed by weld_free.
+ *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
+static brio_status weld_vertex(brio_weld *weld, brio_builder *b, const double *point, uint32_t *vertex) {
+    brio_status status = BRIO_OK;
+    if (2 * (b->mesh->num_vertices + 1) > weld->size) BRIO_TRY(grow(weld, b));
+    size_t slot = find_slot(weld, b->mesh->vertices, point);
+    if (!weld->slots[slot]) {
+        BRIO_TRY(brio_builder_vertex(b, point));
+        weld->slots[slot] = (uint32_t)b->mesh->num_vertices;
+    }
+    *vertex = weld->slots[slot] - 1;
+done:
+    return status;
+}
+
+static void weld_free(brio_context *ctx, brio_weld *weld) {
+    brio_release(ctx, weld->slots);
+    weld->slots = NULL;
+}
+
+/* --- files --- */
 
 enum { HEADER = 84, COUNT_AT = 80, TRIANGLE = 50, CORNERS_AT = 12, ATTRIBUTE_AT = 48 };
 
@@ -31,7 +101,7 @@ static brio_status add_triangle(brio_builder *b, brio_weld *weld, double corners
             BRIO_REQUIRE(b->ctx, isfinite(corners[i][k]), BRIO_ERR_NOT_FINITE,
                          "%s: triangle %zu (counted from 0) has the coordinate %g", b->name, b->mesh->num_faces,
                          corners[i][k]);
-        BRIO_TRY(brio_weld_vertex(weld, b, corners[i], &vertex));
+        BRIO_TRY(weld_vertex(weld, b, corners[i], &vertex));
         BRIO_TRY(brio_builder_corner(b, vertex));
     }
     BRIO_TRY(brio_builder_face(b));
@@ -137,7 +207,7 @@ brio_status brio_stl_read(brio_stream *s, brio_builder *b) {
     BRIO_TRY(brio_stream_fill(s, HEADER + TRIANGLE));
     BRIO_TRY(is_text(s) ? read_text(s, b, &weld) : read_binary(s, b, &weld));
 done:
-    brio_weld_free(b->ctx, &weld);
+    weld_free(b->ctx, &weld);
     return status;
 }
 

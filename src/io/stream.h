@@ -28,7 +28,7 @@ typedef struct brio_stream {
     bool ended;          /* whether the file has no bytes behind the buffer */
     bool truncated;      /* whether more was wanted than the file has */
     bool unended;        /* whether the last line that was read has no line feed: it is the file's last one */
-    bool salvaged;       /* whether rows that a file lacks were given up (salvage.h) */
+    bool salvaged;       /* whether rows that a file lacks were given up (builder.h) */
     const char *element; /* what is being read, e.g. "vertex", with its row and the number of rows; for messages */
     uint64_t row, rows;
     struct brio_unpacker *unpacker; /* NULL: the bytes are not compressed */

@@ -3,7 +3,7 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
-#include "io/node_files.h"
+#include "io/formats.h"
 #include "io/row_format.h"
 #include "mesh/edge_rings.h"
 #include <string.h>

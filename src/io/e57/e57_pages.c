@@ -6,7 +6,7 @@
  * Based on: ASTM E2807-11. Standard specification for 3D imaging data exchange, version 1.0. Huber. The ASTM E57 file
  * format for 3D imaging data exchange. SPIE 7864, 2011. Kounavis Berry. Novel table lookup-based algorithms for
  * high-performance CRC generation. IEEE Transactions on Computers 57, 2008. */
-#include "io/e57/e57_pages.h"
+#include "io/e57/e57.h"
 #include "base/memory.h"
 #include "io/little_endian.h"
 #include <inttypes.h>

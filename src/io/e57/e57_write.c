@@ -8,18 +8,136 @@
  * Based on: ASTM E2807-11. Standard specification for 3D imaging data exchange, version 1.0. */
 #include "base/memory.h"
 #include "base/utf8.h"
-#include "io/e57/e57_pen.h"
-#include "io/e57/e57_xml.h"
+#include "io/e57/e57.h"
 #include "io/little_endian.h"
 #include "io/number.h"
-#include "io/row_format.h"
+#include "io/output.h"
 #include "io/scalar.h"
 #include "io/scans.h"
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+
+/* --- pages --- */
+
+/* The pages of a file: 1,020 bytes of content and a checksum each. The first page, which has the header, is written
+ * last, and so are the headers of sections: each stands at the beginning of a page, which is kept for it.
+ *
+ * Based on: ASTM E2807-11, 7 (physical and logical offsets, checksums). */
+
+typedef struct brio_e57_pen {
+    brio_output *out;       /* set by the caller before every call */
+    uint32_t (*table)[256]; /* for the checksum */
+    char page[BRIO_E57_PAGE], kept[BRIO_E57_PAGE];
+    size_t used;        /* bytes of content in `page` */
+    uint64_t pages;     /* that are complete */
+    uint64_t kept_page; /* the page that is or will be in `kept` */
+    uint64_t sum;       /* of the checksums so far: the same bytes have the same one */
+} brio_e57_pen;
+
+static void e57_pen_free(brio_e57_pen *p, brio_context *ctx) {
+    brio_release(ctx, p->table);
+    p->table = NULL;
+}
+
+/* Returns the logical offset of the next byte. */
+static uint64_t e57_pen_offset(const brio_e57_pen *p) {
+    return p->pages * BRIO_E57_CONTENT + p->used;
+}
+
+/* Writes the checksum of a page behind its content. Returns the checksum. */
+static uint32_t sign(const brio_e57_pen *p, char page[BRIO_E57_PAGE]) {
+    uint32_t sum = brio_e57_checksum(p->table, page);
+    for (int i = 0; i < 4; i++) page[BRIO_E57_CONTENT + i] = (char)(sum >> (24 - 8 * i) & 255);
+    return sum;
+}
+
+static brio_status write_page(brio_e57_pen *p) {
+    assert(p->used == BRIO_E57_CONTENT);
+    p->sum = (p->sum ^ sign(p, p->page)) * UINT64_C(0x100000001b3);
+    if (p->pages == p->kept_page) memcpy(p->kept, p->page, BRIO_E57_PAGE);
+    p->pages++;
+    p->used = 0;
+    return brio_output_bytes(p->out, p->page, BRIO_E57_PAGE);
+}
+
+static brio_status e57_put(brio_e57_pen *p, const void *bytes, size_t size) {
+    brio_status status = BRIO_OK;
+    const char *at = bytes;
+    while (size) {
+        size_t part = size < BRIO_E57_CONTENT - p->used ? size : BRIO_E57_CONTENT - p->used;
+        memcpy(p->page + p->used, at, part);
+        p->used += part;
+        at += part;
+        size -= part;
+        if (p->used == BRIO_E57_CONTENT) BRIO_TRY(write_page(p));
+    }
+done:
+    return status;
+}
+
+/* Writes a text as printf does: at most 511 bytes. */
+__attribute__((format(printf, 2, 3))) static brio_status e57_put_text(brio_e57_pen *p, const char *format, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    int length = vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    assert(length >= 0 && (size_t)length < sizeof text);
+    return e57_put(p, text, (size_t)length);
+}
+
+/* Fills the page with zeros, so that the next byte begins a page, which is kept until the next call. */
+static brio_status e57_pen_turn(brio_e57_pen *p) {
+    brio_status status = BRIO_OK;
+    if (p->used) {
+        memset(p->page + p->used, 0, BRIO_E57_CONTENT - p->used);
+        p->used = BRIO_E57_CONTENT;
+        BRIO_TRY(write_page(p));
+    }
+    p->kept_page = p->pages;
+done:
+    return status;
+}
+
+/* Begins a file: its first page is empty. Call e57_pen_free even if this fails. */
+static brio_status e57_pen_begin(brio_e57_pen *p) {
+    brio_status status = BRIO_OK;
+    const char header[1] = {0};
+    BRIO_TRY(brio_e57_checksum_table(p->out->ctx, &p->table));
+    p->kept_page = UINT64_MAX;
+    BRIO_TRY(e57_put(p, header, sizeof header));
+    BRIO_TRY(e57_pen_turn(p));
+done:
+    return status;
+}
+
+/* Replaces the first bytes of the page that is kept. */
+static brio_status e57_pen_patch(brio_e57_pen *p, const void *bytes, size_t size) {
+    if (p->pages == p->kept_page) { /* the page is not written yet */
+        memcpy(p->page, bytes, size);
+        return BRIO_OK;
+    }
+    memcpy(p->kept, bytes, size);
+    sign(p, p->kept);
+    return brio_output_patch(p->out, p->kept_page * BRIO_E57_PAGE, p->kept, BRIO_E57_PAGE);
+}
+
+/* Fills the last page with zeros and gives the first one its bytes. */
+static brio_status e57_pen_end(brio_e57_pen *p, const void *header, size_t size) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(e57_pen_turn(p));
+    memset(p->kept, 0, BRIO_E57_PAGE);
+    p->kept_page = 0;
+    BRIO_TRY(e57_pen_patch(p, header, size));
+done:
+    return status;
+}
+
+/* --- scans --- */
 
 enum { SECTION_HEADER = 32, DATA_HEADER = 6, PACKET = 65536, FILE_HEADER = 48, AXES = 3 };
 
@@ -44,15 +162,13 @@ typedef struct {
 } written;
 
 typedef struct {
-    brio_scans scans;
+    brio_scans scans; /* first: BRIO_SCANS_ROWS */
     brio_e57_pen pen;
     field *fields;
     size_t num_fields, record; /* bytes of a point */
     written *list;             /* of each scan */
     size_t num_written;
     char *packet, *crs;
-    bool rounds;
-    double moved; /* farthest of the last block */
 } e57_writer;
 
 /* --- fields --- */
@@ -161,10 +277,10 @@ static brio_status begin_scan(brio_output *out, e57_writer *w) {
     brio_status status = BRIO_OK;
     const char header[SECTION_HEADER] = {0};
     written *s = &w->list[w->num_written++];
-    BRIO_TRY(brio_e57_pen_turn(&w->pen));
+    BRIO_TRY(e57_pen_turn(&w->pen));
     *s = (written){.section = brio_output_offset(out), .sum = w->pen.sum, .least = INFINITY, .most = -INFINITY};
     for (int k = 0; k < AXES; k++) s->low[k] = INFINITY, s->high[k] = -INFINITY;
-    BRIO_TRY(brio_e57_put(&w->pen, header, sizeof header));
+    BRIO_TRY(e57_put(&w->pen, header, sizeof header));
 done:
     return status;
 }
@@ -173,9 +289,9 @@ static brio_status end_scan(e57_writer *w) {
     const written *s = &w->list[w->num_written - 1];
     uint64_t begin = s->section / BRIO_E57_PAGE * BRIO_E57_CONTENT;
     char header[SECTION_HEADER] = {1}; /* a section of points; without an index */
-    brio_put_le64(header + 8, brio_e57_pen_offset(&w->pen) - begin);
+    brio_put_le64(header + 8, e57_pen_offset(&w->pen) - begin);
     brio_put_le64(header + 16, s->section + SECTION_HEADER);
-    return brio_e57_pen_patch(&w->pen, header, sizeof header);
+    return e57_pen_patch(&w->pen, header, sizeof header);
 }
 
 /* Encodes a coordinate of points: their differences from the scanner's place. */
@@ -196,7 +312,7 @@ static void encode_axis(e57_writer *w, const brio_mesh *m, const brio_scan_part 
         s->low[f->from] = fmin(s->low[f->from], y);
         s->high[f->from] = fmax(s->high[f->from], y);
         double found = place == 0 ? y : y + place;
-        if (found != x) w->moved = fmax(w->moved, fabs(found - x) * sqrt(3));
+        if (found != x) w->scans.moved = fmax(w->scans.moved, fabs(found - x) * sqrt(3));
     }
 }
 
@@ -237,7 +353,7 @@ static brio_status write_packet(e57_writer *w, const brio_mesh *m, const brio_sc
     }
     for (; at % 4; at++) w->packet[at] = 0;
     brio_put_le16(w->packet + 2, (uint16_t)(at - 1));
-    return brio_e57_put(&w->pen, w->packet, at);
+    return e57_put(&w->pen, w->packet, at);
 }
 
 static brio_status write_part(brio_output *out, const brio_mesh *m, e57_writer *w, const brio_scan_part *part) {
@@ -258,22 +374,11 @@ static brio_status write_rows(brio_output *out, const brio_write_job *job, void 
     e57_writer *w = state;
     brio_scan_part part = {.end = 0};
     w->pen.out = out;
-    w->moved = 0;
+    w->scans.moved = 0;
     while (brio_scans_next(&w->scans, job->mesh, &part)) BRIO_TRY(write_part(out, job->mesh, w, &part));
-    w->rounds |= w->moved > 0;
+    w->scans.rounds |= w->scans.moved > 0;
 done:
     return status;
-}
-
-static bool rounds(const void *state) {
-    const e57_writer *w = state;
-    return w->rounds;
-}
-
-static double moved(const void *state, const brio_mesh *block) {
-    const e57_writer *w = state;
-    (void)block;
-    return w->moved;
 }
 
 /* --- the XML section --- */
@@ -282,7 +387,7 @@ static double moved(const void *state, const brio_mesh *block) {
 static brio_status put_number(brio_e57_pen *p, const char *name, bool real, double x) {
     char digits[BRIO_NUMBER_LENGTH + 1];
     digits[real ? brio_print_double(digits, x) : brio_print_integer(digits, (int64_t)x)] = 0;
-    return brio_e57_put_text(p, "<%s type=\"%s\">%s</%s>\n", name, real ? "Float" : "Integer", digits, name);
+    return e57_put_text(p, "<%s type=\"%s\">%s</%s>\n", name, real ? "Float" : "Integer", digits, name);
 }
 
 /* Writes a character of n bytes, or what stands for it: XML has no control characters but white space, and not the last two
@@ -292,7 +397,7 @@ static brio_status put_character(brio_e57_pen *p, const char *c, size_t n) {
     bool control = (unsigned char)*c < ' ' && !strchr("\t\n\r", *c),
          last = n == 3 && !memcmp(c, "\xef\xbf", 2) && c[2] >= '\xbe';
     if (control || last) escaped = "?";
-    return escaped ? brio_e57_put(p, escaped, strlen(escaped)) : brio_e57_put(p, c, n);
+    return escaped ? e57_put(p, escaped, strlen(escaped)) : e57_put(p, c, n);
 }
 
 /* Writes a text of an element. Bytes that are not UTF-8 are taken for Latin-1. */
@@ -301,7 +406,7 @@ static brio_status put_escaped(brio_e57_pen *p, const char *text) {
     for (size_t n; *text; text += n) {
         n = brio_utf8_length(text);
         const char latin[2] = {(char)(0xc0 | (unsigned char)*text >> 6), (char)(0x80 | (*text & 0x3f))};
-        BRIO_TRY(n ? put_character(p, text, n) : brio_e57_put(p, latin, sizeof latin));
+        BRIO_TRY(n ? put_character(p, text, n) : e57_put(p, latin, sizeof latin));
         n += !n;
     }
 done:
@@ -311,19 +416,19 @@ done:
 /* A name for the content: the same bytes have the same one. */
 static brio_status put_guid(brio_e57_pen *p, uint64_t sum, uint64_t number) {
     uint64_t other = (sum ^ (number + 1)) * UINT64_C(0x9e3779b97f4a7c15);
-    return brio_e57_put_text(p, "<guid type=\"String\">{%08X-%04X-5%03X-8%03X-%012" PRIX64 "}</guid>\n",
-                             (unsigned)(sum >> 32), (unsigned)(sum >> 16 & 0xffff), (unsigned)(sum & 0xfff),
-                             (unsigned)(other >> 52), other & UINT64_C(0xffffffffffff));
+    return e57_put_text(p, "<guid type=\"String\">{%08X-%04X-5%03X-8%03X-%012" PRIX64 "}</guid>\n",
+                        (unsigned)(sum >> 32), (unsigned)(sum >> 16 & 0xffff), (unsigned)(sum & 0xfff),
+                        (unsigned)(other >> 52), other & UINT64_C(0xffffffffffff));
 }
 
 static brio_status put_pose(brio_e57_pen *p, const brio_scan *scan) {
     brio_status status = BRIO_OK;
     if (scan->place[0] == 0 && scan->place[1] == 0 && scan->place[2] == 0) return BRIO_OK;
-    BRIO_TRY(brio_e57_put_text(p, "<pose type=\"Structure\">\n<rotation type=\"Structure\">\n"));
+    BRIO_TRY(e57_put_text(p, "<pose type=\"Structure\">\n<rotation type=\"Structure\">\n"));
     for (int k = 0; k < 4; k++) BRIO_TRY(put_number(p, (const char *[]){"w", "x", "y", "z"}[k], true, k == 0));
-    BRIO_TRY(brio_e57_put_text(p, "</rotation>\n<translation type=\"Structure\">\n"));
+    BRIO_TRY(e57_put_text(p, "</rotation>\n<translation type=\"Structure\">\n"));
     for (int k = 0; k < AXES; k++) BRIO_TRY(put_number(p, (const char *[]){"x", "y", "z"}[k], true, scan->place[k]));
-    BRIO_TRY(brio_e57_put_text(p, "</translation>\n</pose>\n"));
+    BRIO_TRY(e57_put_text(p, "</translation>\n</pose>\n"));
 done:
     return status;
 }
@@ -333,12 +438,12 @@ static brio_status put_bounds(brio_e57_pen *p, const written *s) {
                                                {"xMaximum", "yMaximum", "zMaximum"}};
     brio_status status = BRIO_OK;
     if (!(s->low[0] <= s->high[0])) return BRIO_OK;
-    BRIO_TRY(brio_e57_put_text(p, "<cartesianBounds type=\"Structure\">\n"));
+    BRIO_TRY(e57_put_text(p, "<cartesianBounds type=\"Structure\">\n"));
     for (int k = 0; k < AXES; k++) {
         BRIO_TRY(put_number(p, names[0][k], true, s->low[k]));
         BRIO_TRY(put_number(p, names[1][k], true, s->high[k]));
     }
-    BRIO_TRY(brio_e57_put_text(p, "</cartesianBounds>\n"));
+    BRIO_TRY(e57_put_text(p, "</cartesianBounds>\n"));
 done:
     return status;
 }
@@ -357,20 +462,20 @@ static brio_status put_limits(e57_writer *w, const written *s) {
     const field *intensity = field_named(w, "intensity"), *red = field_named(w, "colorRed");
     char name[BRIO_E57_NAME];
     if (intensity && s->least <= s->most && isfinite(s->least) && isfinite(s->most)) {
-        BRIO_TRY(brio_e57_put_text(p, "<intensityLimits type=\"Structure\">\n"));
+        BRIO_TRY(e57_put_text(p, "<intensityLimits type=\"Structure\">\n"));
         BRIO_TRY(put_number(p, "intensityMinimum", is_real(intensity->type), s->least));
         BRIO_TRY(put_number(p, "intensityMaximum", is_real(intensity->type), s->most));
-        BRIO_TRY(brio_e57_put_text(p, "</intensityLimits>\n"));
+        BRIO_TRY(e57_put_text(p, "</intensityLimits>\n"));
     }
     if (!red) return BRIO_OK;
-    BRIO_TRY(brio_e57_put_text(p, "<colorLimits type=\"Structure\">\n"));
+    BRIO_TRY(e57_put_text(p, "<colorLimits type=\"Structure\">\n"));
     for (int k = 0; k < 3; k++) {
         snprintf(name, sizeof name, "%sMinimum", colours[k]);
         BRIO_TRY(put_number(p, name, false, 0));
         snprintf(name, sizeof name, "%sMaximum", colours[k]);
         BRIO_TRY(put_number(p, name, false, red->type == BRIO_SCALAR_UINT8 ? UINT8_MAX : UINT16_MAX));
     }
-    BRIO_TRY(brio_e57_put_text(p, "</colorLimits>\n"));
+    BRIO_TRY(e57_put_text(p, "</colorLimits>\n"));
 done:
     return status;
 }
@@ -381,29 +486,29 @@ static brio_status put_field(brio_e57_pen *p, const field *f) {
     } ranges[BRIO_SCALAR_END] = {[BRIO_SCALAR_INT8] = {INT8_MIN, INT8_MAX},    [BRIO_SCALAR_UINT8] = {0, UINT8_MAX},
                                  [BRIO_SCALAR_INT16] = {INT16_MIN, INT16_MAX}, [BRIO_SCALAR_UINT16] = {0, UINT16_MAX},
                                  [BRIO_SCALAR_INT32] = {INT32_MIN, INT32_MAX}, [BRIO_SCALAR_UINT32] = {0, UINT32_MAX}};
-    if (f->valid) return brio_e57_put_text(p, "<%s type=\"Integer\" minimum=\"0\" maximum=\"0\"/>\n", f->element);
+    if (f->valid) return e57_put_text(p, "<%s type=\"Integer\" minimum=\"0\" maximum=\"0\"/>\n", f->element);
     if (is_real(f->type))
-        return brio_e57_put_text(p, "<%s type=\"Float\" precision=\"%s\"/>\n", f->element,
-                                 f->type == BRIO_SCALAR_FLOAT32 ? "single" : "double");
-    return brio_e57_put_text(p, "<%s type=\"Integer\" minimum=\"%" PRId64 "\" maximum=\"%" PRId64 "\"/>\n", f->element,
-                             (int64_t)ranges[f->type].least, (int64_t)ranges[f->type].most);
+        return e57_put_text(p, "<%s type=\"Float\" precision=\"%s\"/>\n", f->element,
+                            f->type == BRIO_SCALAR_FLOAT32 ? "single" : "double");
+    return e57_put_text(p, "<%s type=\"Integer\" minimum=\"%" PRId64 "\" maximum=\"%" PRId64 "\"/>\n", f->element,
+                        (int64_t)ranges[f->type].least, (int64_t)ranges[f->type].most);
 }
 
 static brio_status put_scan(e57_writer *w, size_t i) {
     brio_status status = BRIO_OK;
     brio_e57_pen *p = &w->pen;
-    BRIO_TRY(brio_e57_put_text(p, "<vectorChild type=\"Structure\">\n"));
+    BRIO_TRY(e57_put_text(p, "<vectorChild type=\"Structure\">\n"));
     BRIO_TRY(put_guid(p, w->list[i].sum, i + 1));
     BRIO_TRY(put_pose(p, &w->scans.list[i]));
     BRIO_TRY(put_bounds(p, &w->list[i]));
     BRIO_TRY(put_limits(w, &w->list[i]));
-    BRIO_TRY(brio_e57_put_text(p,
-                               "<points type=\"CompressedVector\" fileOffset=\"%" PRIu64 "\" recordCount=\"%" PRIu64
-                               "\">\n<prototype type=\"Structure\">\n",
-                               w->list[i].section, w->scans.list[i].points));
+    BRIO_TRY(e57_put_text(p,
+                          "<points type=\"CompressedVector\" fileOffset=\"%" PRIu64 "\" recordCount=\"%" PRIu64
+                          "\">\n<prototype type=\"Structure\">\n",
+                          w->list[i].section, w->scans.list[i].points));
     for (size_t f = 0; f < w->num_fields; f++) BRIO_TRY(put_field(p, &w->fields[f]));
-    BRIO_TRY(brio_e57_put_text(p, "</prototype>\n<codecs type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n"
-                                  "</points>\n</vectorChild>\n"));
+    BRIO_TRY(e57_put_text(p, "</prototype>\n<codecs type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n"
+                             "</points>\n</vectorChild>\n"));
 done:
     return status;
 }
@@ -411,45 +516,29 @@ done:
 static brio_status put_xml(e57_writer *w, const brio_write_job *job) {
     brio_status status = BRIO_OK;
     brio_e57_pen *p = &w->pen;
-    BRIO_TRY(brio_e57_put_text(
-        p, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" xmlns=\"%s\"", E57_NAMES));
-    BRIO_TRY(brio_e57_put_text(p, " xmlns:nor=\"%s\" xmlns:brio=\"%s\">\n", NORMAL_NAMES, OWN_NAMES));
-    BRIO_TRY(brio_e57_put_text(p, "<formatName type=\"String\">ASTM E57 3D Imaging Data File</formatName>\n"));
+    BRIO_TRY(e57_put_text(p, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" xmlns=\"%s\"",
+                          E57_NAMES));
+    BRIO_TRY(e57_put_text(p, " xmlns:nor=\"%s\" xmlns:brio=\"%s\">\n", NORMAL_NAMES, OWN_NAMES));
+    BRIO_TRY(e57_put_text(p, "<formatName type=\"String\">ASTM E57 3D Imaging Data File</formatName>\n"));
     BRIO_TRY(put_guid(p, p->sum, 0));
-    BRIO_TRY(brio_e57_put_text(p, "<versionMajor type=\"Integer\">1</versionMajor>\n"
-                                  "<versionMinor type=\"Integer\">0</versionMinor>\n"
-                                  "<e57LibraryVersion type=\"String\">"));
+    BRIO_TRY(e57_put_text(p, "<versionMajor type=\"Integer\">1</versionMajor>\n"
+                             "<versionMinor type=\"Integer\">0</versionMinor>\n"
+                             "<e57LibraryVersion type=\"String\">"));
     BRIO_TRY(put_escaped(p, job->options->comment ? job->options->comment : "brio"));
-    BRIO_TRY(brio_e57_put_text(p, "</e57LibraryVersion>\n"));
+    BRIO_TRY(e57_put_text(p, "</e57LibraryVersion>\n"));
     if (w->crs) {
-        BRIO_TRY(brio_e57_put_text(p, "<coordinateMetadata type=\"String\">"));
+        BRIO_TRY(e57_put_text(p, "<coordinateMetadata type=\"String\">"));
         BRIO_TRY(put_escaped(p, w->crs));
-        BRIO_TRY(brio_e57_put_text(p, "</coordinateMetadata>\n"));
+        BRIO_TRY(e57_put_text(p, "</coordinateMetadata>\n"));
     }
-    BRIO_TRY(brio_e57_put_text(p, "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n"));
+    BRIO_TRY(e57_put_text(p, "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n"));
     for (size_t i = 0; i < w->scans.count; i++) BRIO_TRY(put_scan(w, i));
-    BRIO_TRY(
-        brio_e57_put_text(p, "</data3D>\n<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n</e57Root>\n"));
+    BRIO_TRY(e57_put_text(p, "</data3D>\n<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n</e57Root>\n"));
 done:
     return status;
 }
 
 /* --- the file --- */
-
-static brio_status survey(brio_context *ctx, const brio_write_job *job, void *state) {
-    e57_writer *w = state;
-    return brio_scans_see(ctx, &w->scans, job->mesh);
-}
-
-static bool surveyed(void *state) {
-    (void)state;
-    return true;
-}
-
-static uint64_t surveyed_points(const void *state) {
-    const e57_writer *w = state;
-    return w->scans.points;
-}
 
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
@@ -467,7 +556,7 @@ static brio_status begin(brio_output *out, const brio_write_job *job, void *stat
     }
     BRIO_TRY(plan(out, job, w));
     w->pen.out = out;
-    BRIO_TRY(brio_e57_pen_begin(&w->pen));
+    BRIO_TRY(e57_pen_begin(&w->pen));
 done:
     return status;
 }
@@ -483,15 +572,14 @@ static brio_status end(brio_output *out, const brio_write_job *job, void *state)
         BRIO_TRY(end_scan(w));
     }
     assert(w->num_written == w->scans.count);
-    uint64_t xml = brio_e57_pen_offset(&w->pen);
+    uint64_t xml = e57_pen_offset(&w->pen);
     BRIO_TRY(put_xml(w, job));
-    uint64_t length = brio_e57_pen_offset(&w->pen) - xml,
-             pages = (xml + length + BRIO_E57_CONTENT - 1) / BRIO_E57_CONTENT;
+    uint64_t length = e57_pen_offset(&w->pen) - xml, pages = (xml + length + BRIO_E57_CONTENT - 1) / BRIO_E57_CONTENT;
     brio_put_le64(header + 16, pages * BRIO_E57_PAGE);
     brio_put_le64(header + 24, brio_e57_physical(xml));
     brio_put_le64(header + 32, length);
     brio_put_le64(header + 40, BRIO_E57_PAGE);
-    BRIO_TRY(brio_e57_pen_end(&w->pen, header, sizeof header));
+    BRIO_TRY(e57_pen_end(&w->pen, header, sizeof header));
 done:
     return status;
 }
@@ -499,7 +587,7 @@ done:
 static void free_state(brio_context *ctx, void *state) {
     e57_writer *w = state;
     brio_scans_free(ctx, &w->scans);
-    brio_e57_pen_free(&w->pen, ctx);
+    e57_pen_free(&w->pen, ctx);
     brio_release(ctx, w->fields);
     brio_release(ctx, w->list);
     brio_release(ctx, w->packet);
@@ -507,13 +595,9 @@ static void free_state(brio_context *ctx, void *state) {
 }
 
 const brio_row_format brio_e57_rows = {.state = sizeof(e57_writer),
-                                       .survey = survey,
-                                       .surveyed = surveyed,
-                                       .surveyed_points = surveyed_points,
+                                       BRIO_SCANS_ROWS,
                                        .begin = begin,
                                        .rows = write_rows,
                                        .end = end,
                                        .free = free_state,
-                                       .renames = renames,
-                                       .rounds = rounds,
-                                       .moved = moved};
+                                       .renames = renames};

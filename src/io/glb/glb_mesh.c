@@ -7,13 +7,329 @@
  * whose attributes are those of the one before it has that one's vertices.
  *
  * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
-#include "io/glb/glb_mesh.h"
+#include "io/glb/glb.h"
 #include "base/memory.h"
+#include "io/little_endian.h"
 #include "io/scalar.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* --- the numbers of an accessor --- */
+
+/* The numbers of an accessor of a glTF file.
+ *
+ * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+
+/* Rows of numbers, all of which lie in a buffer. */
+typedef struct brio_glb_column {
+    const char *first;
+    uint64_t stride, count;
+    int type, components;
+    bool normalized;
+} brio_glb_column;
+
+static size_t size_of(int type) {
+    switch (type) {
+    case BRIO_GLB_INT8:
+    case BRIO_GLB_UINT8:
+        return 1;
+    case BRIO_GLB_INT16:
+    case BRIO_GLB_UINT16:
+        return 2;
+    case BRIO_GLB_UINT32:
+    case BRIO_GLB_FLOAT:
+        return 4;
+    default:
+        return 0;
+    }
+}
+
+/* Finds the bytes of a view. */
+static brio_status view_bytes(const brio_glb_file *file, uint32_t view, const char **bytes) {
+    brio_status status = BRIO_OK;
+    const brio_glb_scene *s = &file->scene;
+    BRIO_REQUIRE(file->ctx, view < s->num_views && s->views[view].buffer < s->num_buffers, BRIO_ERR_FORMAT,
+                 "%s: bufferViews[%u]: expected a view of a buffer of the file", file->name, view);
+    const brio_glb_view *v = &s->views[view];
+    const brio_glb_buffer *buffer = &s->buffers[v->buffer];
+    bool outside = !buffer->bytes && (v->buffer || !file->binary);
+    BRIO_REQUIRE(file->ctx, !outside, BRIO_ERR_FORMAT, "%s: buffers[%u] has no data in the file", file->name,
+                 v->buffer);
+    uint64_t size = buffer->bytes || buffer->size < file->binary_size ? buffer->size : file->binary_size;
+    BRIO_REQUIRE(file->ctx, v->offset <= size && v->size <= size - v->offset, BRIO_ERR_FORMAT,
+                 "%s: bufferViews[%u] has bytes %" PRIu64 " to %" PRIu64 " of buffers[%u], which has %" PRIu64,
+                 file->name, view, v->offset, v->offset + v->size, v->buffer, size);
+    *bytes = (buffer->bytes ? buffer->bytes : file->binary) + v->offset;
+done:
+    return status;
+}
+
+/* Returns whether all rows lie in the view. */
+static bool fits(const brio_glb_accessor *a, const brio_glb_view *v, uint64_t stride, uint64_t row) {
+    uint64_t end;
+    if (!a->count || stride < row) return false;
+    if (__builtin_mul_overflow(a->count - 1, stride, &end) || __builtin_add_overflow(end, row, &end)) return false;
+    return !__builtin_add_overflow(end, a->offset, &end) && end <= v->size;
+}
+
+/* Finds the numbers of an accessor, and checks that all of them lie in their buffer.
+ *  what  what the accessor is for, for the message.
+ *  Returns BRIO_OK or BRIO_ERR_FORMAT. */
+static brio_status glb_column_of(const brio_glb_file *file, uint32_t accessor, const char *what, brio_glb_column *out) {
+    brio_status status = BRIO_OK;
+    const brio_glb_scene *s = &file->scene;
+    const char *bytes = NULL;
+    BRIO_REQUIRE(file->ctx, accessor < s->num_accessors, BRIO_ERR_FORMAT, "%s: %s: accessor %u, the file has %zu",
+                 file->name, what, accessor, s->num_accessors);
+    const brio_glb_accessor *a = &s->accessors[accessor];
+    uint64_t row = (uint64_t)a->components * size_of(a->type);
+    BRIO_REQUIRE(file->ctx, row, BRIO_ERR_FORMAT, "%s: accessors[%u]: expected SCALAR to VEC4 of a componentType",
+                 file->name, accessor);
+    BRIO_REQUIRE(file->ctx, !a->sparse, BRIO_ERR_FORMAT,
+                 "%s: accessors[%u] is sparse, which is not read: export it without", file->name, accessor);
+    BRIO_REQUIRE(file->ctx, a->view != BRIO_GLB_NONE, BRIO_ERR_FORMAT, "%s: accessors[%u] has no bufferView",
+                 file->name, accessor);
+    BRIO_TRY(view_bytes(file, a->view, &bytes));
+    const brio_glb_view *v = &s->views[a->view];
+    uint64_t stride = v->stride ? v->stride : row;
+    BRIO_REQUIRE(file->ctx, fits(a, v, stride, row), BRIO_ERR_FORMAT,
+                 "%s: accessors[%u] has %" PRIu64 " rows of %" PRIu64 " bytes, which are not in its view of %" PRIu64
+                 " bytes",
+                 file->name, accessor, a->count, row, v->size);
+    *out = (brio_glb_column){bytes + a->offset, stride, a->count, a->type, a->components, a->normalized};
+done:
+    return status;
+}
+
+/* Returns a number as it is in the file. */
+static double glb_raw(const brio_glb_column *c, uint64_t row, int component) {
+    const char *p = c->first + row * c->stride + (size_t)component * size_of(c->type);
+    float value;
+    uint32_t bits;
+    switch (c->type) {
+    case BRIO_GLB_INT8:
+        return *(const int8_t *)p;
+    case BRIO_GLB_UINT8:
+        return *(const uint8_t *)p;
+    case BRIO_GLB_INT16:
+        return (int16_t)brio_le16(p);
+    case BRIO_GLB_UINT16:
+        return brio_le16(p);
+    case BRIO_GLB_UINT32:
+        return brio_le32(p);
+    default:
+        bits = brio_le32(p);
+        memcpy(&value, &bits, sizeof value);
+        return (double)value;
+    }
+}
+
+/* Returns a number with its scale: of normalized integers a number from 0 or -1 to 1. */
+static double glb_scaled(const brio_glb_column *c, uint64_t row, int component) {
+    double raw = glb_raw(c, row, component);
+    if (!c->normalized) return raw;
+    switch (c->type) {
+    case BRIO_GLB_INT8:
+        return raw < -127 ? -1 : raw / 127;
+    case BRIO_GLB_UINT8:
+        return raw / 255;
+    case BRIO_GLB_INT16:
+        return raw < -32767 ? -1 : raw / 32767;
+    case BRIO_GLB_UINT16:
+        return raw / 65535;
+    default:
+        return raw;
+    }
+}
+
+/* --- faces and edges --- */
+
+/* The primitives of a glTF file as triangles and edges.
+ *
+ * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+
+typedef struct {
+    const brio_glb_file *file;
+    brio_builder *builder;
+    brio_glb_column indices;
+    bool indexed, flip;
+    uint64_t first, count; /* vertices */
+} primitive;
+
+/* Returns corner i as a vertex of the mesh. */
+static brio_status corner(const primitive *p, uint64_t i, double *vertex) {
+    brio_status status = BRIO_OK;
+    double index = p->indexed ? glb_raw(&p->indices, i, 0) : (double)i;
+    BRIO_REQUIRE(p->file->ctx, index < (double)p->count, BRIO_ERR_FORMAT,
+                 "%s: index %" PRIu64 " (counted from 0) of a primitive: vertex %.17g, it has %" PRIu64, p->file->name,
+                 i, index, p->count);
+    *vertex = (double)p->first + index;
+done:
+    return status;
+}
+
+static brio_status add_triangle(const primitive *p, uint64_t a, uint64_t b, uint64_t c) {
+    brio_status status = BRIO_OK;
+    const uint64_t order[3] = {a, p->flip ? c : b, p->flip ? b : c};
+    double vertex = 0;
+    for (int i = 0; i < 3; i++) {
+        BRIO_TRY(corner(p, order[i], &vertex));
+        BRIO_TRY(brio_builder_corner(p->builder, vertex));
+    }
+    BRIO_TRY(brio_builder_face(p->builder));
+done:
+    return status;
+}
+
+static brio_status add_edge(const primitive *p, uint64_t a, uint64_t b) {
+    brio_status status = BRIO_OK;
+    double ends[2];
+    BRIO_TRY(corner(p, a, &ends[0]));
+    BRIO_TRY(corner(p, b, &ends[1]));
+    BRIO_TRY(brio_builder_edge(p->builder, ends));
+done:
+    return status;
+}
+
+static brio_status add_lines(const primitive *p, brio_glb_mode mode, uint64_t n) {
+    brio_status status = BRIO_OK;
+    uint64_t step = mode == BRIO_GLB_LINES ? 2 : 1;
+    for (uint64_t i = 0; i + 1 < n; i += step) BRIO_TRY(add_edge(p, i, i + 1));
+    if (mode == BRIO_GLB_LINE_LOOP && n > 1) BRIO_TRY(add_edge(p, n - 1, 0));
+done:
+    return status;
+}
+
+static brio_status add_triangles(const primitive *p, brio_glb_mode mode, uint64_t n) {
+    brio_status status = BRIO_OK;
+    uint64_t step = mode == BRIO_GLB_TRIANGLES ? 3 : 1;
+    for (uint64_t i = 0; i + 2 < n; i += step) {
+        uint64_t odd = mode == BRIO_GLB_TRIANGLE_STRIP ? i % 2 : 0;
+        if (mode == BRIO_GLB_TRIANGLE_FAN)
+            BRIO_TRY(add_triangle(p, 0, i + 1, i + 2));
+        else
+            BRIO_TRY(add_triangle(p, i, i + 1 + odd, i + 2 - odd));
+    }
+done:
+    return status;
+}
+
+/* Adds the faces and edges of a primitive.
+ *  first, count  its vertices.   flip  whether faces are turned round, because the place is a mirror image.
+ *  Returns BRIO_OK, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
+static brio_status glb_add_cells(const brio_glb_file *file, brio_builder *b, const brio_glb_primitive *given,
+                                 const uint64_t vertices[2], bool flip) {
+    brio_status status = BRIO_OK;
+    primitive p = {.file = file, .builder = b, .flip = flip, .first = vertices[0], .count = vertices[1]};
+    p.indexed = given->indices != BRIO_GLB_NONE;
+    if (p.indexed) BRIO_TRY(glb_column_of(file, given->indices, "indices", &p.indices));
+    bool whole = !p.indexed || (p.indices.components == 1 && p.indices.type != BRIO_GLB_FLOAT);
+    BRIO_REQUIRE(file->ctx, whole, BRIO_ERR_FORMAT, "%s: accessors[%u]: indices are no whole numbers", file->name,
+                 given->indices);
+    uint64_t n = p.indexed ? p.indices.count : p.count;
+    BRIO_REQUIRE(
+        file->ctx, (given->mode != BRIO_GLB_TRIANGLES || n % 3 == 0) && (given->mode != BRIO_GLB_LINES || n % 2 == 0),
+        BRIO_ERR_FORMAT, "%s: a primitive of mode %d has %" PRIu64 " corners", file->name, (int)given->mode, n);
+    if (given->mode == BRIO_GLB_POINTS) return BRIO_OK;
+    BRIO_TRY(given->mode < BRIO_GLB_TRIANGLES ? add_lines(&p, given->mode, n) : add_triangles(&p, given->mode, n));
+done:
+    return status;
+}
+
+/* --- places of meshes --- */
+
+/* The meshes of a glTF file at their places: the matrices of the nodes multiplied from the roots down.
+ *
+ * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+
+/* A mesh of the file at its place. */
+typedef struct brio_glb_instance {
+    double matrix[16]; /* column by column, from the mesh to the scene */
+    uint32_t mesh;
+} brio_glb_instance;
+
+typedef struct {
+    double matrix[16]; /* of the parent */
+    uint32_t node;
+} task;
+
+typedef struct {
+    const brio_glb_file *file;
+    task *stack;
+    size_t size, capacity;
+    bool *visited;
+} walk;
+
+/* c = a b, of matrices whose last row is 0 0 0 1. Products with 0 and 1 leave numbers as they are. */
+static void multiply(const double *a, const double *b, double *c) {
+    for (int j = 0; j < 4; j++) {
+        for (int i = 0; i < 3; i++) {
+            double sum = a[i] * b[4 * j] + a[4 + i] * b[4 * j + 1] + a[8 + i] * b[4 * j + 2];
+            c[4 * j + i] = j == 3 ? sum + a[12 + i] : sum;
+        }
+        c[4 * j + 3] = j == 3;
+    }
+}
+
+/* Puts nodes on the stack so that the first one comes first. */
+static brio_status push(walk *w, const double *matrix, const uint32_t *nodes, size_t count) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(w->file->ctx, w->stack, w->capacity, w->size + count));
+    for (size_t i = count; i > 0; i--) {
+        task *t = &w->stack[w->size++];
+        memcpy(t->matrix, matrix, sizeof t->matrix);
+        t->node = nodes[i - 1];
+    }
+done:
+    return status;
+}
+
+/* Takes a node from the stack, and puts its children there.   out  its mesh and its place. */
+static brio_status visit(walk *w, brio_glb_instance *out) {
+    brio_status status = BRIO_OK;
+    const brio_glb_scene *s = &w->file->scene;
+    const task t = w->stack[--w->size];
+    const brio_glb_node *node = &s->nodes[t.node];
+    BRIO_REQUIRE(w->file->ctx, !w->visited[t.node], BRIO_ERR_FORMAT,
+                 "%s: nodes[%u] is there twice: expected nodes that are a tree", w->file->name, t.node);
+    w->visited[t.node] = true;
+    BRIO_REQUIRE(w->file->ctx, node->mesh == BRIO_GLB_NONE || node->mesh < s->num_meshes, BRIO_ERR_FORMAT,
+                 "%s: nodes[%u].mesh: the file has %zu meshes", w->file->name, t.node, s->num_meshes);
+    multiply(t.matrix, node->matrix, out->matrix);
+    out->mesh = node->mesh;
+    BRIO_TRY(push(w, out->matrix, s->children + node->child, node->children));
+done:
+    return status;
+}
+
+/* Finds the meshes of the scene, in the order of its tree.   out  owned by the caller (brio_release), also on failure.
+ *  Returns BRIO_OK, BRIO_ERR_FORMAT (no tree), BRIO_ERR_NO_MEMORY. */
+static brio_status glb_instances(const brio_glb_file *file, brio_glb_instance **out, size_t *count) {
+    static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    brio_status status = BRIO_OK;
+    const brio_glb_scene *s = &file->scene;
+    walk w = {.file = file};
+    size_t capacity = 0;
+    *out = NULL;
+    *count = 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(file->ctx, w.visited, s->num_nodes));
+    BRIO_TRY(push(&w, identity, s->roots, s->num_roots));
+    while (w.size) {
+        brio_glb_instance instance;
+        BRIO_TRY(visit(&w, &instance));
+        if (instance.mesh == BRIO_GLB_NONE) continue;
+        BRIO_TRY(BRIO_RESERVE(file->ctx, *out, capacity, *count + 1));
+        (*out)[(*count)++] = instance;
+    }
+done:
+    brio_release(file->ctx, w.stack);
+    brio_release(file->ctx, w.visited);
+    return status;
+}
+
+/* --- vertices --- */
 
 /* Chosen. */
 enum { MOST_PROPERTIES = 256 };
@@ -62,7 +378,7 @@ static brio_status positions_of(const builder *b, brio_glb_column *out) {
                  "%s: a primitive is compressed by Draco, which is not read: export it without", file->name);
     const brio_glb_attribute *a = attribute_of(file, b->primitive, "POSITION");
     BRIO_REQUIRE(file->ctx, a, BRIO_ERR_FORMAT, "%s: a primitive without POSITION", file->name);
-    BRIO_TRY(brio_glb_column_of(file, a->accessor, a->name, out));
+    BRIO_TRY(glb_column_of(file, a->accessor, a->name, out));
     BRIO_REQUIRE(file->ctx, out->components == 3, BRIO_ERR_FORMAT, "%s: accessors[%u]: POSITION is no VEC3", file->name,
                  a->accessor);
 done:
@@ -129,7 +445,7 @@ static brio_status note_primitive(builder *b) {
                 BRIO_TRY(brio_builder_leave_out(b->builder, name_of_other(a[i].name)));
             continue;
         }
-        BRIO_TRY(brio_glb_column_of(b->file, a[i].accessor, a[i].name, &c));
+        BRIO_TRY(glb_column_of(b->file, a[i].accessor, a[i].name, &c));
         BRIO_REQUIRE(b->file->ctx,
                      c.count >= positions.count && (!normal || c.components == 3) && (!colour || c.components >= 3),
                      BRIO_ERR_FORMAT,
@@ -183,7 +499,7 @@ static void place_positions(const builder *b, const brio_glb_column *c, uint64_t
     const double *m = b->instance->matrix;
     for (uint64_t v = 0; v < c->count; v++) {
         double *to = b->builder->mesh->vertices + 3 * (first + v), p[3];
-        for (int k = 0; k < 3; k++) p[k] = brio_glb_scaled(c, v, k);
+        for (int k = 0; k < 3; k++) p[k] = glb_scaled(c, v, k);
         for (int k = 0; k < 3; k++) {
             double turned = b->plain ? p[k] : m[k] * p[0] + m[4 + k] * p[1] + m[8 + k] * p[2];
             to[k] = m[12 + k] != 0 ? turned + m[12 + k] : turned;
@@ -193,8 +509,8 @@ static void place_positions(const builder *b, const brio_glb_column *c, uint64_t
 
 static double normal_component(const builder *b, const brio_glb_column *c, uint64_t v, int component) {
     double n[3], turned[3], length = 0;
-    if (b->plain) return brio_glb_scaled(c, v, component);
-    for (int k = 0; k < 3; k++) n[k] = brio_glb_scaled(c, v, k);
+    if (b->plain) return glb_scaled(c, v, component);
+    for (int k = 0; k < 3; k++) n[k] = glb_scaled(c, v, k);
     for (int k = 0; k < 3; k++) {
         const double *m = b->normal_matrix;
         turned[k] = m[k] * n[0] + m[3 + k] * n[1] + m[6 + k] * n[2];
@@ -219,7 +535,7 @@ static void store(const builder *b, const property *p, const brio_glb_column *c,
             if (p->normal)
                 value = normal_component(b, c, v, p->component);
             else
-                value = raw ? brio_glb_raw(c, v, p->component) : brio_glb_scaled(c, v, p->component);
+                value = raw ? glb_raw(c, v, p->component) : glb_scaled(c, v, p->component);
         }
         brio_scalar_store((char *)to->data + (first + v) * size, p->type, value);
     }
@@ -235,7 +551,7 @@ static brio_status add_vertices(builder *b, uint64_t vertices[2]) {
     place_positions(b, &positions, vertices[0]);
     for (size_t i = 0; i < b->num_properties; i++) {
         const brio_glb_attribute *a = attribute_of(b->file, b->primitive, b->properties[i].attribute);
-        if (a) BRIO_TRY(brio_glb_column_of(b->file, a->accessor, a->name, &c));
+        if (a) BRIO_TRY(glb_column_of(b->file, a->accessor, a->name, &c));
         store(b, &b->properties[i], a ? &c : NULL, vertices[0], positions.count);
     }
 done:
@@ -254,7 +570,7 @@ static brio_status add_instance(builder *b, const brio_glb_instance *instance) {
     for (size_t i = 0; i < mesh->primitives; i++) {
         b->primitive = &p[i];
         if (i == 0 || !same_attributes(b->file, &p[i - 1], &p[i])) BRIO_TRY(add_vertices(b, vertices));
-        BRIO_TRY(brio_glb_add_cells(b->file, b->builder, &p[i], vertices, b->flip));
+        BRIO_TRY(glb_add_cells(b->file, b->builder, &p[i], vertices, b->flip));
     }
 done:
     return status;
@@ -308,7 +624,7 @@ brio_status brio_glb_add_scene(const brio_glb_file *file, brio_builder *out) {
     builder *b = NULL;
     made *meshes = NULL;
     size_t count = 0;
-    BRIO_TRY(brio_glb_instances(file, &instances, &count));
+    BRIO_TRY(glb_instances(file, &instances, &count));
     BRIO_TRY(BRIO_ALLOC_ZERO(file->ctx, b, 1));
     b->file = file;
     b->builder = out;

@@ -5,7 +5,7 @@
  * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
 #include "base/memory.h"
 #include "io/formats.h"
-#include "io/glb/glb_mesh.h"
+#include "io/glb/glb.h"
 #include "io/little_endian.h"
 #include "io/textrow.h"
 #include <inttypes.h>

@@ -3,14 +3,272 @@
  * Version 1.5 may count times from an own origin: they become adjusted standard GPS times, which all versions know.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. ASPRS. LAS specification 1.5. 2025. */
-#include "io/las/las_header.h"
+#include "io/las/las.h"
 #include "base/memory.h"
 #include "base/utf8.h"
+#include "io/crs.h"
 #include "io/little_endian.h"
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* --- extra bytes --- */
+
+/* Descriptions of extra bytes: the numbers of a record behind the fields of its format.
+ *
+ * Descriptions come in records of variable length, of which there may be several, before the points or behind them: all of
+ * them are one list, and the numbers lie in its order. What a description does not give, or the record has no room for, is
+ * left out and named.
+ *
+ * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
+
+enum { TYPES = 10 /* of one number; the next ten are two numbers, the last ten three */, MOST_TYPE = 3 * TYPES };
+/* no-data, least, greatest value, scale, offset: three numbers of 8 bytes each */
+enum { TRIPLES = 40, TRIPLE = 24, NUM_TRIPLES = 5 };
+
+size_t brio_las_extra_bytes(unsigned type) {
+    static const uint8_t bytes[] = {0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+    return type < sizeof bytes ? bytes[type] : 0;
+}
+
+/* Names what is not read: NAME (WHY). */
+static brio_status leave_out(brio_builder *b, const char *bytes, const char *why) {
+    char name[BRIO_LAS_NAME + 1], text[128];
+    snprintf(name, sizeof name, "%.32s", bytes + BRIO_EXTRA_NAME);
+    snprintf(text, sizeof text, "%s (%s)", name[0] ? name : "extra bytes", why);
+    return brio_builder_leave_out(b, text);
+}
+
+/* Adds number `which` of the `count` numbers of one description. */
+static brio_status add_extra(brio_builder *b, brio_las_header *h, const char *bytes, unsigned which, unsigned count) {
+    brio_status status = BRIO_OK;
+    unsigned options = (uint8_t)bytes[BRIO_EXTRA_OPTIONS];
+    brio_las_extra e = {.type = ((uint8_t)bytes[BRIO_EXTRA_TYPE] - 1u) % TYPES + 1, .scale = 1};
+    char name[BRIO_LAS_NAME + 1];
+    memcpy(e.description, bytes, sizeof e.description);
+    e.description[BRIO_EXTRA_TYPE] = (char)e.type;
+    for (size_t i = 0; i < NUM_TRIPLES; i++) {
+        char *triple = e.description + TRIPLES + TRIPLE * i;
+        memcpy(triple, bytes + TRIPLES + TRIPLE * i + 8 * which, 8);
+        memset(triple + 8, 0, TRIPLE - 8);
+    }
+    e.scaled = options & (BRIO_EXTRA_SCALED | BRIO_EXTRA_SHIFTED);
+    if (options & BRIO_EXTRA_SCALED) e.scale = brio_le_double(e.description + BRIO_EXTRA_SCALE);
+    if (options & BRIO_EXTRA_SHIFTED) e.offset = brio_le_double(e.description + BRIO_EXTRA_OFFSET);
+    e.at = h->described + which * brio_las_extra_bytes(e.type);
+    snprintf(name, sizeof name, "%.32s", bytes + BRIO_EXTRA_NAME);
+    brio_utf8_copy(e.name, sizeof e.name, name[0] ? name : "extra_bytes");
+    if (count > 1) brio_numbered_name(e.name, sizeof e.name, name[0] ? name : "extra_bytes", which);
+    BRIO_TRY(BRIO_RESERVE(b->ctx, h->extras, h->extra_capacity, h->num_extras + 1));
+    h->extras[h->num_extras++] = e;
+done:
+    return status;
+}
+
+/* Takes descriptions of extra bytes: a record's payload. Several records are one list. */
+static brio_status las_take_extras(brio_builder *b, brio_las_header *h, const char *bytes, size_t size) {
+    brio_status status = BRIO_OK;
+    size_t room = h->record - brio_las_record_bytes(h->format);
+    for (; size >= BRIO_LAS_EXTRA; size -= BRIO_LAS_EXTRA, bytes += BRIO_LAS_EXTRA) {
+        unsigned type = (uint8_t)bytes[BRIO_EXTRA_TYPE], count = type ? (type - 1) / TYPES + 1 : 1;
+        size_t width = type ? brio_las_extra_bytes((type - 1) % TYPES + 1) : (uint8_t)bytes[BRIO_EXTRA_OPTIONS];
+        h->closed |= type > MOST_TYPE || count * width > room - h->described;
+        if (h->closed) {
+            BRIO_TRY(leave_out(b, bytes, type > MOST_TYPE ? "extra bytes of a reserved type" : "not in the records"));
+            continue;
+        }
+        for (unsigned i = 0; i < count && type; i++) BRIO_TRY(add_extra(b, h, bytes, i, count));
+        if (!type) BRIO_TRY(leave_out(b, bytes, "extra bytes without a type"));
+        h->described += count * width;
+    }
+done:
+    return status;
+}
+
+/* Names the extra bytes of which nothing was said. */
+static brio_status las_end_extras(brio_builder *b, const brio_las_header *h) {
+    if (h->record - brio_las_record_bytes(h->format) == h->described) return BRIO_OK;
+    return brio_builder_leave_out(b, "extra bytes that nothing describes");
+}
+
+/* --- records of variable length --- */
+
+/* Records of variable length of LAS files, before the points or behind them: what each is for.
+ *
+ * Two say how to read the points: LASzip's, and the descriptions of extra bytes. Coordinate systems and all that is true of
+ * the file without its points become metadata of the mesh. Indices of the points and descriptions of waveforms are left out
+ * and named: they are wrong for a file that brio writes.
+ *
+ * Based on: ASPRS. LAS specification 1.4 R15. 2019. Hobu. COPC specification 1.0. 2021. */
+
+enum { LASZIP = 22204, EXTRA_BYTES = 4, WKT = 2112, FIRST_KEYS = 34735, LAST_KEYS = 34737 };
+enum { FIRST_WAVE = 100, LAST_WAVE = 354, WAVES = 65535, TREE = 30, MOST_RECORD = 1 << 28 /* bytes; chosen */ };
+
+static bool is_record(const char *header, const char *user, unsigned first, unsigned last) {
+    unsigned id = brio_le16(header + BRIO_RECORD_ID);
+    return !strncmp(header + BRIO_RECORD_USER, user, 16) && id >= first && id <= last;
+}
+
+static brio_status keep(brio_context *ctx, brio_las_records *records, const char *header, const char *bytes,
+                        size_t size) {
+    brio_status status = BRIO_OK;
+    size_t need = records->size + BRIO_RECORD_HEADER + size;
+    BRIO_TRY(BRIO_RESERVE(ctx, records->bytes, records->capacity, need));
+    memcpy(records->bytes + records->size, header, BRIO_RECORD_HEADER);
+    memcpy(records->bytes + records->size + BRIO_RECORD_HEADER, bytes, size);
+    records->size = need;
+done:
+    return status;
+}
+
+/* Returns the name of what a record belongs to that is not kept, or NULL. */
+static const char *dropped(const char *header) {
+    if (is_record(header, "LASF_Spec", FIRST_WAVE, LAST_WAVE) || is_record(header, "LASF_Spec", WAVES, WAVES))
+        return "waveforms";
+    if (is_record(header, "copc", 0, UINT16_MAX)) return "COPC index";
+    if (is_record(header, "LAStools", TREE, TREE)) return "LAStools index";
+    return NULL;
+}
+
+static size_t length_of(const char *text, size_t size) {
+    const char *end = memchr(text, 0, size);
+    return end ? (size_t)(end - text) : size;
+}
+
+static brio_status take_record(brio_stream *s, brio_builder *b, brio_las_header *h, const char *header,
+                               const char *bytes, size_t size) {
+    brio_status status = BRIO_OK;
+    if (is_record(header, "laszip encoded", LASZIP, LASZIP)) {
+        if (h->compressed && !h->has_form) BRIO_TRY(brio_laz_form_read(s, h, bytes, size));
+        h->has_form = h->compressed;
+    } else if (is_record(header, "LASF_Spec", EXTRA_BYTES, EXTRA_BYTES)) {
+        BRIO_TRY(las_take_extras(b, h, bytes, size));
+    } else if (is_record(header, "LASF_Projection", FIRST_KEYS, LAST_KEYS)) {
+        BRIO_TRY(keep(b->ctx, &h->keys, header, bytes, size));
+    } else if (is_record(header, "LASF_Projection", WKT, WKT) && length_of(bytes, size) &&
+               !brio_mesh_metadata(b->mesh, "crs.wkt")) {
+        BRIO_TRY(brio_mesh_set_metadata(b->mesh, "crs.wkt", bytes, length_of(bytes, size)));
+    } else {
+        BRIO_TRY(keep(b->ctx, &h->others, header, bytes, size));
+    }
+done:
+    return status;
+}
+
+/* Names a record that is too large to keep, or whose end is missing. */
+static brio_status leave_record_out(brio_builder *b, const char *header, const char *why) {
+    char text[64];
+    snprintf(text, sizeof text, "record %.16s/%u%s", header + BRIO_RECORD_USER,
+             (unsigned)brio_le16(header + BRIO_RECORD_ID), why);
+    return brio_builder_leave_out(b, text);
+}
+
+/* --- before the points --- */
+
+/* Makes the header of a record that stands before the points one of a record behind them. */
+static void lengthen(const char *early, char header[BRIO_RECORD_HEADER]) {
+    memcpy(header, early, BRIO_RECORD_SIZE);
+    brio_put_le64(header + BRIO_RECORD_SIZE, brio_le16(early + BRIO_RECORD_SIZE));
+    memcpy(header + BRIO_RECORD_TEXT, early + BRIO_RECORD_SIZE + 2, BRIO_RECORD_HEADER - BRIO_RECORD_TEXT);
+}
+
+/* Reads the records before the points. */
+static brio_status las_records_read(brio_stream *s, brio_builder *b, brio_las_header *h, uint32_t count,
+                                    uint64_t start) {
+    brio_status status = BRIO_OK;
+    brio_stream_element(s, "record of variable length", count);
+    for (; s->row < count && brio_stream_offset(s) - start + BRIO_LAS_RECORD_HEADER <= h->data; s->row++) {
+        char header[BRIO_RECORD_HEADER];
+        const char *bytes = NULL;
+        BRIO_TRY(brio_stream_take(s, BRIO_LAS_RECORD_HEADER, &bytes));
+        lengthen(bytes, header);
+        size_t size = brio_le16(bytes + BRIO_RECORD_SIZE);
+        BRIO_TRY(brio_stream_take(s, size, &bytes));
+        if (dropped(header))
+            BRIO_TRY(brio_builder_leave_out(b, dropped(header)));
+        else
+            BRIO_TRY(take_record(s, b, h, header, bytes, size));
+    }
+done:
+    return status;
+}
+
+/* --- behind the points --- */
+
+/* Returns `size` bytes from a place of the file in *bytes. A pipe's place is never before what was read of it.
+ *  memory  for a file that is no pipe: owned by the caller (brio_release). */
+static brio_status fetch(brio_stream *s, const brio_las_header *h, uint64_t at, size_t size, char **memory,
+                         const char **bytes) {
+    brio_status status = BRIO_OK;
+    if (h->late_pending) {
+        BRIO_TRY(brio_stream_skip(s, at - brio_stream_offset(s)));
+        return brio_stream_take(s, size, bytes);
+    }
+    BRIO_TRY(BRIO_RESIZE(s->ctx, *memory, size + 1));
+    BRIO_TRY(brio_stream_peek(s, at, *memory, size));
+    *bytes = *memory;
+done:
+    return status;
+}
+
+/* Whether a file has the bytes. A pipe is taken to have them. */
+static bool has(const brio_stream *s, uint64_t at, uint64_t size) {
+    return s->size == BRIO_SIZE_UNKNOWN ? at <= UINT64_MAX - size : at <= s->size && size <= s->size - at;
+}
+
+/* Reads the record at *at and moves *at behind it.   ended  receives whether the file ends before. */
+static brio_status read_late(brio_stream *s, brio_builder *b, brio_las_header *h, uint64_t *at, bool *ended) {
+    brio_status status = BRIO_OK;
+    char header[BRIO_RECORD_HEADER], *memory = NULL;
+    const char *bytes = NULL;
+    *ended = !has(s, *at, sizeof header) || (h->late_pending && *at < brio_stream_offset(s));
+    if (*ended) return brio_builder_leave_out(b, "records behind the points, which end early");
+    BRIO_TRY(fetch(s, h, *at, sizeof header, &memory, &bytes));
+    memcpy(header, bytes, sizeof header);
+    *at += sizeof header;
+    uint64_t size = brio_le64(header + BRIO_RECORD_SIZE);
+    if (dropped(header)) BRIO_TRY(brio_builder_leave_out(b, dropped(header)));
+    *ended = !has(s, *at, size);
+    if (*ended && !dropped(header)) BRIO_TRY(leave_record_out(b, header, ", which ends early"));
+    if (*ended || dropped(header)) goto done;
+    if (size > MOST_RECORD) {
+        BRIO_TRY(leave_record_out(b, header, ""));
+    } else if (h->late_pending && is_record(header, "LASF_Spec", EXTRA_BYTES, EXTRA_BYTES)) {
+        BRIO_TRY(brio_builder_leave_out(b, "descriptions of extra bytes behind the points of a pipe"));
+    } else {
+        BRIO_TRY(fetch(s, h, *at, (size_t)size, &memory, &bytes));
+        BRIO_TRY(take_record(s, b, h, header, bytes, (size_t)size));
+    }
+done:
+    *at += status == BRIO_OK && !*ended ? brio_le64(header + BRIO_RECORD_SIZE) : 0;
+    brio_release(s->ctx, memory);
+    return status;
+}
+
+brio_status brio_las_late_records_read(brio_stream *s, brio_builder *b, brio_las_header *h) {
+    brio_status status = BRIO_OK;
+    uint64_t at = h->late;
+    bool ended = false;
+    brio_stream_element(s, "record behind the points", h->num_late);
+    for (uint32_t i = 0; i < h->num_late && !ended; i++) BRIO_TRY(read_late(s, b, h, &at, &ended));
+done:
+    return status;
+}
+
+/* --- metadata --- */
+
+brio_status brio_las_records_give(brio_builder *b, const brio_las_header *h) {
+    brio_status status = BRIO_OK;
+    brio_mesh *m = b->mesh;
+    if (h->keys.size) BRIO_TRY(brio_mesh_set_metadata(m, "crs.geokeys", h->keys.bytes, h->keys.size));
+    if (h->others.size) BRIO_TRY(brio_mesh_set_metadata(m, "las.records", h->others.bytes, h->others.size));
+    BRIO_TRY(brio_crs_describe(m));
+done:
+    return status;
+}
+
+/* --- the header --- */
 
 enum { LEAST_HEADER = 227, HEADER_1_4 = 375, HEADER_1_5 = 393, MOST_MINOR = 5 };
 enum { STANDARD_TIME = 1, SYNTHETIC_RETURNS = 8, SHIFTED_TIME = 64 /* bits of the global encoding */ };
@@ -21,7 +279,8 @@ size_t brio_las_record_bytes(unsigned format) {
     return record_bytes[format];
 }
 
-bool brio_las_has_waves(unsigned format) {
+/* Returns whether the records of a format have waveforms. */
+static bool las_has_waves(unsigned format) {
     return format == 4 || format == 5 || format >= 9;
 }
 
@@ -138,7 +397,7 @@ brio_status brio_las_header_read(brio_stream *s, brio_builder *b, brio_las_heade
     uint64_t start = brio_stream_offset(s);
     *h = (brio_las_header){.minor = 0};
     BRIO_TRY(read_fixed(s, b, h, &num_records));
-    BRIO_TRY(brio_las_records_read(s, b, h, num_records, start));
+    BRIO_TRY(las_records_read(s, b, h, num_records, start));
     uint64_t at = brio_stream_offset(s) - start;
     BRIO_REQUIRE(s->ctx, at <= h->data, BRIO_ERR_FORMAT,
                  "%s: byte 96: the points begin at byte %" PRIu64 ", the records before them end at byte %" PRIu64,
@@ -147,8 +406,8 @@ brio_status brio_las_header_read(brio_stream *s, brio_builder *b, brio_las_heade
                  s->name);
     h->late_pending = s->size == BRIO_SIZE_UNKNOWN && h->num_late;
     if (!h->late_pending) BRIO_TRY(brio_las_late_records_read(s, b, h));
-    BRIO_TRY(brio_las_end_extras(b, h));
-    if (brio_las_has_waves(h->format)) BRIO_TRY(brio_builder_leave_out(b, "waveforms"));
+    BRIO_TRY(las_end_extras(b, h));
+    if (las_has_waves(h->format)) BRIO_TRY(brio_builder_leave_out(b, "waveforms"));
     BRIO_TRY(brio_las_records_give(b, h));
     brio_stream_element(s, "byte before the points", h->data);
     BRIO_TRY(brio_stream_skip(s, h->data - at));

@@ -1,16 +1,256 @@
 /* Writes LAS and LAZ files: version 1.2 with formats 0 to 3, version 1.4 with formats 6 to 8.
  *
  * All points are seen before the first one is written: for the grid of their coordinates, and for what is in which field
- * (las_layout.c). Header and records of variable length are those of las_facts.c. Polygons are left out.
+ * (las_layout.c). Polygons are left out.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
 #include "base/memory.h"
 #include "base/team.h"
-#include "io/las/las_facts.h"
+#include "io/crs.h"
+#include "io/formats.h"
+#include "io/las/las_layout.h"
 #include "io/las/laz_write.h"
 #include "io/little_endian.h"
 #include "io/row_format.h"
+#include <stdlib.h>
 #include <string.h>
+
+/* --- the header and its records --- */
+
+/* Writes the header of a LAS file and its records of variable length.
+ *
+ * Version 1.2 has formats 0 to 3, version 1.4 formats 6 to 8. A file with a coordinate system as text, or with a record of
+ * more than 65535 bytes, has version 1.4 in any case. Formats 6 to 8 are to have coordinate systems as text; one that is
+ * known by its keys alone is written so, and the header says it.
+ *
+ * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
+
+enum { BRIO_LAS_RETURNS = 15 };
+
+typedef struct brio_las_facts {
+    const brio_mesh *mesh; /* whose metadata are written */
+    const brio_las_layout *layout;
+    const brio_las_grid *grid;
+    const char *comment; /* NULL, or in place of the program's name */
+    uint64_t points;
+    uint64_t returns[BRIO_LAS_RETURNS + 1]; /* points by the number of their return */
+    bool compressed;
+    uint32_t chunk; /* compressed: points of a chunk */
+    uint64_t late;  /* the first byte behind the points, if it is known */
+} brio_las_facts;
+
+/** The place in the header of the first byte of the records behind the points. */
+enum { BRIO_LAS_LATE_PLACE = 235 };
+
+enum { HEADER = 227, HEADER_1_4 = 375, MOST_EARLY = 65535, EXTRA_BYTES = 4, WKT_ID = 2112, LASZIP = 22204 };
+enum { STANDARD_TIME = 1, SYNTHETIC_RETURNS = 8, WKT = 16, COMPRESSED = 128 };
+
+/* Metadata that are lists of records, in the order in which they are written. */
+static const char *const lists[] = {"crs.geokeys", "las.records"};
+enum { LISTS = sizeof lists / sizeof *lists };
+
+static const char *text_of(const brio_mesh *mesh, const char *name) {
+    const brio_metadata *m = brio_mesh_metadata(mesh, name);
+    return m ? m->bytes : "";
+}
+
+static size_t wkt_size(const brio_mesh *mesh) {
+    const brio_metadata *m = brio_mesh_metadata(mesh, "crs.wkt");
+    return m && m->size ? m->size + 1 : 0; /* a byte 0 ends it */
+}
+
+/* --- the header --- */
+
+static void put_text(char *to, const char *text) {
+    size_t length = strlen(text);
+    memcpy(to, text, length < 32 ? length : 31);
+}
+
+/* Puts what the file said that the points come from, or what is true of any. */
+static void put_origin(const brio_las_facts *f, char *header) {
+    const char *system = text_of(f->mesh, "las.system"), *software = text_of(f->mesh, "las.software");
+    const char *project = text_of(f->mesh, "las.project"), *comment = f->comment ? f->comment : "brio " BRIO_VERSION;
+    char *day = NULL;
+    unsigned long year = strtoul(text_of(f->mesh, "las.date"), &day, 10);
+    put_text(header + 26, *system ? system : "OTHER");
+    put_text(header + 58, *software ? software : comment);
+    brio_put_le16(header + 4, (uint16_t)strtoul(text_of(f->mesh, "las.source"), NULL, 10));
+    if (*day == '-') {
+        brio_put_le16(header + 90, (uint16_t)strtoul(day + 1, NULL, 10));
+        brio_put_le16(header + 92, (uint16_t)year);
+    }
+    for (int i = 0; i < 16 && strlen(project) == 32; i++) {
+        char digits[3] = {project[2 * i], project[2 * i + 1], 0};
+        header[8 + i] = (char)strtoul(digits, NULL, 16);
+    }
+}
+
+static uint16_t encoding_of(const brio_las_facts *f) {
+    bool text = wkt_size(f->mesh) > 0, keys = brio_mesh_metadata(f->mesh, "crs.geokeys") != NULL;
+    unsigned bits = text || (f->layout->format >= 6 && !keys) ? WKT : 0;
+    if (!strcmp(text_of(f->mesh, "las.gps_time"), "standard")) bits |= STANDARD_TIME;
+    if (!strcmp(text_of(f->mesh, "las.returns"), "synthetic")) bits |= SYNTHETIC_RETURNS;
+    return (uint16_t)bits;
+}
+
+static void put_limits(const brio_las_grid *g, char *header) {
+    for (int k = 0; k < 3; k++) {
+        int32_t low = g->points ? brio_las_grid_number(g, k, g->low[k]) : 0;
+        int32_t high = g->points ? brio_las_grid_number(g, k, g->high[k]) : 0;
+        brio_put_le_double(header + 131 + 8 * k, g->step[k]);
+        brio_put_le_double(header + 155 + 8 * k, g->origin[k]);
+        brio_put_le_double(header + 179 + 16 * k, high * g->step[k] + g->origin[k]);
+        brio_put_le_double(header + 187 + 16 * k, low * g->step[k] + g->origin[k]);
+    }
+}
+
+static void put_counts(const brio_las_facts *f, char *header, bool is_1_4) {
+    if (f->layout->format < 6) {
+        brio_put_le32(header + 107, (uint32_t)f->points);
+        for (int i = 0; i < 5; i++) brio_put_le32(header + 111 + 4 * i, (uint32_t)f->returns[i + 1]);
+    }
+    if (!is_1_4) return;
+    brio_put_le64(header + 247, f->points);
+    for (int i = 0; i < BRIO_LAS_RETURNS; i++) brio_put_le64(header + 255 + 8 * i, f->returns[i + 1]);
+}
+
+/* --- records --- */
+
+static bool is_early(size_t size) {
+    return size <= MOST_EARLY;
+}
+
+/* Returns how many records stand behind the points: those that are too long to stand before them. */
+static uint32_t las_late_records(const brio_mesh *mesh) {
+    uint32_t count = !is_early(wkt_size(mesh));
+    for (int i = 0; i < LISTS; i++) {
+        const brio_metadata *list = brio_mesh_metadata(mesh, lists[i]);
+        const char *header = NULL;
+        for (size_t at = 0, size = 0; list && brio_record_next(list, &at, &header, &size);) count += !is_early(size);
+    }
+    return count;
+}
+
+/* Makes the header of a record that brio itself makes. */
+static void make_header(char header[BRIO_RECORD_HEADER], const char *user, unsigned id, const char *text, size_t size) {
+    memset(header, 0, BRIO_RECORD_HEADER);
+    memcpy(header + BRIO_RECORD_USER, user, strlen(user));
+    brio_put_le16(header + BRIO_RECORD_ID, (uint16_t)id);
+    brio_put_le64(header + BRIO_RECORD_SIZE, size);
+    memcpy(header + BRIO_RECORD_TEXT, text, strlen(text));
+}
+
+/* Writes a record if it belongs to this side of the points. */
+static brio_status put_record(brio_output *out, bool late, const char header[BRIO_RECORD_HEADER], const char *bytes) {
+    brio_status status = BRIO_OK;
+    size_t size = (size_t)brio_le64(header + BRIO_RECORD_SIZE);
+    if (late == is_early(size)) return BRIO_OK;
+    BRIO_TRY(brio_output_bytes(out, header, BRIO_RECORD_SIZE + (late ? 8 : 2)));
+    BRIO_TRY(brio_output_bytes(out, header + BRIO_RECORD_TEXT, BRIO_RECORD_HEADER - BRIO_RECORD_TEXT));
+    BRIO_TRY(brio_output_bytes(out, bytes, size));
+done:
+    return status;
+}
+
+/* Writes the records of the metadata on one side of the points. */
+static brio_status put_kept(brio_output *out, bool late, const brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    char wkt[BRIO_RECORD_HEADER];
+    make_header(wkt, "LASF_Projection", WKT_ID, "WKT", wkt_size(mesh));
+    if (wkt_size(mesh)) BRIO_TRY(put_record(out, late, wkt, text_of(mesh, "crs.wkt")));
+    for (int i = 0; i < LISTS; i++) {
+        const brio_metadata *list = brio_mesh_metadata(mesh, lists[i]);
+        const char *header = NULL;
+        for (size_t at = 0, size = 0; list && brio_record_next(list, &at, &header, &size);)
+            BRIO_TRY(put_record(out, late, header, header + BRIO_RECORD_HEADER));
+    }
+done:
+    return status;
+}
+
+static brio_status put_extras(brio_output *out, const brio_las_facts *f) {
+    brio_status status = BRIO_OK;
+    char header[BRIO_RECORD_HEADER], *extras = NULL;
+    const brio_las_layout *l = f->layout;
+    if (!l->num_extras) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, extras, BRIO_LAS_EXTRA * l->num_extras));
+    make_header(header, "LASF_Spec", EXTRA_BYTES, "", BRIO_LAS_EXTRA * l->num_extras);
+    for (size_t i = 0, count = 0; i < f->mesh->num_properties; i++)
+        if (l->places[i].extra) brio_las_describe(l, f->mesh, i, extras + BRIO_LAS_EXTRA * count++);
+    BRIO_TRY(put_record(out, false, header, extras));
+done:
+    brio_release(out->ctx, extras);
+    return status;
+}
+
+static brio_status put_form(brio_output *out, const brio_las_facts *f) {
+    char header[BRIO_RECORD_HEADER], record[BRIO_LAZ_FORM];
+    const brio_laz_form form = brio_laz_form_of(f->layout->format, f->layout->record);
+    if (!f->compressed) return BRIO_OK;
+    make_header(header, "laszip encoded", LASZIP, "", brio_laz_form_write(&form, f->chunk, record));
+    return put_record(out, false, header, record);
+}
+
+/* Counts the records before the points and their bytes. */
+static uint32_t early_records(const brio_las_facts *f, uint64_t *bytes) {
+    char record[BRIO_LAZ_FORM];
+    const brio_laz_form form = brio_laz_form_of(f->layout->format, f->layout->record);
+    size_t extras = BRIO_LAS_EXTRA * f->layout->num_extras, text = wkt_size(f->mesh);
+    uint32_t count = (extras > 0) + (text && is_early(text)) + f->compressed;
+    *bytes = extras + (is_early(text) ? text : 0) + (f->compressed ? brio_laz_form_write(&form, f->chunk, record) : 0);
+    for (int i = 0; i < LISTS; i++) {
+        const brio_metadata *list = brio_mesh_metadata(f->mesh, lists[i]);
+        const char *header = NULL;
+        for (size_t at = 0, size = 0; list && brio_record_next(list, &at, &header, &size);) {
+            count += is_early(size);
+            *bytes += is_early(size) ? size : 0;
+        }
+    }
+    *bytes += (uint64_t)BRIO_LAS_RECORD_HEADER * count;
+    return count;
+}
+
+/* Writes the header and the records before the points.   Returns BRIO_OK, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
+static brio_status las_facts_write(brio_output *out, brio_las_facts *f) {
+    brio_status status = BRIO_OK;
+    char header[HEADER_1_4] = "LASF";
+    const brio_las_layout *l = f->layout;
+    uint32_t late = las_late_records(f->mesh);
+    bool is_1_4 = l->format >= 6 || wkt_size(f->mesh) || late;
+    size_t size = is_1_4 ? HEADER_1_4 : HEADER;
+    uint64_t records = 0;
+    brio_put_le32(header + 100, early_records(f, &records));
+    BRIO_REQUIRE(out->ctx, size + records <= UINT32_MAX, BRIO_ERR_ARGUMENT,
+                 "%s: records of 4 GiB before the points, more than LAS holds", out->name);
+    put_origin(f, header);
+    put_limits(f->grid, header);
+    put_counts(f, header, is_1_4);
+    brio_put_le16(header + 6, encoding_of(f));
+    header[24] = 1;
+    header[25] = is_1_4 ? 4 : 2;
+    brio_put_le16(header + 94, (uint16_t)size);
+    brio_put_le32(header + 96, (uint32_t)(size + records));
+    header[104] = (char)(l->format | (f->compressed ? COMPRESSED : 0));
+    brio_put_le16(header + 105, (uint16_t)l->record);
+    f->late = size + records + f->points * l->record;
+    if (late) {
+        brio_put_le64(header + BRIO_LAS_LATE_PLACE, f->late); /* of compressed points: put in its place at the end */
+        brio_put_le32(header + BRIO_LAS_LATE_PLACE + 8, late);
+    }
+    BRIO_TRY(brio_output_bytes(out, header, size));
+    BRIO_TRY(put_form(out, f));
+    BRIO_TRY(put_kept(out, false, f->mesh));
+    BRIO_TRY(put_extras(out, f));
+done:
+    return status;
+}
+
+/* Writes the records behind the points. */
+static brio_status las_late_write(brio_output *out, const brio_mesh *mesh) {
+    return put_kept(out, true, mesh);
+}
+
+/* --- points --- */
 
 /* CHUNK: rows encoded at a time. Both chosen. */
 enum { CHUNK = 1 << 15, ROWS_A_THREAD = 1 << 12 };
@@ -113,7 +353,7 @@ static double moved(const void *state, const brio_mesh *block) {
 /* Keeps the metadata that stand behind the points: the blocks are gone by then. */
 static brio_status keep_late(brio_context *ctx, las_writer *w, const brio_mesh *block) {
     brio_status status = BRIO_OK;
-    if (!brio_las_late_records(block)) return BRIO_OK;
+    if (!las_late_records(block)) return BRIO_OK;
     BRIO_TRY(brio_mesh_new(ctx, &w->late));
     for (size_t i = 0; i < block->num_metadata; i++) {
         const brio_metadata *m = &block->metadata[i];
@@ -142,7 +382,7 @@ static brio_status begin(brio_output *out, const brio_write_job *job, void *stat
         const brio_laz_form form = brio_laz_form_of(w->layout.format, w->layout.record);
         f->chunk = brio_laz_chunk_points(&form);
     }
-    BRIO_TRY(brio_las_facts_write(out, f));
+    BRIO_TRY(las_facts_write(out, f));
 done:
     return status;
 }
@@ -150,14 +390,14 @@ done:
 static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
     las_writer *w = state;
     (void)job;
-    return w->late ? brio_las_late_write(out, w->late) : BRIO_OK;
+    return w->late ? las_late_write(out, w->late) : BRIO_OK;
 }
 
 static brio_status begin_compressed(brio_output *out, const brio_write_job *job, void *state) {
     brio_status status = BRIO_OK;
     las_writer *w = state;
     w->facts.compressed = true;
-    BRIO_REQUIRE(out->ctx, !brio_las_late_records(job->mesh) || brio_output_can_patch(out), BRIO_ERR_ARGUMENT,
+    BRIO_REQUIRE(out->ctx, !las_late_records(job->mesh) || brio_output_can_patch(out), BRIO_ERR_ARGUMENT,
                  "%s: a record of more than 65535 bytes stands behind compressed points: that needs a file, no pipe",
                  out->name);
     BRIO_TRY(begin(out, job, state));

@@ -8,6 +8,7 @@
 #ifndef BRIO_IO_LAZ_ITEMS_H
 #define BRIO_IO_LAZ_ITEMS_H
 
+#include "io/las/laz_decoder.h"
 #include "io/las/laz_model.h"
 
 /* --- the median of the last values --- */
@@ -60,9 +61,6 @@ enum {
     BRIO_LAZ_FLAGS_CHANGED = 32
 };
 
-/** Returns the context of a return, by the byte of its number and the number of returns. */
-uint32_t brio_laz_return_context10(uint8_t flags);
-
 void brio_laz_point10_begin(brio_laz_point10 *p, const uint8_t *first);
 void brio_laz_point10_next(brio_laz_point10 *p, brio_laz_coder *c, brio_laz_arena *arena, uint8_t *row);
 
@@ -100,11 +98,6 @@ enum {
     BRIO_LAZ_FROM_NOTHING,
     BRIO_LAZ_FROM_TIME
 };
-
-/** Returns the context of the difference to a multiple, by its symbol. */
-uint32_t brio_laz_steps_context(uint32_t symbol);
-/** Replaces the step after several extreme multiples one after the other. */
-void brio_laz_time_step(brio_laz_time *t, int32_t difference, uint32_t context);
 
 /** Decodes the next time.   may_stay  1 in formats 0 to 5, where a symbol says that the time stays; 0 in the layers. */
 uint64_t brio_laz_time_next(brio_laz_time *t, brio_laz_coder *c, brio_laz_arena *arena, uint32_t may_stay);
@@ -179,17 +172,73 @@ enum {
     BRIO_LAZ_AT_TIME = 22
 };
 
-/** Returns the context of the steps in x and y, by the byte of the returns. */
-uint32_t brio_laz_return_context14(uint8_t returns);
-/** Returns the place of a return in its pulse: bit 0: the first one, bit 1: the last one. */
-uint32_t brio_laz_place14(uint8_t returns);
-/** Begins a channel with the point that was the last one before it. */
-void brio_laz_channel_begin(brio_laz_channel *h, const uint8_t *first);
-
 void brio_laz_point14_begin(brio_laz_point14 *p, const uint8_t *first);
 
 /** Decodes the next point.   layers  the decoders of the layers; the one of an empty layer has no bytes.
  *  Returns whether the channel changed. */
 bool brio_laz_point14_next(brio_laz_point14 *p, brio_laz_coder *layers, brio_laz_arena *arena, uint8_t *row);
+
+/* --- a chunk --- */
+
+/* What decoder and encoder of a chunk of compressed records share: what is in a record, and the models of its items, which
+ * both must change in the same way. */
+
+enum { BRIO_LAZ_CHANNELS = 4 };
+/** The layers behind those of a point. Those of the extra bytes follow. */
+enum { BRIO_LAZ_COLOUR_LAYER = BRIO_LAZ_POINT14_LAYERS, BRIO_LAZ_INFRARED_LAYER, BRIO_LAZ_FIXED_LAYERS };
+
+/** Colours and extra bytes of one channel. */
+typedef struct brio_laz_channel_items {
+    bool used;
+    uint16_t colour[4]; /* red, green, blue, near infrared */
+    brio_laz_colour_models colours;
+    brio_laz_infrared_models infrared;
+} brio_laz_channel_items;
+
+typedef struct brio_laz_chunk_state {
+    brio_laz_form form;
+    brio_laz_model *extra_models; /* num_extra for each channel */
+    uint8_t *extra_last;          /* likewise */
+    uint32_t channel;             /* whose colours and extra bytes are the current ones */
+    brio_laz_channel_items items[BRIO_LAZ_CHANNELS];
+    brio_laz_time time;
+    union {
+        brio_laz_point10 point10;
+        brio_laz_point14 point14;
+    };
+    brio_laz_arena arena;
+} brio_laz_chunk_state;
+
+static inline bool brio_laz_has_time(const brio_laz_form *form) {
+    return form->format == 1 || form->format == 3;
+}
+static inline bool brio_laz_has_colour(const brio_laz_form *form) {
+    return form->format == 2 || form->format == 3 || form->format == 7 || form->format == 8 || form->format == 10;
+}
+static inline bool brio_laz_has_infrared(const brio_laz_form *form) {
+    return form->format == 8 || form->format == 10;
+}
+static inline bool brio_laz_has_wave(const brio_laz_form *form) {
+    return form->format == 9 || form->format == 10;
+}
+/** Returns the place of the colours in a record. */
+static inline size_t brio_laz_colour_at(const brio_laz_form *form) {
+    return form->layered ? BRIO_LAZ_POINT14 : BRIO_LAZ_POINT10 + (brio_laz_has_time(form) ? 8 : 0);
+}
+static inline size_t brio_laz_num_layers(const brio_laz_form *form) {
+    return BRIO_LAZ_POINT14_LAYERS + (size_t)brio_laz_has_colour(form) + (size_t)brio_laz_has_infrared(form) +
+           (size_t)brio_laz_has_wave(form) + form->num_extra;
+}
+
+/** Returns the bytes of the memory that a state needs behind itself. */
+size_t brio_laz_state_bytes(const brio_laz_form *form);
+/** Makes a state.   memory  brio_laz_state_bytes(form) bytes, owned by the caller; models first, so aligned for them. */
+void brio_laz_state_make(brio_laz_chunk_state *state, void *memory, const brio_laz_form *form);
+/** Begins a chunk with its first record. */
+void brio_laz_state_begin(brio_laz_chunk_state *state, const uint8_t *record);
+
+/** Goes to the colours and extra bytes of a channel.
+ *  Returns the channel whose last colour and extra bytes are the current ones. */
+uint32_t brio_laz_switch_items(brio_laz_chunk_state *state, uint32_t channel);
 
 #endif

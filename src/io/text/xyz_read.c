@@ -15,8 +15,7 @@
 #include "io/formats.h"
 #include "io/limits.h"
 #include "io/number.h"
-#include "io/salvage.h"
-#include "io/text/text_columns.h"
+#include "io/builder.h"
 #include "io/text/text_fields.h"
 #include "io/textrow.h"
 #include <ctype.h>

@@ -10,7 +10,7 @@
 #include "io/number.h"
 #include "io/scalar.h"
 #include "io/textrow.h"
-#include "io/vtk/vtk_cells.h"
+#include "io/vtk/vtk.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>

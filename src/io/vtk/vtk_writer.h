@@ -7,7 +7,7 @@
 #define BRIO_IO_VTK_WRITER_H
 
 #include "io/formats.h"
-#include "io/vtk/vtk_header.h"
+#include "io/vtk/vtk.h"
 
 /** Stores the numbers `first` to `first` + count - 1 of an array. The calls for an array go through its numbers once,
  *  from the first to the last. */

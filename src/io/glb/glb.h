@@ -1,9 +1,13 @@
-/* What the JSON of a glTF file says about geometry: buffers, views of them, accessors, the primitives of the meshes, and
- * the nodes that place the meshes. */
-#ifndef BRIO_IO_GLB_SCENE_H
-#define BRIO_IO_GLB_SCENE_H
+/* What the parts of the reader of glTF files share: the scene that the JSON describes, and the mesh made of it. */
+#ifndef BRIO_IO_GLB_H
+#define BRIO_IO_GLB_H
 
 #include "io/builder.h"
+
+/* --- the JSON --- */
+
+/* What the JSON of a glTF file says about geometry: buffers, views of them, accessors, the primitives of the meshes, and
+ * the nodes that place the meshes. */
 
 #define BRIO_GLB_NONE UINT32_MAX /* no index */
 
@@ -92,5 +96,19 @@ typedef struct brio_glb_scene {
  *  JSON), BRIO_ERR_NO_MEMORY. */
 brio_status brio_glb_scene_read(brio_builder *b, bool on_disk, const char *text, size_t size, brio_glb_scene *scene);
 void brio_glb_scene_free(brio_context *ctx, brio_glb_scene *scene);
+
+/* A file: what its JSON says, and its binary chunk. */
+typedef struct brio_glb_file {
+    brio_context *ctx;
+    const char *name;
+    brio_glb_scene scene;
+    char *binary; /* NULL: there is none */
+    uint64_t binary_size;
+    uint64_t bytes; /* of JSON and binary data together */
+} brio_glb_file;
+
+/** Adds the meshes of the scene.
+ *  Returns BRIO_OK, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_glb_add_scene(const brio_glb_file *file, brio_builder *b);
 
 #endif

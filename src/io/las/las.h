@@ -1,10 +1,15 @@
-/* The header of a LAS file, and its records of variable length. */
-#ifndef BRIO_IO_LAS_HEADER_H
-#define BRIO_IO_LAS_HEADER_H
+/* What readers and writers of LAS files share: the header with its records, and the fields of the points. */
+#ifndef BRIO_IO_LAS_H
+#define BRIO_IO_LAS_H
 
 #include "io/builder.h"
 #include "io/las/laz_decoder.h"
 #include "io/stream.h"
+#include <stdatomic.h>
+
+/* --- the header --- */
+
+/* The header of a LAS file, and its records of variable length. */
 
 enum { BRIO_LAS_FORMATS = 11 };
 
@@ -63,8 +68,6 @@ typedef struct brio_las_header {
 
 /** Returns the bytes of a record of a format 0 to 10 without extra bytes. */
 size_t brio_las_record_bytes(unsigned format);
-/** Returns whether the records of a format have waveforms. */
-bool brio_las_has_waves(unsigned format);
 
 /** Returns the bytes of a number of a type of extra bytes, or 0 if there is no such type of one number. */
 size_t brio_las_extra_bytes(unsigned type);
@@ -76,13 +79,6 @@ size_t brio_las_extra_bytes(unsigned type);
 brio_status brio_las_header_read(brio_stream *s, brio_builder *b, brio_las_header *h);
 void brio_las_header_free(brio_context *ctx, brio_las_header *h);
 
-/** Takes descriptions of extra bytes: a record's payload. Several records are one list. */
-brio_status brio_las_take_extras(brio_builder *b, brio_las_header *h, const char *bytes, size_t size);
-/** Names the extra bytes of which nothing was said. */
-brio_status brio_las_end_extras(brio_builder *b, const brio_las_header *h);
-
-/** Reads the records before the points. */
-brio_status brio_las_records_read(brio_stream *s, brio_builder *b, brio_las_header *h, uint32_t count, uint64_t start);
 /** Reads the records behind the points: from their place, or in a pipe when the points have been read. */
 brio_status brio_las_late_records_read(brio_stream *s, brio_builder *b, brio_las_header *h);
 /** Gives the mesh the metadata of the records that were read. */
@@ -95,5 +91,65 @@ brio_laz_form brio_laz_form_of(unsigned format, size_t record);
 enum { BRIO_LAZ_FORM = 64 };
 /** Makes LASzip's record.   chunk  points of a chunk.   Returns its bytes. */
 size_t brio_laz_form_write(const brio_laz_form *form, uint32_t chunk, char record[BRIO_LAZ_FORM]);
+
+/* --- fields --- */
+
+/* The fields of LAS records, and how they become properties of a mesh. */
+
+/** A field of a format. */
+typedef struct brio_las_field {
+    const char *name;
+    brio_scalar type;    /* of its property */
+    uint8_t at;          /* its first byte in a record */
+    uint8_t shift, bits; /* bits > 0: these bits of one byte */
+} brio_las_field;
+
+enum { BRIO_LAS_FIELDS = 20 };
+
+/** Lists the fields of a format besides the coordinates, and returns their number.
+ *  fields  room for BRIO_LAS_FIELDS. */
+size_t brio_las_fields_of(unsigned format, brio_las_field *fields);
+
+/** What becomes of the bytes of a record. */
+typedef struct brio_las_column {
+    size_t property;
+    size_t at;
+    unsigned extra; /* an extra byte's type whose values become doubles, or 0 */
+    brio_scalar type;
+    uint8_t shift, bits;
+    double scale, offset;
+} brio_las_column;
+
+typedef struct brio_las_plan {
+    brio_context *ctx;
+    size_t record;
+    double scale[3], offset[3];
+    brio_las_column *columns;
+    size_t num_columns;
+    atomic_bool *rounded; /* becomes true where an integer of 64 bits is no double */
+} brio_las_plan;
+
+/** Entries of the metadata "las.extras": the name of a property, and the description that its extra bytes had. */
+enum { BRIO_LAS_EXTRA_ENTRY = 64 + BRIO_LAS_EXTRA };
+
+/** Adds red, green and blue alone, of a format that has them. */
+brio_status brio_las_plan_colours(brio_las_plan *plan, brio_builder *b, const brio_las_header *h);
+void brio_las_plan_free(brio_las_plan *plan);
+
+/** Stores the coordinates and properties of `count` records as those of the mesh's vertices from `first` on. Threads
+ *  may call this together for different vertices. */
+void brio_las_store(const brio_las_plan *plan, const brio_mesh *mesh, const char *records, size_t first, size_t count);
+
+/* --- points --- */
+
+/* The points of a LAS file. */
+
+/* Both return BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and what
+ * the builder's sink returns. */
+
+/** Reads the points behind a header; the stream is where they begin. With b->salvage a file may end early. */
+brio_status brio_las_read_points(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan);
+/** Reads points that are compressed. */
+brio_status brio_laz_read(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan);
 
 #endif

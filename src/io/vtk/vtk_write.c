@@ -1,13 +1,188 @@
-/* Writes cells as polyhedra in VTU, VTK's XML file of an unstructured grid. Cells that are unbounded, that have no faces,
- * or a vertex that doubles cannot hold, are left out, and so are such vertices.
- *
- * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+/* Writes VTK's XML files: meshes as unstructured grids or as polygons, and Voronoi cells. */
 #include "base/memory.h"
 #include "base/sort.h"
 #include "io/cells_write.h"
 #include "io/vtk/vtk_writer.h"
 #include <math.h>
 #include <string.h>
+
+/* --- unstructured grids --- */
+
+/* Writes VTU, VTK's XML file of an unstructured grid: tetrahedra, polygons and edges. Without any of them, writes one
+ * vertex cell for each point.
+ *
+ * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+
+enum { VTK_VERTEX = 1, VTK_LINE = 3, VTK_POLYGON = 7, VTK_TETRAHEDRON = 10 };
+
+typedef struct {
+    brio_vtk_writer xml;
+    const brio_mesh *mesh;
+    size_t num_corners, num_cells; /* of all cells: tetrahedra, then faces, then edges */
+    size_t face_corners;
+    bool vertices; /* whether the cells are the points */
+} vtu_writer;
+
+static uint32_t corner(const vtu_writer *w, uint64_t i) {
+    const brio_mesh *m = w->mesh;
+    uint64_t of_tetrahedra = 4 * (uint64_t)m->num_tetrahedra;
+    if (w->vertices) return (uint32_t)i;
+    if (i < of_tetrahedra) return m->tetrahedra[i];
+    if (i < of_tetrahedra + w->face_corners) return m->face_vertices[i - of_tetrahedra];
+    return m->edges[i - of_tetrahedra - w->face_corners];
+}
+
+static void fill_connectivity(void *user, uint64_t first, size_t count, void *to) {
+    const vtu_writer *w = user;
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, corner(w, first + i));
+}
+
+/* Returns the index behind the last corner of a cell. */
+static uint64_t end_of_cell(const vtu_writer *w, size_t c) {
+    const brio_mesh *m = w->mesh;
+    size_t t = m->num_tetrahedra, f = m->num_faces;
+    if (w->vertices) return c + 1;
+    if (c < t) return 4 * (c + 1);
+    if (c < t + f) return 4 * t + m->face_offsets[c - t + 1];
+    return 4 * t + w->face_corners + 2 * (c - t - f + 1);
+}
+
+static void fill_offsets(void *user, uint64_t first, size_t count, void *to) {
+    for (size_t i = 0; i < count; i++) ((uint64_t *)to)[i] = end_of_cell(user, (size_t)first + i);
+}
+
+static void fill_types(void *user, uint64_t first, size_t count, void *to) {
+    const vtu_writer *w = user;
+    size_t t = w->mesh->num_tetrahedra, f = w->mesh->num_faces;
+    for (size_t i = 0; i < count; i++) {
+        size_t c = (size_t)first + i;
+        ((uint8_t *)to)[i] = w->vertices ? VTK_VERTEX : c < t ? VTK_TETRAHEDRON : c < t + f ? VTK_POLYGON : VTK_LINE;
+    }
+}
+
+static brio_status write_cells(vtu_writer *w) {
+    brio_status status = BRIO_OK;
+    brio_vtk_writer *xml = &w->xml;
+    BRIO_TRY(brio_output_string(xml->out, "<Cells>\n"));
+    BRIO_TRY(brio_vtk_write_array(
+        xml, &(brio_vtk_source){"connectivity", brio_vtk_index_type(xml), 1, w->num_corners, fill_connectivity, w}));
+    BRIO_TRY(
+        brio_vtk_write_array(xml, &(brio_vtk_source){"offsets", BRIO_VTK_INT64, 1, w->num_cells, fill_offsets, w}));
+    BRIO_TRY(brio_vtk_write_array(xml, &(brio_vtk_source){"types", BRIO_SCALAR_UINT8, 1, w->num_cells, fill_types, w}));
+    BRIO_TRY(brio_output_string(xml->out, "</Cells>\n"));
+done:
+    return status;
+}
+
+brio_status brio_vtu_write(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    vtu_writer w = {.xml = brio_vtk_writer_new(out, job, "UnstructuredGrid"), .mesh = m};
+    w.vertices = !m->num_faces && !m->num_tetrahedra && !m->num_edges;
+    w.face_corners = m->num_faces ? (size_t)m->face_offsets[m->num_faces] : 0;
+    w.num_cells = w.vertices ? m->num_vertices : m->num_faces + m->num_tetrahedra + m->num_edges;
+    w.num_corners = w.vertices ? m->num_vertices : 4 * m->num_tetrahedra + w.face_corners + 2 * m->num_edges;
+    BRIO_TRY(brio_vtk_begin(&w.xml));
+    BRIO_TRY(brio_output_format(out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n", m->num_vertices,
+                                w.num_cells));
+    BRIO_TRY(brio_vtk_write_points(&w.xml));
+    BRIO_TRY(write_cells(&w));
+    BRIO_TRY(brio_vtk_write_cell_data(&w.xml, m->num_tetrahedra, m->num_edges));
+    BRIO_TRY(brio_vtk_end(&w.xml));
+done:
+    brio_vtk_writer_free(&w.xml);
+    return status;
+}
+
+/* --- polygons --- */
+
+/* Writes VTP, VTK's XML file of polygonal data: polygons, and edges as lines. Without either, writes one vertex cell
+ * for each point. The rows of cell data are those of edges, then of polygons.
+ *
+ * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+
+typedef struct {
+    brio_vtk_writer xml;
+    const brio_mesh *mesh;
+    size_t num_verts, num_corners; /* num_verts: cells that are points; num_corners: of the faces */
+} vtp_writer;
+
+static void fill_verts(void *user, uint64_t first, size_t count, void *to) {
+    const vtp_writer *w = user;
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, (uint32_t)(first + i));
+}
+
+static void fill_lines(void *user, uint64_t first, size_t count, void *to) {
+    const vtp_writer *w = user;
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, w->mesh->edges[first + i]);
+}
+
+static void fill_polys(void *user, uint64_t first, size_t count, void *to) {
+    const vtp_writer *w = user;
+    for (size_t i = 0; i < count; i++) brio_vtk_store_index(&w->xml, to, i, w->mesh->face_vertices[first + i]);
+}
+
+static void fill_verts_ends(void *user, uint64_t first, size_t count, void *to) {
+    (void)user;
+    for (size_t i = 0; i < count; i++) ((int64_t *)to)[i] = (int64_t)(first + i + 1);
+}
+
+static void fill_lines_ends(void *user, uint64_t first, size_t count, void *to) {
+    (void)user;
+    for (size_t i = 0; i < count; i++) ((int64_t *)to)[i] = (int64_t)(2 * (first + i + 1));
+}
+
+static void fill_polys_ends(void *user, uint64_t first, size_t count, void *to) {
+    const vtp_writer *w = user;
+    for (size_t i = 0; i < count; i++) ((int64_t *)to)[i] = (int64_t)w->mesh->face_offsets[first + i + 1];
+}
+
+/* A section: its cells and their corners, with what fills the two arrays. */
+typedef struct {
+    const char *name;
+    size_t num_cells, num_corners;
+    brio_vtk_fill corners, ends;
+} section;
+
+static brio_status write_section(vtp_writer *w, const section *s) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_output_format(w->xml.out, "<%s>\n", s->name));
+    BRIO_TRY(brio_vtk_write_array(
+        &w->xml, &(brio_vtk_source){"connectivity", brio_vtk_index_type(&w->xml), 1, s->num_corners, s->corners, w}));
+    BRIO_TRY(brio_vtk_write_array(&w->xml, &(brio_vtk_source){"offsets", BRIO_VTK_INT64, 1, s->num_cells, s->ends, w}));
+    BRIO_TRY(brio_output_format(w->xml.out, "</%s>\n", s->name));
+done:
+    return status;
+}
+
+brio_status brio_vtp_write(brio_output *out, const brio_write_job *job) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = job->mesh;
+    vtp_writer w = {.xml = brio_vtk_writer_new(out, job, "PolyData"), .mesh = m};
+    w.num_verts = m->num_faces || m->num_edges ? 0 : m->num_vertices;
+    w.num_corners = m->num_faces ? (size_t)m->face_offsets[m->num_faces] : 0;
+    BRIO_TRY(brio_vtk_begin(&w.xml));
+    BRIO_TRY(brio_output_format(out,
+                                "<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" NumberOfLines=\"%zu\" "
+                                "NumberOfStrips=\"0\" NumberOfPolys=\"%zu\">\n",
+                                m->num_vertices, w.num_verts, m->num_edges, m->num_faces));
+    BRIO_TRY(brio_vtk_write_points(&w.xml));
+    BRIO_TRY(write_section(&w, &(section){"Verts", w.num_verts, w.num_verts, fill_verts, fill_verts_ends}));
+    BRIO_TRY(write_section(&w, &(section){"Lines", m->num_edges, 2 * m->num_edges, fill_lines, fill_lines_ends}));
+    BRIO_TRY(write_section(&w, &(section){"Polys", m->num_faces, w.num_corners, fill_polys, fill_polys_ends}));
+    BRIO_TRY(brio_vtk_write_cell_data(&w.xml, m->num_edges, 0));
+    BRIO_TRY(brio_vtk_end(&w.xml));
+done:
+    brio_vtk_writer_free(&w.xml);
+    return status;
+}
+
+/* --- cells --- */
+
+/* Writes cells as polyhedra in VTU, VTK's XML file of an unstructured grid. Cells that are unbounded, that have no faces,
+ * or a vertex that doubles cannot hold, are left out, and so are such vertices.
+ *
+ * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 
 enum { VTK_POLYHEDRON = 42 };
 
@@ -116,7 +291,7 @@ static void fill_ends(void *user, uint64_t first, size_t count, void *to) {
     memcpy(to, w->end + first, count * sizeof *w->end);
 }
 
-static void fill_types(void *user, uint64_t first, size_t count, void *to) {
+static void fill_polyhedron_types(void *user, uint64_t first, size_t count, void *to) {
     (void)user, (void)first;
     memset(to, VTK_POLYHEDRON, count);
 }
@@ -189,13 +364,13 @@ done:
     return status;
 }
 
-static brio_status write_cells(polyhedra *w) {
+static brio_status write_polyhedra(polyhedra *w) {
     brio_status status = BRIO_OK;
     size_t n = w->num_polyhedra;
     int index = brio_vtk_index_type(&w->xml);
     const brio_vtk_source cells[] = {{"connectivity", index, 1, w->num_vertices, fill_vertices, w},
                                      {"offsets", BRIO_VTK_INT64, 1, n, fill_ends, w},
-                                     {"types", BRIO_SCALAR_UINT8, 1, n, fill_types, w},
+                                     {"types", BRIO_SCALAR_UINT8, 1, n, fill_polyhedron_types, w},
                                      {"faces", index, 1, w->num_numbers, fill_faces, w},
                                      {"faceoffsets", BRIO_VTK_INT64, 1, n, fill_face_offsets, w}};
     const brio_vtk_source data[] = {{"site", BRIO_SCALAR_UINT32, 1, n, fill_sites, w},
@@ -224,7 +399,7 @@ brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, cons
     BRIO_TRY(brio_output_format(out, "<Piece NumberOfPoints=\"%zu\" NumberOfCells=\"%zu\">\n", points.num_vertices,
                                 w.num_polyhedra));
     BRIO_TRY(brio_vtk_write_points(&w.xml));
-    BRIO_TRY(write_cells(&w));
+    BRIO_TRY(write_polyhedra(&w));
     BRIO_TRY(brio_vtk_end(&w.xml));
 done:
     brio_vtk_writer_free(&w.xml);
