@@ -1,7 +1,7 @@
 """coverage.py EXPORT ROOT FOLDER: the table of make coverage, from what llvm-cov exports.
 
 A row for each folder of ROOT: lines and sides of branches, those that were reached, and their share. Branches within macros,
-as that of BRIO_TRY, are counted where the macro is used. Writes to FOLDER what nothing reached: missed.txt, lines as FILE:LINE:
+as those of BRIO_TRY and BRIO_FORWARD, are counted where the macro is used. Writes to FOLDER what nothing reached: missed.txt, lines as FILE:LINE:
 TEXT, and sides.txt, sides of branches as FILE:LINE: never true (or false): TEXT. A line counts as reached if one of its
 regions is.
 """

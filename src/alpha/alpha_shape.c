@@ -39,13 +39,12 @@ static bool is_boundary(const shape *s, uint32_t facet) {
 
 /* Lists the facets between inside and outside. A facet seen from inside is FACET[i]; from outside its order is reversed. */
 static brio_status list_faces(shape *s) {
-    brio_status status = BRIO_OK;
     static const uint8_t FROM_OUTSIDE[3] = {0, 2, 1};
     brio_mesh *m = s->mesh;
     size_t handles = 4 * s->complex->counts[3], at = 0;
     for (uint32_t h = 0; h < handles; h++) m->num_faces += is_boundary(s, h);
-    BRIO_TRY(BRIO_ALLOC(s->ctx, m->face_offsets, m->num_faces + 1));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, m->face_vertices, 3 * m->num_faces));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, m->face_offsets, m->num_faces + 1));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, m->face_vertices, 3 * m->num_faces));
     for (size_t f = 0; f <= m->num_faces; f++) m->face_offsets[f] = 3 * f;
     for (uint32_t h = 0; h < handles; h++) {
         if (!is_boundary(s, h)) continue;
@@ -53,27 +52,24 @@ static brio_status list_faces(shape *s) {
         for (int k = 0; k < 3; k++) m->face_vertices[at++] = v[BRIO_FACET[brio_slot_of(h)][FROM_OUTSIDE[k]]];
     }
     assert(at == 3 * m->num_faces);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Numbers the vertices of the faces in the order of the points. */
 static brio_status place_vertices(shape *s, const double *points) {
-    brio_status status = BRIO_OK;
     brio_mesh *m = s->mesh;
     uint32_t used = 0;
-    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, s->vertex, s->num_points));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, s->vertex, s->num_points));
     for (size_t c = 0; c < 3 * m->num_faces; c++) s->vertex[m->face_vertices[c]] = 1;
     for (size_t p = 0; p < s->num_points; p++)
         if (s->vertex[p]) s->vertex[p] = ++used;
-    BRIO_TRY(brio_mesh_set_vertices(m, NULL, used));
+    BRIO_FORWARD(brio_mesh_set_vertices(m, NULL, used));
     for (size_t p = 0; p < s->num_points; p++)
         if (s->vertex[p]) memcpy(m->vertices + 3 * (size_t)(s->vertex[p] - 1), points + 3 * p, 3 * sizeof *points);
     for (size_t c = 0; c < 3 * m->num_faces; c++) m->face_vertices[c] = s->vertex[m->face_vertices[c]] - 1;
     assert(used <= s->num_points);
     s->stats.vertices = used;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- all of it --- */
@@ -97,17 +93,15 @@ static void count_all(shape *s) {
 }
 
 static brio_status make_surface(shape *s, const double *points) {
-    brio_status status = BRIO_OK;
     count_all(s);
-    BRIO_REQUIRE(s->ctx, s->stats.tetrahedra > 0, BRIO_ERR_NO_ANSWER,
-                 "no tetrahedron has a value of at most alpha = %g", s->alpha);
-    BRIO_TRY(brio_refuse_small_alpha(s->ctx, s->complex, s->alpha));
-    BRIO_TRY(list_faces(s));
-    BRIO_TRY(place_vertices(s, points));
-    BRIO_TRY(brio_mesh_split_sheets(s->ctx, s->mesh));
+    BRIO_EXPECT(s->ctx, s->stats.tetrahedra > 0, BRIO_ERR_NO_ANSWER, "no tetrahedron has a value of at most alpha = %g",
+                s->alpha);
+    BRIO_FORWARD(brio_refuse_small_alpha(s->ctx, s->complex, s->alpha));
+    BRIO_FORWARD(list_faces(s));
+    BRIO_FORWARD(place_vertices(s, points));
+    BRIO_FORWARD(brio_mesh_split_sheets(s->ctx, s->mesh));
     s->stats.split = s->mesh->num_vertices - s->stats.vertices;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex, double alpha,

@@ -161,19 +161,17 @@ done:
 
 /* Lists each finite edge once, in its first tetrahedron. */
 static brio_status list_edges(const evaluation *e, edge_place **out, size_t *count) {
-    brio_status status = BRIO_OK;
     size_t capacity = 0;
     *count = 0;
     for (uint32_t tet = 0; tet < e->num_finite; tet++) {
         if (tet % SLICE == 0)
-            BRIO_TRY(brio_progress(e->ctx, "values", 0.1 + 0.1 * ((double)tet / (double)e->num_finite)));
-        BRIO_TRY(BRIO_RESERVE(e->ctx, *out, capacity, *count + 6));
+            BRIO_FORWARD(brio_progress(e->ctx, "values", 0.1 + 0.1 * ((double)tet / (double)e->num_finite)));
+        BRIO_FORWARD(BRIO_RESERVE(e->ctx, *out, capacity, *count + 6));
         for (uint8_t i = 0; i < 4; i++)
             for (uint8_t j = (uint8_t)(i + 1); j < 4; j++)
                 if (brio_ring_size(&e->t, tet, i, j) > 0) (*out)[(*count)++] = (edge_place){tet, i, j};
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Numbers the vertices in ascending order.   place  #P, zeroed; receives the number of each vertex. */
@@ -202,28 +200,23 @@ static void work_on_slice(void *user, size_t begin, size_t end, int thread) {
 
 /* Finds values of n simplices, and reports progress between slices: the part from `from` to `to` of the bar. */
 static brio_status find_all(evaluation *e, brio_part_fn body, size_t n, double from, double to) {
-    brio_status status = BRIO_OK;
     int threads = brio_threads(e->ctx, e->num_finite, TETS_A_THREAD);
     for (size_t first = 0; first < n; first += SLICE) {
         slice s = {e, body, first};
-        BRIO_TRY(brio_for_chunks(e->ctx, threads, n - first < SLICE ? n - first : SLICE, CHUNK, work_on_slice, &s));
-        BRIO_TRY(brio_progress(e->ctx, "values", from + (to - from) * ((double)first / (double)n)));
+        BRIO_FORWARD(brio_for_chunks(e->ctx, threads, n - first < SLICE ? n - first : SLICE, CHUNK, work_on_slice, &s));
+        BRIO_FORWARD(brio_progress(e->ctx, "values", from + (to - from) * ((double)first / (double)n)));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status evaluate(evaluation *e, const uint32_t *place) {
-    brio_status status = BRIO_OK;
     brio_alpha_complex *c = e->out;
-    BRIO_TRY(find_all(e, find_tetrahedra, c->counts[3], 0.2, 0.4));
-    BRIO_TRY(find_all(e, find_facets, c->counts[2], 0.4, 0.7));
-    BRIO_TRY(find_all(e, find_edges, c->counts[1], 0.7, 1));
+    BRIO_FORWARD(find_all(e, find_tetrahedra, c->counts[3], 0.2, 0.4));
+    BRIO_FORWARD(find_all(e, find_facets, c->counts[2], 0.4, 0.7));
+    BRIO_FORWARD(find_all(e, find_edges, c->counts[1], 0.7, 1));
     for (size_t n = 0; n < 2 * c->counts[1]; n++) /* every vertex has edges */
         c->simplices[0][place[c->simplices[1][n]]] = c->simplices[1][n];
-    BRIO_TRY(brio_find_vertex_values(e->ctx, c, &e->records, place));
-done:
-    return status;
+    return brio_find_vertex_values(e->ctx, c, &e->records, place);
 }
 
 static brio_status find_values(evaluation *e, const double *points, const double *weights) {

@@ -72,23 +72,21 @@ static void count_simplices(const evaluation *e, uint32_t *place) {
 }
 
 static brio_status evaluate(const evaluation *e, const uint32_t *place) {
-    brio_status status = BRIO_OK;
     brio_alpha_complex *c = e->out;
     size_t edges = 0;
     for (size_t t = 0; t < e->num_finite; t++) {
-        if (t % CHUNK == 0) BRIO_TRY(brio_progress(e->ctx, "values", 0.5 * (double)t / (double)e->num_finite));
+        if (t % CHUNK == 0) BRIO_FORWARD(brio_progress(e->ctx, "values", 0.5 * (double)t / (double)e->num_finite));
         find_triangle(e, t);
         for (int i = 0; i < 3; i++) c->simplices[0][place[e->triangle[t].vertex[i]]] = e->triangle[t].vertex[i];
     }
     for (size_t t = 0; t < e->num_finite; t++) {
-        if (t % CHUNK == 0) BRIO_TRY(brio_progress(e->ctx, "values", 0.5 + 0.5 * (double)t / (double)e->num_finite));
+        if (t % CHUNK == 0)
+            BRIO_FORWARD(brio_progress(e->ctx, "values", 0.5 + 0.5 * (double)t / (double)e->num_finite));
         for (uint32_t i = 0; i < 3; i++)
             if (is_first(e, t, i)) find_edge(e, 4 * (uint32_t)t + i, edges++);
     }
     assert(edges == c->counts[1] && c->counts[0] + c->counts[2] == edges + 1); /* Euler: a disk */
-    BRIO_TRY(brio_find_vertex_values(e->ctx, c, &e->records, place));
-done:
-    return status;
+    return brio_find_vertex_values(e->ctx, c, &e->records, place);
 }
 
 static brio_status find_values(evaluation *e, const double *points, int coordinates, const double *weights) {

@@ -17,17 +17,15 @@
 
 brio_status brio_records_take(brio_context *ctx, const double *points, int coordinates, const double *weights,
                               size_t num_points, brio_records *out) {
-    brio_status status = BRIO_OK;
     out->weighted = weights != NULL;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->of, num_points));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, out->of, num_points));
     for (size_t i = 0; i < num_points; i++) {
         for (int k = 0; k < coordinates; k++) out->of[i][k] = points[(size_t)coordinates * i + (size_t)k];
         if (weights) out->of[i][3] = weights[i];
     }
-    BRIO_TRY(
+    BRIO_FORWARD(
         brio_refuse_records(ctx, (const double(*)[4])out->of, NULL, num_points)); /* they may have changed meanwhile */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_put_simplex(const uint32_t *from, int count, uint32_t *to) {
@@ -56,17 +54,16 @@ bool brio_is_inside(const brio_records *records, const uint32_t *vertex, int cou
 }
 
 brio_status brio_alpha_room(brio_context *ctx, brio_alpha_complex *c) {
-    brio_status status = BRIO_OK;
     size_t total = 0, corners = 0;
     for (size_t k = 0; k < 4; k++) {
         total += c->counts[k];
         corners += c->counts[k] * (k + 1);
     }
-    BRIO_REQUIRE(ctx, total < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu simplices; at most 2^32 - 2", total);
-    BRIO_TRY(BRIO_ALLOC(ctx, c->simplices[0], corners));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->values[0], total));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->solid[0], total));
-    BRIO_TRY(BRIO_ALLOC(ctx, c->gabriel[0], total));
+    BRIO_EXPECT(ctx, total < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu simplices; at most 2^32 - 2", total);
+    BRIO_FORWARD(BRIO_ALLOC(ctx, c->simplices[0], corners));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, c->values[0], total));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, c->solid[0], total));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, c->gabriel[0], total));
     for (size_t k = 1; k < 4; k++) {
         c->simplices[k] = c->simplices[k - 1] + c->counts[k - 1] * k;
         c->values[k] = c->values[k - 1] + c->counts[k - 1];
@@ -74,20 +71,18 @@ brio_status brio_alpha_room(brio_context *ctx, brio_alpha_complex *c) {
         c->gabriel[k] = c->gabriel[k - 1] + c->counts[k - 1];
     }
     assert(c->values[3] + c->counts[3] == c->values[0] + total); /* the four arrays are one */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_find_vertex_values(brio_context *ctx, brio_alpha_complex *c, const brio_records *records,
                                     const uint32_t *place) {
-    brio_status status = BRIO_OK;
     double *least = c->values[0], *solid = c->solid[0];
     for (size_t v = 0; v < c->counts[0]; v++) {
         least[v] = solid[v] = INFINITY;
         c->gabriel[0][v] = 1;
     }
     for (size_t n = 0; n < c->counts[1]; n++) {
-        BRIO_TRY(brio_look(ctx, 2));
+        BRIO_FORWARD(brio_look(ctx, 2));
         for (int i = 0; i < 2; i++) {
             uint32_t own = c->simplices[1][2 * n + (size_t)i], other = c->simplices[1][2 * n + (size_t)!i];
             assert(place[own] < c->counts[0] && place[other] < c->counts[0]);
@@ -99,15 +94,12 @@ brio_status brio_find_vertex_values(brio_context *ctx, brio_alpha_complex *c, co
     }
     for (size_t v = 0; v < c->counts[0]; v++)
         if (c->gabriel[0][v]) least[v] = fmin(least[v], 0 - records->of[c->simplices[0][v]][3]);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_refuse_small_alpha(brio_context *ctx, const brio_alpha_complex *c, double alpha) {
-    brio_status status = BRIO_OK;
     if (fabs(alpha) >= DBL_MIN || brio_greatest(c->values[0], c->counts[0]) >= DBL_MIN) return BRIO_OK;
-    BRIO_REQUIRE(ctx, false, BRIO_ERR_NO_ANSWER,
-                 "squared radii of at most alpha = %g are beyond doubles: scale the points up", alpha);
-done:
-    return status;
+    BRIO_EXPECT(ctx, false, BRIO_ERR_NO_ANSWER,
+                "squared radii of at most alpha = %g are beyond doubles: scale the points up", alpha);
+    return BRIO_OK;
 }

@@ -86,18 +86,16 @@ void brio_context_set_memory_limit(brio_context *ctx, size_t bytes) {
 }
 
 brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT,
-                 "a scratch folder and a caller's allocator exclude each other");
-    if (folder) BRIO_TRY(brio_scratch_try(ctx, folder));
+    BRIO_EXPECT(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT,
+                "a scratch folder and a caller's allocator exclude each other");
+    if (folder) BRIO_FORWARD(brio_scratch_try(ctx, folder));
     brio_release(ctx, ctx->scratch);
     ctx->scratch = NULL;
     if (folder) {
-        BRIO_TRY(BRIO_ALLOC(ctx, ctx->scratch, strlen(folder) + 1));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, ctx->scratch, strlen(folder) + 1));
         strcpy(ctx->scratch, folder);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...) {

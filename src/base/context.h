@@ -1,7 +1,8 @@
 /* The context behind the public handle: how all code reports failures, takes memory and reports progress.
  *
- * Error handling has one shape. A function that can fail declares `brio_status status = BRIO_OK`. BRIO_TRY and
- * BRIO_REQUIRE jump to its one label `done:`, where it frees its workspace and returns the status. */
+ * Error handling has two shapes. A function that has nothing to free returns at once: BRIO_FORWARD and BRIO_EXPECT. One that
+ * has declares `brio_status status = BRIO_OK`; BRIO_TRY and BRIO_REQUIRE jump to its one label `done:`, where it frees its
+ * workspace and returns the status. */
 #ifndef BRIO_BASE_CONTEXT_H
 #define BRIO_BASE_CONTEXT_H
 
@@ -79,6 +80,27 @@ void brio_progress_part(brio_context *ctx, brio_bar bar, double from, double to)
 
 /** Returns the seconds of a monotonic clock. */
 double brio_seconds(void);
+
+/* --- in functions that have nothing to free --- */
+
+/** Returns the result of a call unless it is BRIO_OK. */
+#define BRIO_FORWARD(call)                                                                                             \
+    do {                                                                                                               \
+        const brio_status forwarded = (call);                                                                          \
+        if (forwarded != BRIO_OK) return forwarded;                                                                    \
+    } while (0)
+
+/** If the condition is false, stores a message and returns `code`. */
+#define BRIO_EXPECT(ctx, condition, code, ...)                                                                         \
+    do {                                                                                                               \
+        if (!(condition)) {                                                                                            \
+            const brio_status refused = (code);                                                                        \
+            brio_fail(ctx, refused, __VA_ARGS__);                                                                      \
+            return refused; /* the compiler sees that it is not BRIO_OK */                                             \
+        }                                                                                                              \
+    } while (0)
+
+/* --- in functions that free at their label done: --- */
 
 /** Assigns the result of a call to `status`; jumps to `done` unless it is BRIO_OK. */
 #define BRIO_TRY(call)                                                                                                 \

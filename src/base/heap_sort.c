@@ -36,19 +36,17 @@ static void insert_keys(uint64_t *keys, size_t n) {
 
 /* Sorts keys.   ctx  NULL for a sort that does not look. */
 static brio_status heap_sort_keys(brio_context *ctx, uint64_t *keys, size_t n) {
-    brio_status status = BRIO_OK;
     for (size_t i = n / 2; i-- > 0;) {
         key_down(keys, i, n, keys[i], NULL);
-        if (ctx) BRIO_TRY(brio_look(ctx, 1));
+        if (ctx) BRIO_FORWARD(brio_look(ctx, 1));
     }
     for (size_t last = n; last-- > 1;) {
         uint64_t moved = keys[last];
         keys[last] = keys[0];
         key_down(keys, 0, last, moved, NULL);
-        if (ctx) BRIO_TRY(brio_look(ctx, 1));
+        if (ctx) BRIO_FORWARD(brio_look(ctx, 1));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_sort_many_keys(brio_context *ctx, uint64_t *keys, size_t n) {
@@ -73,19 +71,17 @@ static void insert_indices(uint32_t *a, size_t n, brio_compare_fn compare, const
 }
 
 static brio_status heap_sort_indices(brio_context *ctx, uint32_t *a, size_t n, const index_order *order) {
-    brio_status status = BRIO_OK;
     for (size_t i = n / 2; i-- > 0;) {
         index_down(a, i, n, a[i], order);
-        if (ctx) BRIO_TRY(brio_look(ctx, 1));
+        if (ctx) BRIO_FORWARD(brio_look(ctx, 1));
     }
     for (size_t last = n; last-- > 1;) {
         uint32_t moved = a[last];
         a[last] = a[0];
         index_down(a, 0, last, moved, order);
-        if (ctx) BRIO_TRY(brio_look(ctx, 1));
+        if (ctx) BRIO_FORWARD(brio_look(ctx, 1));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_sort_many_indices(brio_context *ctx, uint32_t *a, size_t n, brio_compare_fn compare,

@@ -56,11 +56,9 @@ brio_status brio_scale(brio_context *ctx, const double *x, size_t n, int exponen
 }
 
 brio_status brio_scale_vertices(brio_context *ctx, double *vertices, size_t num_vertices, int exponent) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_scale(ctx, vertices, 3 * num_vertices, exponent, vertices));
+    BRIO_FORWARD(brio_scale(ctx, vertices, 3 * num_vertices, exponent, vertices));
     for (size_t i = 0; i < 3 * num_vertices; i++)
-        BRIO_REQUIRE(ctx, isfinite(vertices[i]), BRIO_ERR_NO_ANSWER,
-                     "doubles cannot hold vertex %zu (counted from 0) of the result: scale the points down", i / 3);
-done:
-    return status;
+        BRIO_EXPECT(ctx, isfinite(vertices[i]), BRIO_ERR_NO_ANSWER,
+                    "doubles cannot hold vertex %zu (counted from 0) of the result: scale the points down", i / 3);
+    return BRIO_OK;
 }

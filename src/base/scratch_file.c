@@ -163,12 +163,10 @@ static int allocate_pieces(int file, size_t from, size_t to) {
 
 /* Puts a mark behind the grown file, and zeros where the old one was. */
 static brio_status move_mark(brio_context *ctx, const brio_scratch_file *f, const brio_scratch_file *grown) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(put(ctx, grown, MARK));
-    if (f->size) BRIO_TRY(brio_scratch_require_whole(ctx, f));
-    if (f->size) BRIO_TRY(put(ctx, f, (const char[sizeof MARK]){0}));
-done:
-    return status;
+    BRIO_FORWARD(put(ctx, grown, MARK));
+    if (f->size) BRIO_FORWARD(brio_scratch_require_whole(ctx, f));
+    if (f->size) BRIO_FORWARD(put(ctx, f, (const char[sizeof MARK]){0}));
+    return BRIO_OK;
 }
 
 brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size) {

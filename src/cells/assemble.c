@@ -23,18 +23,16 @@ static brio_status offset_cells(assembly *a) {
     brio_cells *out = job->out;
     brio_context *ctx = job->d->ctx;
     size_t n = out->num_cells;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_offsets, n + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, a->first_corner, n + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, a->first_vertex, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_offsets, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, a->first_corner, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, a->first_vertex, n + 1));
     out->face_offsets[0] = a->first_corner[0] = a->first_vertex[0] = 0;
     for (size_t c = 0; c < n; c++) {
         out->face_offsets[c + 1] = out->face_offsets[c] + job->place[c].num_faces;
         a->first_corner[c + 1] = a->first_corner[c] + job->place[c].num_corners;
         a->first_vertex[c + 1] = a->first_vertex[c] + job->place[c].num_vertices;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- faces --- */
@@ -67,17 +65,14 @@ static brio_status make_faces(assembly *a) {
     brio_cells *out = a->job->out;
     brio_context *ctx = a->job->d->ctx;
     size_t cells = out->num_cells, faces = (size_t)out->face_offsets[cells];
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_neighbours, faces));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_areas, faces));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_normals, 3 * faces));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_neighbours, faces));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_areas, faces));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_normals, 3 * faces));
     if (a->job->vertices) {
-        BRIO_TRY(BRIO_ALLOC(ctx, out->corner_offsets, faces + 1));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, out->corner_offsets, faces + 1));
         out->corner_offsets[faces] = a->first_corner[cells];
     }
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_faces, a));
-done:
-    return status;
+    return brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_faces, a);
 }
 
 /* --- vertices --- */
@@ -86,8 +81,7 @@ done:
 static brio_status number_centres(assembly *a) {
     const brio_cell_job *job = a->job;
     const brio_diagram *d = job->d;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, a->vertex_of, d->t.count));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(d->ctx, a->vertex_of, d->t.count));
     for (int i = 0; i < job->threads; i++)
         for (size_t c = 0; c < job->recorder[i].num_corners; c++) {
             uint32_t corner = job->recorder[i].corner[c];
@@ -95,8 +89,7 @@ static brio_status number_centres(assembly *a) {
         }
     for (size_t t = 0; t < d->t.count; t++)
         if (a->vertex_of[t]) a->vertex_of[t] = (uint32_t)++a->num_voronoi;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void copy_corners(void *user, size_t from, size_t to, int thread) {
@@ -136,18 +129,15 @@ static brio_status make_vertices(assembly *a) {
     const brio_cell_job *job = a->job;
     brio_cells *out = job->out;
     brio_context *ctx = job->d->ctx;
-    brio_status status = BRIO_OK;
     size_t cells = out->num_cells;
-    BRIO_TRY(number_centres(a));
+    BRIO_FORWARD(number_centres(a));
     out->num_vertices = a->num_voronoi + (size_t)a->first_vertex[cells];
-    BRIO_REQUIRE(ctx, out->num_vertices < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu vertices of cells; at most 2^32 - 2",
-                 out->num_vertices);
-    BRIO_TRY(BRIO_ALLOC(ctx, out->vertices, 3 * out->num_vertices));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_vertices, (size_t)a->first_corner[cells]));
+    BRIO_EXPECT(ctx, out->num_vertices < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu vertices of cells; at most 2^32 - 2",
+                out->num_vertices);
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->vertices, 3 * out->num_vertices));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_vertices, (size_t)a->first_corner[cells]));
     copy_centres(a);
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_corners, a));
-done:
-    return status;
+    return brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_corners, a);
 }
 
 brio_status brio_cells_assemble(brio_cell_job *job) {

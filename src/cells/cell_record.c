@@ -93,33 +93,29 @@ static double area_of(const brio_side *s) {
 }
 
 static brio_status record_side(const brio_cell_job *job, brio_cell_recorder *r, const brio_side *s) {
-    brio_status status = BRIO_OK;
     double normal[3];
     size_t count = 0;
     unit_normal(job->d, r->star.site, (int64_t)s->site, normal);
-    BRIO_TRY(begin_face(r, (int64_t)s->site, brio_cells_held(in_lengths(job->d, area_of(s), 2)), normal));
-    if (job->vertices) BRIO_TRY(brio_star_cell_polygon(&r->star, s, &count));
-    for (size_t i = 0; i < count; i++) BRIO_TRY(add_corner(r, r->star.polygon[i]));
-done:
-    return status;
+    BRIO_FORWARD(begin_face(r, (int64_t)s->site, brio_cells_held(in_lengths(job->d, area_of(s), 2)), normal));
+    if (job->vertices) BRIO_FORWARD(brio_star_cell_polygon(&r->star, s, &count));
+    for (size_t i = 0; i < count; i++) BRIO_FORWARD(add_corner(r, r->star.polygon[i]));
+    return BRIO_OK;
 }
 
 static brio_status record_star(const brio_cell_job *job, brio_cell_recorder *r) {
     const brio_star_cell *c = &r->star;
-    brio_status status = BRIO_OK;
     cell_numbers n = {.bounded = !c->open};
     n.volume = c->place == BRIO_PLACE_INSIDE ? brio_star_cell_volume(c) : INFINITY;
     for (size_t i = 0; i < c->num_sides; i++) {
         const brio_side *s = &c->side[i];
         if (s->vertices < 3 || s->site >= job->d->num_points) continue;
         if (job->areas) n.area += area_of(s);
-        if (job->faces) BRIO_TRY(record_side(job, r, s));
+        if (job->faces) BRIO_FORWARD(record_side(job, r, s));
     }
     if (c->open) n.area = INFINITY;
     set_centroid(&n, c->moment);
     store_numbers(job, c->site, &n);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- a clipped cell --- */
@@ -127,21 +123,19 @@ done:
 /* Returns the number of a vertex of the shape as a corner: its tetrahedron, or its place among the cell's own. */
 static brio_status corner_of(const brio_cell_job *job, brio_cell_recorder *r, uint32_t v, uint32_t *num_own,
                              uint32_t *corner) {
-    brio_status status = BRIO_OK;
     const double *site = job->d->at + 3 * (size_t)r->star.site;
     *corner = r->shape.name[v];
     assert(*corner == BRIO_NO_NAME || *corner < job->d->t.count); /* bit 31 is 0: a tetrahedron */
     if (*corner != BRIO_NO_NAME) return BRIO_OK;
     if (r->own[v] == UINT32_MAX) {
-        BRIO_TRY(BRIO_RESERVE(r->ctx, r->vertex, r->vertex_capacity, r->num_vertices + 1));
+        BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->vertex, r->vertex_capacity, r->num_vertices + 1));
         for (int k = 0; k < 3; k++) r->vertex[r->num_vertices][k] = r->shape.x[v][k] + site[k];
         r->num_vertices++;
         r->own[v] = (*num_own)++;
     }
     assert(!(r->own[v] & BRIO_OWN_VERTEX)); /* bit 31 is the mark, bits 0 to 30 are the number */
     *corner = BRIO_OWN_VERTEX | r->own[v];
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns whether the corner after corner c is at the same position, as where a plane passes through a vertex. */
@@ -153,32 +147,29 @@ static bool is_repeated(const brio_polyhedron *p, const brio_face *face, size_t 
 
 static brio_status record_face(const brio_cell_job *job, brio_cell_recorder *r, const brio_face *face, double area,
                                uint32_t *num_own) {
-    brio_status status = BRIO_OK;
     double normal[3];
     uint32_t corner;
     if (face->neighbour >= 0)
         unit_normal(job->d, r->star.site, face->neighbour, normal);
     else
         memcpy(normal, job->region->plane[-1 - face->neighbour], sizeof normal);
-    BRIO_TRY(begin_face(r, face->neighbour, in_lengths(job->d, area, 2), normal));
+    BRIO_FORWARD(begin_face(r, face->neighbour, in_lengths(job->d, area, 2), normal));
     size_t apart = 0;
     for (size_t c = face->begin; c < face->end; c++) apart += !is_repeated(&r->shape, face, c);
     for (size_t c = face->begin; c < face->end && job->vertices; c++) {
         if (apart > 2 && is_repeated(&r->shape, face, c)) continue; /* a polygon has three corners */
-        BRIO_TRY(corner_of(job, r, r->shape.faces.corner[c], num_own, &corner));
-        BRIO_TRY(add_corner(r, corner));
+        BRIO_FORWARD(corner_of(job, r, r->shape.faces.corner[c], num_own, &corner));
+        BRIO_FORWARD(add_corner(r, corner));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status record_shape(const brio_cell_job *job, brio_cell_recorder *r) {
     const brio_polyhedron *p = &r->shape;
-    brio_status status = BRIO_OK;
     cell_numbers n = {.bounded = true};
     double moment[3] = {0, 0, 0};
     uint32_t num_own = 0;
-    BRIO_TRY(BRIO_RESERVE(r->ctx, r->own, r->own_capacity, p->num_vertices));
+    BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->own, r->own_capacity, p->num_vertices));
     for (size_t v = 0; v < p->num_vertices; v++) r->own[v] = UINT32_MAX;
     n.volume = brio_polyhedron_volume(p, job->centroids ? moment : NULL);
     for (size_t f = 0; f < p->faces.count && (job->areas || job->faces); f++) {
@@ -188,25 +179,23 @@ static brio_status record_shape(const brio_cell_job *job, brio_cell_recorder *r)
         if (p->faces.list[f].flat) continue;
         if (!(area >= 0)) area = 0; /* of corners that doubles cannot tell apart */
         n.area += area;
-        if (job->faces) BRIO_TRY(record_face(job, r, &p->faces.list[f], area, &num_own));
+        if (job->faces) BRIO_FORWARD(record_face(job, r, &p->faces.list[f], area, &num_own));
     }
     set_centroid(&n, moment);
     store_numbers(job, r->star.site, &n);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_cell_record(const brio_cell_job *job, brio_cell_recorder *r, uint32_t site) {
-    brio_status status = BRIO_OK;
     size_t faces = r->num_faces, corners = r->num_corners, vertices = r->num_vertices;
-    BRIO_TRY(brio_star_cell_fill(&r->star, site, job->centroids));
+    BRIO_FORWARD(brio_star_cell_fill(&r->star, site, job->centroids));
     if (job->region->num_planes && r->star.place != BRIO_PLACE_INSIDE) {
-        BRIO_TRY(brio_clip_cell(&r->star, job->region, &r->shape));
-        BRIO_TRY(record_shape(job, r));
+        BRIO_FORWARD(brio_clip_cell(&r->star, job->region, &r->shape));
+        BRIO_FORWARD(record_shape(job, r));
     } else {
-        BRIO_TRY(record_star(job, r));
+        BRIO_FORWARD(record_star(job, r));
     }
-    if (!job->place) goto done;
+    if (!job->place) return BRIO_OK;
     job->place[job->cell_of[site]] = (brio_cell_place){.face = faces,
                                                        .corner = corners,
                                                        .vertex = vertices,
@@ -214,6 +203,5 @@ brio_status brio_cell_record(const brio_cell_job *job, brio_cell_recorder *r, ui
                                                        .num_vertices = (uint32_t)(r->num_vertices - vertices),
                                                        .num_corners = r->num_corners - corners,
                                                        .thread = (int)(r - job->recorder)};
-done:
-    return status;
+    return BRIO_OK;
 }

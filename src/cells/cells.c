@@ -63,55 +63,49 @@ typedef struct {
 
 /* Completes points of dimension 0 to 2 and triangulates them again. */
 static brio_status triangulate_flat(cell_call *c) {
-    brio_status status = BRIO_OK;
     brio_completed_points *all = &c->all;
-    BRIO_TRY(brio_complete_flat_points(c->ctx, c->points, c->weights, c->num_points, all));
+    BRIO_FORWARD(brio_complete_flat_points(c->ctx, c->points, c->weights, c->num_points, all));
     brio_triangulation_free(c->own);
     c->own = NULL;
-    BRIO_TRY(brio_delaunay(c->ctx, all->points, all->weights, c->num_points + all->added, NULL, &c->own));
+    BRIO_FORWARD(brio_delaunay(c->ctx, all->points, all->weights, c->num_points + all->added, NULL, &c->own));
     c->points = all->points;
     c->weights = all->weights;
     c->diagram.flat = true;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Copies the caller's points: another thread of the caller may change them meanwhile, and the triangulation and the cells
  * must be those of the same points. */
 static brio_status copy_points(cell_call *c) {
-    brio_status status = BRIO_OK;
     size_t n = c->num_points;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->rows, 3 * n));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->rows, 3 * n));
     if (n) memcpy(c->rows, c->points, 3 * n * sizeof *c->rows);
     c->points = c->rows;
     if (!c->weights) return BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->row_weights, n));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->row_weights, n));
     if (n) memcpy(c->row_weights, c->weights, n * sizeof *c->row_weights);
     c->weights = c->row_weights;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds the triangulation to work with. */
 static brio_status triangulate(cell_call *c, const brio_triangulation *t) {
-    brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(c->ctx);
-    BRIO_TRY(copy_points(c));
-    if (t) BRIO_TRY(brio_refuse_not_finite(c->ctx, c->points, c->weights, c->num_points, NULL));
+    BRIO_FORWARD(copy_points(c));
+    if (t) BRIO_FORWARD(brio_refuse_not_finite(c->ctx, c->points, c->weights, c->num_points, NULL));
     if (!t) {
         brio_progress_part(c->ctx, bar, 0, 0.6);
-        BRIO_TRY(brio_delaunay(c->ctx, c->points, c->weights, c->num_points, NULL, &c->own));
+        BRIO_FORWARD(brio_delaunay(c->ctx, c->points, c->weights, c->num_points, NULL, &c->own));
         t = c->own;
         brio_progress_part(c->ctx, bar, 0.6, 1);
     }
     if (brio_triangulation_stats(t)->dimension < 3 && c->num_points) {
-        BRIO_TRY(triangulate_flat(c));
+        BRIO_FORWARD(triangulate_flat(c));
         t = c->own;
     }
     c->diagram.t = brio_tetrahedra_of(t);
     c->diagram.num_finite = brio_triangulation_stats(t)->tetrahedra;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Chooses the origin: 0, unless all points are far from 0 in a coordinate. A difference of two numbers of one sign of
@@ -199,44 +193,39 @@ static double choose_scale(const cell_call *c, exponents e) {
  * most FARTHEST; scaled to the middle of them, the exponents of cubes are at most 3 / 2 FARTHEST, below 1022. */
 static brio_status scale_points(cell_call *c) {
     enum { FARTHEST = 600 };
-    brio_status status = BRIO_OK;
     brio_diagram *d = &c->diagram;
     const exponents e = exponents_of(c);
     size_t rows = c->num_points + (d->flat ? BRIO_MOST_ADDED : 0);
     d->points = d->at = c->points;
     d->weights = d->square = c->weights;
-    BRIO_REQUIRE(c->ctx, e.high == INT_MIN || e.high - e.low <= FARTHEST, BRIO_ERR_ARGUMENT,
-                 "the region is too large or too small beside the points for doubles");
+    BRIO_EXPECT(c->ctx, e.high == INT_MIN || e.high - e.low <= FARTHEST, BRIO_ERR_ARGUMENT,
+                "the region is too large or too small beside the points for doubles");
     d->scale = choose_scale(c, e);
     choose_origin(c, d->origin);
     bool moved = d->origin[0] != 0 || d->origin[1] != 0 || d->origin[2] != 0;
     if (d->scale == 1 && !moved) return BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->scaled, 3 * rows));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->scaled, 3 * rows));
     for (size_t i = 0; i < 3 * rows; i++) c->scaled[i] = (c->points[i] - d->origin[i % 3]) * d->scale;
     d->at = c->scaled;
     if (!c->weights || d->scale == 1) return BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->scaled_weights, rows));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->scaled_weights, rows));
     for (size_t i = 0; i < rows; i++) c->scaled_weights[i] = c->weights[i] * d->scale * d->scale;
     d->square = c->scaled_weights;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Refuses boxes and planes that are no numbers, and planes without a normal. */
 static brio_status check_region(brio_context *ctx, const brio_cells_options *o) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, o->planes || !o->num_planes, BRIO_ERR_ARGUMENT, "%zu planes, but no array of them",
-                 o->num_planes);
+    BRIO_EXPECT(ctx, o->planes || !o->num_planes, BRIO_ERR_ARGUMENT, "%zu planes, but no array of them", o->num_planes);
     for (size_t i = 0; i < 6 && o->box; i++)
-        BRIO_REQUIRE(ctx, isfinite(o->box[i]), BRIO_ERR_ARGUMENT, "number %zu of the box is not finite", i);
+        BRIO_EXPECT(ctx, isfinite(o->box[i]), BRIO_ERR_ARGUMENT, "number %zu of the box is not finite", i);
     for (size_t i = 0; i < o->num_planes; i++) {
-        BRIO_REQUIRE(ctx, brio_all_finite(o->planes + 4 * i, 4), BRIO_ERR_ARGUMENT,
-                     "plane %zu of the region is not finite", i);
-        BRIO_REQUIRE(ctx, greatest(o->planes + 4 * i, 3) > 0, BRIO_ERR_ARGUMENT,
-                     "plane %zu of the region has the normal 0", i);
+        BRIO_EXPECT(ctx, brio_all_finite(o->planes + 4 * i, 4), BRIO_ERR_ARGUMENT,
+                    "plane %zu of the region is not finite", i);
+        BRIO_EXPECT(ctx, greatest(o->planes + 4 * i, 3) > 0, BRIO_ERR_ARGUMENT,
+                    "plane %zu of the region has the normal 0", i);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the region of the walls of the box and of the planes. */
@@ -264,21 +253,19 @@ done:
 static brio_status make_cells(brio_cell_job *job) {
     const brio_diagram *d = job->d;
     brio_cells *out = job->out;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(d->ctx, job->cell_of, d->num_points));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, job->cell_of, d->num_points));
     for (size_t p = 0; p < d->num_points; p++)
         if (d->rank[p] != UINT32_MAX) job->cell_of[p] = (uint32_t)out->num_cells++;
     size_t n = out->num_cells;
-    BRIO_TRY(BRIO_ALLOC(d->ctx, out->site, n));
-    BRIO_TRY(BRIO_ALLOC(d->ctx, out->volume, n));
-    BRIO_TRY(BRIO_ALLOC(d->ctx, out->bounded, n));
-    if (job->areas) BRIO_TRY(BRIO_ALLOC(d->ctx, out->area, n));
-    if (job->centroids) BRIO_TRY(BRIO_ALLOC(d->ctx, out->centroid, 3 * n));
-    if (job->faces) BRIO_TRY(BRIO_ALLOC(d->ctx, job->place, n));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->site, n));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->volume, n));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->bounded, n));
+    if (job->areas) BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->area, n));
+    if (job->centroids) BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->centroid, 3 * n));
+    if (job->faces) BRIO_FORWARD(BRIO_ALLOC(d->ctx, job->place, n));
     for (size_t p = 0; p < d->num_points; p++)
         if (d->rank[p] != UINT32_MAX) out->site[job->cell_of[p]] = (uint32_t)p;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 typedef struct {
@@ -366,14 +353,12 @@ done:
  * than its volume. Skips volumes that doubles cannot hold. */
 static brio_status check_filled(brio_context *ctx, const brio_cells *cells) {
     static const double MOST = 0.01; /* chosen: what is left of the accuracy of the cells is of no use */
-    brio_status status = BRIO_OK;
     double filled = cells->volume_sum / cells->region_volume;
     if (!cells->num_cells || !isnormal(cells->region_volume) || !isfinite(filled)) return BRIO_OK;
-    BRIO_REQUIRE(ctx, fabs(filled - 1) <= MOST, BRIO_ERR_NO_ANSWER,
-                 "the cells fill %.3g of the region: it is too small or too thin beside its distance from the points",
-                 filled);
-done:
-    return status;
+    BRIO_EXPECT(ctx, fabs(filled - 1) <= MOST, BRIO_ERR_NO_ANSWER,
+                "the cells fill %.3g of the region: it is too small or too thin beside its distance from the points",
+                filled);
+    return BRIO_OK;
 }
 
 /* --- the call --- */
@@ -392,25 +377,22 @@ static void end_call(cell_call *c) {
 
 static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *out) {
     const brio_cells_options *o = &c->options;
-    brio_status status = BRIO_OK;
     brio_cell_job job = {.d = &c->diagram, .region = &c->region, .out = out};
     job.areas = o->areas, job.centroids = o->centroids, job.vertices = o->vertices;
     job.faces = o->faces || o->vertices;
     c->diagram.ctx = c->ctx;
     c->diagram.num_points = c->num_points;
-    BRIO_TRY(check_region(c->ctx, o));
-    BRIO_TRY(triangulate(c, t));
-    BRIO_TRY(scale_points(c));
-    BRIO_TRY(make_region(c));
+    BRIO_FORWARD(check_region(c->ctx, o));
+    BRIO_FORWARD(triangulate(c, t));
+    BRIO_FORWARD(scale_points(c));
+    BRIO_FORWARD(make_region(c));
     out->region_volume = c->region.num_planes ? c->region.volume : INFINITY;
     for (int k = 0; k < 3; k++) out->region_volume /= c->diagram.scale;
     c->diagram.volumes_only = !job.areas && !job.centroids && !job.faces && !c->diagram.flat;
-    BRIO_TRY(brio_diagram_fill(&c->diagram, &c->region));
-    BRIO_TRY(compute(&job));
-    BRIO_TRY(check_filled(c->ctx, out));
-    BRIO_TRY(brio_progress(c->ctx, "cells", 1));
-done:
-    return status;
+    BRIO_FORWARD(brio_diagram_fill(&c->diagram, &c->region));
+    BRIO_FORWARD(compute(&job));
+    BRIO_FORWARD(check_filled(c->ctx, out));
+    return brio_progress(c->ctx, "cells", 1);
 }
 
 brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, const double *points,

@@ -85,22 +85,20 @@ static void list_tetrahedra(brio_diagram *d) {
 }
 
 brio_status brio_diagram_find_centres(brio_diagram *d, const brio_region *region) {
-    brio_status status = BRIO_OK;
     placing p = {d, region};
     size_t batches = (d->num_finite + BRIO_CENTRE_BATCH - 1) / BRIO_CENTRE_BATCH;
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->centre, d->t.count));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->centre, d->t.count));
     if (d->volumes_only) {
-        BRIO_TRY(BRIO_ALLOC(d->ctx, d->id, d->num_finite));
-        BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, d->marked, d->num_vertices));
+        BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->id, d->num_finite));
+        BRIO_FORWARD(BRIO_ALLOC_ZERO(d->ctx, d->marked, d->num_vertices));
     }
-    BRIO_TRY(brio_for(d->ctx, brio_threads(d->ctx, batches, BATCHES_A_THREAD), batches, find_batches, &p));
+    BRIO_FORWARD(brio_for(d->ctx, brio_threads(d->ctx, batches, BATCHES_A_THREAD), batches, find_batches, &p));
     set_infinite(d);
     d->num_listed = d->t.count;
-    if (!d->volumes_only) goto done;
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->listed, d->t.count));
+    if (!d->volumes_only) return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->listed, d->t.count));
     list_tetrahedra(d);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void find_places(void *user, size_t from, size_t to, int thread) {

@@ -15,9 +15,8 @@
 static brio_status cut_from_region(const brio_star_cell *c, const brio_region *region, brio_polyhedron *p) {
     const brio_diagram *d = c->d;
     const double *site = d->at + 3 * (size_t)c->site;
-    brio_status status = BRIO_OK;
     bool neighbours = false, faces = false;
-    BRIO_TRY(brio_polyhedron_copy(p, &region->shape, site));
+    BRIO_FORWARD(brio_polyhedron_copy(p, &region->shape, site));
     for (size_t i = 0; i < c->num_sides && p->faces.count; i++) {
         const brio_side *s = &c->side[i];
         double plane[4];
@@ -27,11 +26,10 @@ static brio_status cut_from_region(const brio_star_cell *c, const brio_region *r
         faces = true;
         for (size_t k = 0; k < 3; k++) plane[k] = d->at[3 * (size_t)s->site + k] - site[k];
         plane[3] = brio_dot(plane, s->foot);
-        BRIO_TRY(brio_polyhedron_cut(p, plane, (int64_t)s->site));
+        BRIO_FORWARD(brio_polyhedron_cut(p, plane, (int64_t)s->site));
     }
     if (neighbours && !faces) brio_polyhedron_clear(p);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds the vertex of the polyhedron with a name, or adds it. The hash table of the star cell now holds names: its sides
@@ -53,7 +51,6 @@ static brio_status vertex_of(brio_star_cell *c, brio_polyhedron *p, uint32_t nam
 
 /* Fills the polyhedron with the bounded cell as it is. */
 static brio_status take_cell(brio_star_cell *c, brio_polyhedron *p) {
-    brio_status status = BRIO_OK;
     brio_polyhedron_clear(p);
     memset(c->slot, 0, c->num_slots * sizeof *c->slot);
     for (size_t i = 0; i < c->num_sides; i++) {
@@ -61,15 +58,14 @@ static brio_status take_cell(brio_star_cell *c, brio_polyhedron *p) {
         size_t count;
         uint32_t vertex;
         if (s->vertices < 3) continue;
-        BRIO_TRY(brio_star_cell_polygon(c, s, &count));
-        BRIO_TRY(brio_polyhedron_add_face(p, (int64_t)s->site));
+        BRIO_FORWARD(brio_star_cell_polygon(c, s, &count));
+        BRIO_FORWARD(brio_polyhedron_add_face(p, (int64_t)s->site));
         for (size_t j = 0; j < count; j++) {
-            BRIO_TRY(vertex_of(c, p, c->polygon[j], &vertex));
-            BRIO_TRY(brio_polyhedron_add_corner(p, vertex));
+            BRIO_FORWARD(vertex_of(c, p, c->polygon[j], &vertex));
+            BRIO_FORWARD(brio_polyhedron_add_corner(p, vertex));
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_clip_cell(brio_star_cell *c, const brio_region *region, brio_polyhedron *p) {

@@ -3,17 +3,14 @@
 #include "base/memory.h"
 
 brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_diagram_order_vertices(d));
-    BRIO_TRY(brio_diagram_find_centres(d, region));
-    BRIO_TRY(brio_progress(d->ctx, "cells", 0.2));
-    BRIO_TRY(brio_diagram_unite_ties(d));
-    BRIO_TRY(brio_diagram_find_places(d, region));
-    BRIO_TRY(brio_progress(d->ctx, "cells", 0.3));
-    BRIO_TRY(brio_diagram_gather_stars(d));
-    BRIO_TRY(brio_progress(d->ctx, "cells", 0.4));
-done:
-    return status;
+    BRIO_FORWARD(brio_diagram_order_vertices(d));
+    BRIO_FORWARD(brio_diagram_find_centres(d, region));
+    BRIO_FORWARD(brio_progress(d->ctx, "cells", 0.2));
+    BRIO_FORWARD(brio_diagram_unite_ties(d));
+    BRIO_FORWARD(brio_diagram_find_places(d, region));
+    BRIO_FORWARD(brio_progress(d->ctx, "cells", 0.3));
+    BRIO_FORWARD(brio_diagram_gather_stars(d));
+    return brio_progress(d->ctx, "cells", 0.4);
 }
 
 void brio_diagram_free(brio_diagram *d) {

@@ -44,17 +44,15 @@ void brio_polyhedron_free(brio_polyhedron *p) {
 
 brio_status brio_polyhedron_add_vertex(brio_polyhedron *p, const double x[3], uint32_t name,
                                        const brio_exact_vertex *exact) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->x, p->x_capacity, p->num_vertices + 1));
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->name, p->name_capacity, p->num_vertices + 1));
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->exact, p->exact_capacity, p->num_vertices + 1));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->x, p->x_capacity, p->num_vertices + 1));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->name, p->name_capacity, p->num_vertices + 1));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->exact, p->exact_capacity, p->num_vertices + 1));
     memcpy(p->x[p->num_vertices], x, sizeof *p->x);
     assert(exact || !p->judge); /* I2 */
     assert(p->num_vertices < NONE);
     if (exact) p->exact[p->num_vertices] = *exact;
     p->name[p->num_vertices++] = name;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status begin_face(brio_context *ctx, brio_faces *f, int64_t neighbour) {
@@ -85,37 +83,33 @@ brio_status brio_polyhedron_set_box(brio_polyhedron *p, const double low[3], con
     /* bit k of a corner: the high side in coordinate k */
     static const uint8_t CORNER[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                          {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    brio_status status = BRIO_OK;
     brio_polyhedron_clear(p);
     for (int v = 0; v < 8; v++) {
         double x[3] = {v & 1 ? high[0] : low[0], v & 2 ? high[1] : low[1], v & 4 ? high[2] : low[2]};
         const brio_exact_vertex walls = {{v & 1 ? -2 : -1, v & 2 ? -4 : -3, v & 4 ? -6 : -5},
                                          (v & 1) ^ (v >> 1 & 1) ^ (v >> 2) ? 1 : -1};
-        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &walls));
+        BRIO_FORWARD(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &walls));
     }
     for (int f = 0; f < 6; f++) {
-        BRIO_TRY(brio_polyhedron_add_face(p, -1 - f));
-        for (int i = 0; i < 4; i++) BRIO_TRY(brio_polyhedron_add_corner(p, CORNER[f][i]));
+        BRIO_FORWARD(brio_polyhedron_add_face(p, -1 - f));
+        for (int i = 0; i < 4; i++) BRIO_FORWARD(brio_polyhedron_add_corner(p, CORNER[f][i]));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_polyhedron_copy(brio_polyhedron *p, const brio_polyhedron *from, const double origin[3]) {
     const brio_faces *f = &from->faces;
-    brio_status status = BRIO_OK;
     brio_polyhedron_clear(p);
     for (size_t v = 0; v < from->num_vertices; v++) {
         double x[3] = {from->x[v][0] - origin[0], from->x[v][1] - origin[1], from->x[v][2] - origin[2]};
-        BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &from->exact[v]));
+        BRIO_FORWARD(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &from->exact[v]));
     }
     for (size_t i = 0; i < f->count; i++) {
         const brio_face *face = &f->list[i];
-        BRIO_TRY(brio_polyhedron_add_face(p, face->neighbour));
-        for (size_t c = face->begin; c < face->end; c++) BRIO_TRY(brio_polyhedron_add_corner(p, f->corner[c]));
+        BRIO_FORWARD(brio_polyhedron_add_face(p, face->neighbour));
+        for (size_t c = face->begin; c < face->end; c++) BRIO_FORWARD(brio_polyhedron_add_corner(p, f->corner[c]));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- cutting --- */
@@ -147,7 +141,6 @@ static int find_heights(brio_polyhedron *p, const double plane[4], int64_t neigh
 /* Finds or makes the vertex where the edge between `in` and `out` passes the plane. The edge is of two faces, which ask one
  * after the other.   planes  the neighbours of the face that asks, and of the plane */
 static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, const int64_t planes[2], uint32_t *vertex) {
-    brio_status status = BRIO_OK;
     for (size_t i = p->num_cut; i-- > 0;)
         if (p->cut[i].in == in && p->cut[i].out == out) {
             *vertex = p->cut[i].vertex;
@@ -159,15 +152,14 @@ static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, const
     double x[3], share = p->height[in] / (p->height[in] - p->height[out]);
     for (int k = 0; k < 3; k++) x[k] = p->x[in][k] + share * (p->x[out][k] - p->x[in][k]);
     *vertex = (uint32_t)p->num_vertices;
-    BRIO_TRY(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &exact));
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->cut, p->cut_capacity, p->num_cut + 1));
+    BRIO_FORWARD(brio_polyhedron_add_vertex(p, x, BRIO_NO_NAME, &exact));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->cut, p->cut_capacity, p->num_cut + 1));
     p->height[*vertex] = 0;
     p->after[*vertex] = NONE;
     p->cut[p->num_cut++] = (brio_cut_vertex){in, out, *vertex};
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds to `kept` what a face has under the plane, or nothing. The new face runs along the cut of this face the other way:
@@ -176,18 +168,17 @@ static brio_status keep_face(brio_polyhedron *p, const brio_face *face, int64_t 
     const uint32_t *corner = p->faces.corner;
     const int64_t planes[2] = {face->neighbour, neighbour};
     bool under = false;
-    brio_status status = BRIO_OK;
     uint32_t left = NONE, back = NONE, between;
-    BRIO_TRY(begin_face(p->ctx, &p->kept, face->neighbour));
+    BRIO_FORWARD(begin_face(p->ctx, &p->kept, face->neighbour));
     for (size_t c = face->begin; c < face->end; c++) {
         uint32_t u = corner[c], v = corner[c + 1 < face->end ? c + 1 : face->begin];
         assert(u < p->num_vertices && v < p->num_vertices);
         bool over = p->height[u] > 0, next_over = p->height[v] > 0;
         under |= p->height[u] < 0;
-        if (!over) BRIO_TRY(add_corner(p->ctx, &p->kept, u));
+        if (!over) BRIO_FORWARD(add_corner(p->ctx, &p->kept, u));
         if (over == next_over) continue;
-        BRIO_TRY(over ? cut_edge(p, v, u, planes, &between) : cut_edge(p, u, v, planes, &between));
-        BRIO_TRY(add_corner(p->ctx, &p->kept, between));
+        BRIO_FORWARD(over ? cut_edge(p, v, u, planes, &between) : cut_edge(p, u, v, planes, &between));
+        BRIO_FORWARD(add_corner(p->ctx, &p->kept, between));
         if (!over)
             left = between;
         else if (left == NONE)
@@ -199,8 +190,7 @@ static brio_status keep_face(brio_polyhedron *p, const brio_face *face, int64_t 
     brio_face *kept = &p->kept.list[p->kept.count - 1];
     kept->flat = p->judge && (face->flat || !under);
     if (kept->begin == p->kept.num_corners) p->kept.count--;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Marks the vertices that are cut off, so that later cuts do not look at them. */
@@ -211,20 +201,18 @@ static void drop_vertices(brio_polyhedron *p) {
 
 /* Adds the cycles of cut vertices as faces. There is one, unless rounding made a corner not convex. */
 static brio_status close_cut(brio_polyhedron *p, int64_t neighbour) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < p->num_cut; i++) {
         uint32_t v = p->cut[i].vertex;
         if (p->after[v] == NONE) continue;
-        BRIO_TRY(begin_face(p->ctx, &p->kept, neighbour));
+        BRIO_FORWARD(begin_face(p->ctx, &p->kept, neighbour));
         for (uint32_t next; p->after[v] != NONE; v = next) {
             next = p->after[v];
             p->after[v] = NONE;
-            BRIO_TRY(add_corner(p->ctx, &p->kept, v));
+            BRIO_FORWARD(add_corner(p->ctx, &p->kept, v));
         }
         assert(v == p->cut[i].vertex); /* a cycle (I1) */
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds what the new vertices are exactly, now that both faces of their edges are known. */
@@ -263,24 +251,22 @@ static bool edges_are_paired(const brio_polyhedron *p) {
 #endif
 
 brio_status brio_polyhedron_cut(brio_polyhedron *p, const double plane[4], int64_t neighbour) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
-    BRIO_TRY(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->height, p->height_capacity, p->num_vertices));
+    BRIO_FORWARD(BRIO_RESERVE(p->ctx, p->after, p->after_capacity, p->num_vertices));
     int side = find_heights(p, plane, neighbour);
     if (side < 0) p->faces.count = p->faces.num_corners = 0;
     if (side == 0 && p->judge) take_face_in_plane(p, neighbour);
     if (side <= 0) return BRIO_OK;
     p->kept.count = p->kept.num_corners = p->num_cut = 0;
-    for (size_t f = 0; f < p->faces.count; f++) BRIO_TRY(keep_face(p, &p->faces.list[f], neighbour));
+    for (size_t f = 0; f < p->faces.count; f++) BRIO_FORWARD(keep_face(p, &p->faces.list[f], neighbour));
     orient_cut(p);
-    BRIO_TRY(close_cut(p, neighbour));
+    BRIO_FORWARD(close_cut(p, neighbour));
     drop_vertices(p);
     brio_faces old = p->faces;
     p->faces = p->kept;
     p->kept = old;
     assert(edges_are_paired(p)); /* I1 */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- measures --- */

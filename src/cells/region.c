@@ -14,10 +14,9 @@ enum { MOST_DOUBLINGS = 40 };
 
 static brio_status take_planes(brio_context *ctx, const double *planes, const double origin[3], double scale,
                                brio_region *r) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, r->plane, r->num_planes));
-    BRIO_TRY(BRIO_ALLOC(ctx, r->given, r->num_planes));
-    BRIO_TRY(BRIO_ALLOC(ctx, r->terms, r->num_planes));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, r->plane, r->num_planes));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, r->given, r->num_planes));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, r->terms, r->num_planes));
     memcpy(r->given, planes, r->num_planes * sizeof *r->given);
     for (size_t i = 0; i < r->num_planes; i++) {
         const double *from = planes + 4 * i;
@@ -29,10 +28,9 @@ static brio_status take_planes(brio_context *ctx, const double *planes, const do
         for (int k = 0; k < 3; k++) r->plane[i][k] = n[k] / length;
         r->plane[i][3] = (from[3] - brio_dot(from, origin)) / most / length * scale;
         r->terms[i] = terms / most / length * scale;
-        BRIO_REQUIRE(ctx, isfinite(r->plane[i][3]), BRIO_ERR_ARGUMENT, "plane %zu of the region is too far", i);
+        BRIO_EXPECT(ctx, isfinite(r->plane[i][3]), BRIO_ERR_ARGUMENT, "plane %zu of the region is too far", i);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Writes the bounding box of the corners of a polyhedron. Returns whether a face is a wall of the box it came from,
@@ -54,18 +52,16 @@ static bool find_bounds(const brio_polyhedron *p, int64_t walls, double low[3], 
 
 /* Cuts the region out of a box. The box' own walls become neighbours below -num_planes. */
 static brio_status cut_out(brio_region *r, const double low[3], const double high[3]) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_polyhedron_set_box(&r->shape, low, high));
+    BRIO_FORWARD(brio_polyhedron_set_box(&r->shape, low, high));
     for (int f = 0; f < 6; f++) r->shape.faces.list[f].neighbour -= (int64_t)r->num_planes;
-    for (size_t i = 0; i < r->num_planes; i++) BRIO_TRY(brio_polyhedron_cut(&r->shape, r->plane[i], -1 - (int64_t)i));
-done:
-    return status;
+    for (size_t i = 0; i < r->num_planes; i++)
+        BRIO_FORWARD(brio_polyhedron_cut(&r->shape, r->plane[i], -1 - (int64_t)i));
+    return BRIO_OK;
 }
 
 /* Cuts the region out of ever larger cubes; writes its bounds. A region without an end is cut by the walls of every cube,
  * until it is too thin beside a cube for doubles and seems to be empty. */
 static brio_status search(brio_context *ctx, brio_region *r, double low[3], double high[3]) {
-    brio_status status = BRIO_OK;
     static const char *const UNBOUNDED = "the region is unbounded, or reaches too far beside its width for doubles";
     int64_t walls = -(int64_t)r->num_planes;
     double half = 0;
@@ -74,14 +70,13 @@ static brio_status search(brio_context *ctx, brio_region *r, double low[3], doub
     half = half > 0 ? 2 * half : 1;
     for (int n = 0; open && n < MOST_DOUBLINGS; n++, half *= 4) {
         const double least[3] = {-half, -half, -half}, most[3] = {half, half, half};
-        BRIO_TRY(cut_out(r, least, most));
-        BRIO_REQUIRE(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT, "%s",
-                     n > 0 ? UNBOUNDED : "the region is empty, or too small beside the points for doubles");
+        BRIO_FORWARD(cut_out(r, least, most));
+        BRIO_EXPECT(ctx, r->shape.faces.count > 0, BRIO_ERR_ARGUMENT, "%s",
+                    n > 0 ? UNBOUNDED : "the region is empty, or too small beside the points for doubles");
         open = find_bounds(&r->shape, walls, low, high);
     }
-    BRIO_REQUIRE(ctx, !open, BRIO_ERR_ARGUMENT, "%s", UNBOUNDED);
-done:
-    return status;
+    BRIO_EXPECT(ctx, !open, BRIO_ERR_ARGUMENT, "%s", UNBOUNDED);
+    return BRIO_OK;
 }
 
 /* Returns whether plane i is the wall of a box, for i from 0 to 5 in the order of the neighbours of brio_polyhedron_set_box. */
@@ -142,30 +137,29 @@ static double volume_of(const brio_region *r) {
 
 brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_planes, const double origin[3],
                             double scale, brio_region *r) {
-    brio_status status = BRIO_OK;
     double low[3], high[3];
     *r = (brio_region){.num_planes = num_planes, .shape.ctx = ctx};
     if (!num_planes) return BRIO_OK;
-    BRIO_TRY(take_planes(ctx, planes, origin, scale, r));
+    BRIO_FORWARD(take_planes(ctx, planes, origin, scale, r));
     if (is_box(r)) {
         for (int k = 0; k < 3; k++) low[k] = -r->plane[2 * k][3], high[k] = r->plane[2 * k + 1][3];
-        BRIO_REQUIRE(ctx, low[0] < high[0] && low[1] < high[1] && low[2] < high[2], BRIO_ERR_ARGUMENT,
-                     "the region is empty, or too small beside the points for doubles");
-        BRIO_TRY(brio_polyhedron_set_box(&r->shape, low, high));
+        BRIO_EXPECT(ctx, low[0] < high[0] && low[1] < high[1] && low[2] < high[2], BRIO_ERR_ARGUMENT,
+                    "the region is empty, or too small beside the points for doubles");
+        BRIO_FORWARD(brio_polyhedron_set_box(&r->shape, low, high));
         r->box = true;
         memcpy(r->low, low, sizeof low);
         memcpy(r->high, high, sizeof high);
     } else {
-        BRIO_TRY(search(ctx, r, low, high));
+        BRIO_FORWARD(search(ctx, r, low, high));
         double outer[2][3], found[2][3];
         for (int k = 0; k < 3; k++) {
             double more = (high[k] - low[k]) / 8;
             outer[0][k] = low[k] - more, outer[1][k] = high[k] + more;
         }
-        BRIO_TRY(cut_out(r, outer[0], outer[1]));
+        BRIO_FORWARD(cut_out(r, outer[0], outer[1]));
         /* so flat that rounding leaves a wall of the box */
-        BRIO_REQUIRE(ctx, !find_bounds(&r->shape, -(int64_t)num_planes, found[0], found[1]), BRIO_ERR_ARGUMENT,
-                     "the region is too flat");
+        BRIO_EXPECT(ctx, !find_bounds(&r->shape, -(int64_t)num_planes, found[0], found[1]), BRIO_ERR_ARGUMENT,
+                    "the region is too flat");
         name_corners(r);
     }
     for (int k = 0; k < 3; k++) {
@@ -173,10 +167,9 @@ brio_status brio_region_new(brio_context *ctx, const double *planes, size_t num_
         r->reach = fmax(r->reach, high[k] - low[k]);
     }
     r->volume = r->box ? (high[0] - low[0]) * (high[1] - low[1]) * (high[2] - low[2]) : volume_of(r);
-    BRIO_REQUIRE(ctx, r->volume > 0, BRIO_ERR_ARGUMENT,
-                 "the region is empty, or too small beside the points for doubles");
-done:
-    return status;
+    BRIO_EXPECT(ctx, r->volume > 0, BRIO_ERR_ARGUMENT,
+                "the region is empty, or too small beside the points for doubles");
+    return BRIO_OK;
 }
 
 void brio_region_free(brio_region *r) {

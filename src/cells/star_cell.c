@@ -25,17 +25,15 @@ void brio_star_cell_free(brio_star_cell *c) {
 /* Makes room for the sides of a star of `size` tetrahedra, and empties the hash table. A star of n tetrahedra has at most
  * n / 2 + 2 neighbours, the infinite vertex included. */
 static brio_status make_room(brio_star_cell *c, size_t size) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = c->d->ctx;
     size_t most = size / 2 + 3, slots = 32;
     while (slots < 4 * most) slots *= 2;
-    BRIO_TRY(BRIO_RESERVE(ctx, c->side, c->side_capacity, most));
-    BRIO_TRY(BRIO_RESERVE(ctx, c->slot, c->slot_capacity, slots));
+    BRIO_FORWARD(BRIO_RESERVE(ctx, c->side, c->side_capacity, most));
+    BRIO_FORWARD(BRIO_RESERVE(ctx, c->slot, c->slot_capacity, slots));
     memset(c->slot, 0, slots * sizeof *c->slot);
     c->num_slots = slots;
     c->num_sides = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Writes the foot of the face that a site shares with its neighbour. */
@@ -170,17 +168,15 @@ static void drop_infinite(brio_star_cell *c, size_t *count) {
 
 brio_status brio_star_cell_polygon(brio_star_cell *c, const brio_side *side, size_t *count) {
     const brio_tetrahedra *t = &c->d->t;
-    brio_status status = BRIO_OK;
     const uint32_t *v = t->tet[side->tet].vertex;
     *count = 0;
     if (c->d->flat) return BRIO_OK;
     brio_ring ring =
         brio_ring_second(t, side->tet, brio_slot_of_vertex(v, c->site), brio_slot_of_vertex(v, side->site));
-    BRIO_TRY(append(c, side->tet, count));
-    do BRIO_TRY(append(c, ring.tet, count));
+    BRIO_FORWARD(append(c, side->tet, count));
+    do BRIO_FORWARD(append(c, ring.tet, count));
     while (brio_ring_next(&ring));
     if (*count > 1 && c->polygon[0] == c->polygon[*count - 1]) --*count;
     if (side->open) drop_infinite(c, count);
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -23,11 +23,10 @@ static void copy_points(void *user, size_t from, size_t to, int thread) {
 }
 
 static brio_status rank_vertices(brio_diagram *d, size_t rows) {
-    brio_status status = BRIO_OK;
     uint32_t n = 0;
     for (size_t p = 0; p < rows; p++) d->rank[p] = UINT32_MAX;
     for (size_t t = 0; t < d->num_finite; t++) {
-        BRIO_TRY(brio_look(d->ctx, 1));
+        BRIO_FORWARD(brio_look(d->ctx, 1));
         for (int i = 0; i < 4; i++) {
             uint32_t p = d->t.tet[t].vertex[i];
             if (d->rank[p] != UINT32_MAX) continue;
@@ -37,20 +36,15 @@ static brio_status rank_vertices(brio_diagram *d, size_t rows) {
         }
     }
     d->num_vertices = n;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_diagram_order_vertices(brio_diagram *d) {
-    brio_status status = BRIO_OK;
     size_t rows = d->num_points + (d->flat ? 3 : 0);
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->order, rows));
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->rank, rows));
-    BRIO_TRY(rank_vertices(d, rows));
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->ranked, 3 * d->num_vertices));
-    if (d->square) BRIO_TRY(BRIO_ALLOC(d->ctx, d->ranked_square, d->num_vertices));
-    BRIO_TRY(
-        brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, copy_points, d));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->order, rows));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->rank, rows));
+    BRIO_FORWARD(rank_vertices(d, rows));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->ranked, 3 * d->num_vertices));
+    if (d->square) BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->ranked_square, d->num_vertices));
+    return brio_for(d->ctx, brio_threads(d->ctx, d->num_vertices, VERTICES_A_THREAD), d->num_vertices, copy_points, d);
 }

@@ -312,7 +312,6 @@ done:
 
 brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *t, const double *points,
                                    size_t num_points, double theta, brio_pole_vectors *out) {
-    brio_status status = BRIO_OK;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
     assert(num_points == s->points && 0 < theta && theta < 1.6);
     *out = (brio_pole_vectors){.num_finite = s->tetrahedra,
@@ -321,13 +320,11 @@ brio_status brio_pole_vectors_find(brio_context *ctx, const brio_triangulation *
                                .points = points,
                                .theta = theta};
     out->t = brio_tetrahedra_of(t);
-    BRIO_TRY(BRIO_ALLOC(ctx, out->centre, 4 * out->t.count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->plane, 4 * num_points));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->pole, 2 * num_points));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->sides, out->t.count));
-    BRIO_TRY(search_poles(ctx, out));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->centre, 4 * out->t.count));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, out->plane, 4 * num_points));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->pole, 2 * num_points));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->sides, out->t.count));
+    return search_poles(ctx, out);
 }
 
 void brio_pole_vectors_drop(brio_context *ctx, brio_pole_vectors *v) {

@@ -119,17 +119,15 @@ static void discard_bad(finder *f, const brio_pole_filter *filter, const double 
 }
 
 static brio_status look_at_shapes(brio_context *ctx, finder *f, const brio_pole_filter *filter, brio_poles *out) {
-    brio_status status = BRIO_OK;
     brio_shaped_cells cells = {f->tet, f->num_tets, f->centre, f->points, f->num_samples, f->best};
     double r = filter->sampling_density, most = filter->shapes;
     if (r > 0) most = fmax(most, (1 - r) / (1.3 * r));
     if (!(most > 0)) return BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, out->shape, f->num_samples));
-    BRIO_TRY(brio_cell_shapes(ctx, &cells, 1.01 * most,
-                              out->shape)); /* 1.01, chosen: the cut exceeds `most` despite rounding */
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->shape, f->num_samples));
+    BRIO_FORWARD(brio_cell_shapes(ctx, &cells, 1.01 * most,
+                                  out->shape)); /* 1.01, chosen: the cut exceeds `most` despite rounding */
     if (r > 0) discard_bad(f, filter, out->shape, &out->bad_cells);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- from tetrahedra to numbered poles --- */

@@ -73,32 +73,28 @@ static double delaunay_bytes(double points, const brio_triangulation_size *size,
 brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                    const brio_delaunay_options *options, uint64_t *bytes) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     brio_delaunay_options o = brio_delaunay_options_default();
     brio_triangulation_size size = {0};
     *bytes = 0;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
-    BRIO_TRY(brio_delaunay_check_options(ctx, num_points, &o));
-    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
-    BRIO_TRY(brio_estimate_size(ctx, points, weights, num_points, &size));
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
+    BRIO_FORWARD(brio_delaunay_check_options(ctx, num_points, &o));
+    BRIO_FORWARD(brio_refuse_points(ctx, points, num_points));
+    BRIO_FORWARD(brio_estimate_size(ctx, points, weights, num_points, &size));
     double n = (double)num_points;
     double sequence = weights ? sequence_bytes(n, &o) : 0;
     *bytes = bytes_of(delaunay_bytes(n, &size, sequence, brio_context_threads(ctx) > 1) + location_bytes(n, &o));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_estimate_tetrahedra(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                      uint64_t *tetrahedra) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     brio_triangulation_size size = {0};
     *tetrahedra = 0;
-    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
-    BRIO_TRY(brio_estimate_size(ctx, points, weights, num_points, &size));
+    BRIO_FORWARD(brio_refuse_points(ctx, points, num_points));
+    BRIO_FORWARD(brio_estimate_size(ctx, points, weights, num_points, &size));
     *tetrahedra = (uint64_t)size.tetrahedra;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the estimate of a crust.   each  bytes a point of the balls and the faces. */

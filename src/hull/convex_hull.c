@@ -190,16 +190,14 @@ done:
 }
 
 static brio_status make_mesh(hull *h, const brio_convex_hull_options *o, brio_mesh *mesh) {
-    brio_status status = BRIO_OK;
     if (h->stats.dimension < 0) return BRIO_OK;
-    BRIO_TRY(place_vertices(h, mesh, o->samples));
+    BRIO_FORWARD(place_vertices(h, mesh, o->samples));
     if (h->stats.dimension >= 2)
-        BRIO_TRY(put_faces(h, o->polygons, mesh));
+        BRIO_FORWARD(put_faces(h, o->polygons, mesh));
     else if (h->stats.dimension == 1)
-        BRIO_TRY(brio_mesh_set_edges(mesh, h->faces.corner, 1));
+        BRIO_FORWARD(brio_mesh_set_edges(mesh, h->faces.corner, 1));
     lap(h, &h->stats.mesh_seconds);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num_points,

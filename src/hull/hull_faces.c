@@ -50,10 +50,9 @@ void brio_rotate_polygon(const double (*record)[4], uint32_t *corner, size_t siz
 /* Walks round each face once. Crossed creases become 2. */
 static brio_status list_faces(brio_context *ctx, const brio_polytope *p, const double (*record)[4], uint8_t *crease,
                               const uint8_t *degree, brio_hull_polygons *out) {
-    brio_status status = BRIO_OK;
     uint64_t corners = 0;
     for (uint32_t f = 0; f < p->count; f++) {
-        BRIO_TRY(brio_look(ctx, 4));
+        BRIO_FORWARD(brio_look(ctx, 4));
         for (uint32_t i = 0; i < 3; i++) {
             uint32_t h = 4 * f + i, first = (uint32_t)corners;
             if (crease[h] != 1) continue;
@@ -68,8 +67,7 @@ static brio_status list_faces(brio_context *ctx, const brio_polytope *p, const d
         }
     }
     out->first[out->count] = corners;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_hull_faces(brio_context *ctx, const brio_polytope *p, const brio_hull_records *records,

@@ -75,45 +75,41 @@ static brio_status remove_triangle(builder *b, uint32_t triangle, uint32_t mark)
 /* Removes the triangles that record r is beyond, from b->last on. The removed triangles are a disk and the edges of each
  * are crossed counterclockwise, so the border is found in its order along the hole. */
 static brio_status dig(builder *b, uint32_t r) {
-    brio_status status = BRIO_OK;
     const brio_hull_triangle *t = b->p->triangle;
     b->num_hole = b->num_border = 0;
     b->num_stack = 3;
     for (uint32_t i = 0; i < 3; i++) b->stack[i] = 4 * b->last + 2 - i;
-    BRIO_TRY(remove_triangle(b, b->last, r));
+    BRIO_FORWARD(remove_triangle(b, b->last, r));
     while (b->num_stack > 0) {
         uint32_t handle = b->stack[--b->num_stack], mate = t[handle >> 2].mate[handle & 3];
         assert(t[mate >> 2].mate[mate & 3] == handle); /* I2 */
         if (t[mate >> 2].mark == r) continue;
         if (is_beyond(b, mate >> 2, b->record[r])) {
-            BRIO_TRY(remove_triangle(b, mate >> 2, r));
-            BRIO_TRY(BRIO_RESERVE(b->ctx, b->stack, b->stack_capacity, b->num_stack + 2));
+            BRIO_FORWARD(remove_triangle(b, mate >> 2, r));
+            BRIO_FORWARD(BRIO_RESERVE(b->ctx, b->stack, b->stack_capacity, b->num_stack + 2));
             b->stack[b->num_stack++] = brio_hull_next(brio_hull_next(mate));
             b->stack[b->num_stack++] = brio_hull_next(mate);
         } else {
-            BRIO_TRY(BRIO_RESERVE(b->ctx, b->border, b->border_capacity, b->num_border + 1));
+            BRIO_FORWARD(BRIO_RESERVE(b->ctx, b->border, b->border_capacity, b->num_border + 1));
             b->border[b->num_border++] = mate;
         }
     }
     assert(b->num_border >= 3 && b->num_border <= b->num_hole + 2); /* a disk */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the hole as many places as the border has edges: a hole of n triangles with k vertices inside has n + 2 - 2 k
  * edges. Places that are too many become unused. */
 static brio_status find_places(builder *b) {
-    brio_status status = BRIO_OK;
     brio_polytope *p = b->p;
-    BRIO_REQUIRE(b->ctx, p->count < MOST_TRIANGLES - 2, BRIO_ERR_TOO_LARGE, "the convex hull has over 2^30 triangles");
-    BRIO_TRY(BRIO_RESERVE(b->ctx, p->triangle, p->capacity, p->count + 2));
-    BRIO_TRY(BRIO_RESERVE(b->ctx, b->hole, b->hole_capacity, b->num_hole + 2));
-    BRIO_TRY(BRIO_RESERVE(b->ctx, b->unused, b->unused_capacity, b->num_unused + b->num_hole));
+    BRIO_EXPECT(b->ctx, p->count < MOST_TRIANGLES - 2, BRIO_ERR_TOO_LARGE, "the convex hull has over 2^30 triangles");
+    BRIO_FORWARD(BRIO_RESERVE(b->ctx, p->triangle, p->capacity, p->count + 2));
+    BRIO_FORWARD(BRIO_RESERVE(b->ctx, b->hole, b->hole_capacity, b->num_hole + 2));
+    BRIO_FORWARD(BRIO_RESERVE(b->ctx, b->unused, b->unused_capacity, b->num_unused + b->num_hole));
     while (b->num_hole < b->num_border)
         b->hole[b->num_hole++] = b->num_unused > 0 ? b->unused[--b->num_unused] : (uint32_t)p->count++;
     while (b->num_hole > b->num_border) b->unused[b->num_unused++] = b->hole[--b->num_hole];
-done:
-    return status;
+    return BRIO_OK;
 }
 
 #ifndef NDEBUG
@@ -133,9 +129,8 @@ static bool star_is_closed(const builder *b, uint32_t r) {
 
 /* Joins record r to the border. */
 static brio_status fill(builder *b, uint32_t r) {
-    brio_status status = BRIO_OK;
     brio_polytope *p = b->p;
-    BRIO_TRY(find_places(b));
+    BRIO_FORWARD(find_places(b));
     for (size_t i = 0; i < b->num_border; i++) {
         uint32_t own = b->hole[i], outer = b->border[i];
         uint32_t next = b->hole[i + 1 < b->num_border ? i + 1 : 0], before = b->hole[i ? i - 1 : b->num_border - 1];
@@ -146,8 +141,7 @@ static brio_status fill(builder *b, uint32_t r) {
     }
     assert(b->num_hole == b->num_border && star_is_closed(b, r));
     b->last = b->hole[0];
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Notes that record r shares the position of a vertex of b->last, if so. */
@@ -222,15 +216,13 @@ static void close_gaps(builder *b) {
 }
 
 static brio_status insert_all(builder *b, size_t n) {
-    brio_status status = BRIO_OK;
     for (uint32_t r = 0; r < n; r++) {
-        if (r % INSERTIONS_A_CALL == 0) BRIO_TRY(brio_progress(b->ctx, "hull", (double)r / (double)n));
-        BRIO_TRY(insert(b, r));
+        if (r % INSERTIONS_A_CALL == 0) BRIO_FORWARD(brio_progress(b->ctx, "hull", (double)r / (double)n));
+        BRIO_FORWARD(insert(b, r));
     }
     assert(b->num_unused <= b->p->count);
     close_gaps(b);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_polytope_build(brio_context *ctx, const brio_hull_records *records, const uint32_t corner[4],

@@ -35,26 +35,22 @@ static int decode_four(const char *text, uint8_t *to) {
 
 /* Reads four characters between blanks. */
 static brio_status next_four(brio_stream *s, char *text) {
-    brio_status status = BRIO_OK;
     for (int i = 0; i < 4;) {
         const char *c = NULL;
-        BRIO_TRY(brio_stream_take(s, 1, &c));
+        BRIO_FORWARD(brio_stream_take(s, 1, &c));
         if (!brio_is_blank(*c)) text[i++] = *c;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status refill(brio_base64 *b, brio_stream *s) {
-    brio_status status = BRIO_OK;
     char text[5] = "";
-    BRIO_TRY(next_four(s, text));
+    BRIO_FORWARD(next_four(s, text));
     b->used = 0;
     b->count = decode_four(text, b->spare);
-    BRIO_REQUIRE(s->ctx, b->count, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": expected base64 of %s, found \"%s\"",
-                 s->name, brio_stream_offset(s), s->element, brio_excerpt_of(text).text);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, b->count, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": expected base64 of %s, found \"%s\"", s->name,
+                brio_stream_offset(s), s->element, brio_excerpt_of(text).text);
+    return BRIO_OK;
 }
 
 /* Decodes what lies in the stream's buffer without blanks and padding. Returns the number of bytes. */
@@ -70,7 +66,6 @@ static size_t take_plain(brio_stream *s, uint8_t *to, size_t size) {
 }
 
 brio_status brio_base64_take(brio_base64 *b, brio_stream *s, void *to, size_t size) {
-    brio_status status = BRIO_OK;
     uint8_t *out = to;
     while (size) {
         if (b->used < b->count) {
@@ -78,14 +73,13 @@ brio_status brio_base64_take(brio_base64 *b, brio_stream *s, void *to, size_t si
             size--;
             continue;
         }
-        if (brio_stream_left(s) < 4) BRIO_TRY(brio_stream_fill(s, 4));
+        if (brio_stream_left(s) < 4) BRIO_FORWARD(brio_stream_fill(s, 4));
         size_t plain = take_plain(s, out, size);
         out += plain;
         size -= plain;
-        if (size) BRIO_TRY(refill(b, s));
+        if (size) BRIO_FORWARD(refill(b, s));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 bool brio_base64_decode(const char *text, size_t length, uint8_t *to, size_t *size) {

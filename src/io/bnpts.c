@@ -10,39 +10,35 @@
 enum { RECORD = 24, NORMAL_AT = 12, FLOAT = 4 };
 
 static brio_status read_point(brio_stream *s, brio_builder *b) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
     double point[3];
     bool swap = !brio_host_is_little();
-    BRIO_TRY(brio_stream_take(s, RECORD, &bytes));
+    BRIO_FORWARD(brio_stream_take(s, RECORD, &bytes));
     brio_scalar_convert_triples(point, bytes, 1, RECORD, BRIO_SCALAR_FLOAT32, swap);
-    BRIO_TRY(brio_builder_vertex(b, point));
+    BRIO_FORWARD(brio_builder_vertex(b, point));
     for (size_t k = 0; k < 3; k++) {
         float *normal = (float *)b->mesh->properties[k].data + (b->mesh->num_vertices - 1);
         brio_scalar_gather(normal, bytes + NORMAL_AT + FLOAT * k, 1, FLOAT, FLOAT, swap);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_bnpts_read(brio_stream *s, brio_builder *b) {
-    brio_status status = BRIO_OK;
     uint64_t rows = s->size / RECORD;
     bool known = s->size != BRIO_SIZE_UNKNOWN;
-    BRIO_REQUIRE(s->ctx, !known || s->size % RECORD == 0, BRIO_ERR_FORMAT,
-                 "%s: %" PRIu64 " bytes, expected a multiple of %d: records of x y z nx ny nz in single precision",
-                 s->name, s->size, RECORD);
-    BRIO_TRY(brio_builder_property(b, "nx", BRIO_SCALAR_FLOAT32));
-    BRIO_TRY(brio_builder_property(b, "ny", BRIO_SCALAR_FLOAT32));
-    BRIO_TRY(brio_builder_property(b, "nz", BRIO_SCALAR_FLOAT32));
-    if (known) BRIO_TRY(brio_builder_expect_vertices(b, rows));
+    BRIO_EXPECT(s->ctx, !known || s->size % RECORD == 0, BRIO_ERR_FORMAT,
+                "%s: %" PRIu64 " bytes, expected a multiple of %d: records of x y z nx ny nz in single precision",
+                s->name, s->size, RECORD);
+    BRIO_FORWARD(brio_builder_property(b, "nx", BRIO_SCALAR_FLOAT32));
+    BRIO_FORWARD(brio_builder_property(b, "ny", BRIO_SCALAR_FLOAT32));
+    BRIO_FORWARD(brio_builder_property(b, "nz", BRIO_SCALAR_FLOAT32));
+    if (known) BRIO_FORWARD(brio_builder_expect_vertices(b, rows));
     brio_stream_element(s, "point", known ? rows : 0);
     for (;; s->row++) {
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
         if (!brio_stream_left(s)) break;
         if (!known) s->rows = s->row + 1;
-        BRIO_TRY(read_point(s, b));
+        BRIO_FORWARD(read_point(s, b));
     }
-done:
-    return status;
+    return BRIO_OK;
 }

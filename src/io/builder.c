@@ -43,16 +43,14 @@ bool brio_salvage(brio_builder *b, brio_stream *s, uint64_t before, bool points,
 static const char *const NAMES[] = {"x_origin", "y_origin", "z_origin"};
 
 brio_status brio_plan_origins(brio_builder *b) {
-    brio_status status = BRIO_OK;
     b->has_origins = false;
     if (!b->origins) return BRIO_OK;
     for (int k = 0; k < 3; k++)
         if (brio_mesh_property(b->mesh, NAMES[k])) return BRIO_OK;
     b->first_origin = b->mesh->num_properties;
-    for (int k = 0; k < 3; k++) BRIO_TRY(brio_builder_property(b, NAMES[k], BRIO_SCALAR_FLOAT64));
+    for (int k = 0; k < 3; k++) BRIO_FORWARD(brio_builder_property(b, NAMES[k], BRIO_SCALAR_FLOAT64));
     b->has_origins = true;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_set_origins(brio_builder *b, size_t first, const double *place) {
@@ -81,16 +79,14 @@ brio_status brio_builder_start(brio_builder *b, brio_context *ctx, const char *n
 /* --- vertices and their properties --- */
 
 static brio_status set_vertex_capacity(brio_builder *b, size_t capacity) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESIZE(b->ctx, b->mesh->vertices, 3 * capacity));
+    BRIO_FORWARD(BRIO_RESIZE(b->ctx, b->mesh->vertices, 3 * capacity));
     brio_expect_sequence(b->mesh->vertices);
     for (size_t i = 0; i < b->mesh->num_properties; i++) {
         brio_property *p = &b->mesh->properties[i];
-        BRIO_TRY(brio_resize_to(b->ctx, &p->data, capacity, brio_scalar_size(p->type)));
+        BRIO_FORWARD(brio_resize_to(b->ctx, &p->data, capacity, brio_scalar_size(p->type)));
     }
     b->vertex_capacity = capacity;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status too_many_vertices(const brio_builder *b, uint64_t count) {
@@ -126,30 +122,27 @@ done:
 
 /* Hands the vertices on and begins again with none. After a vertex that is no number, vertices are counted only. */
 static brio_status hand_on(brio_builder *b) {
-    brio_status status = BRIO_OK;
     size_t count = b->mesh->num_vertices;
     uint64_t before = b->refused.count;
     if (!b->passed) brio_colour_name(b->mesh);
     brio_count_not_finite(&b->refused, b->passed, b->mesh->vertices, NULL, count);
-    if (b->drop_invalid && b->refused.count > before) BRIO_TRY(drop_not_finite(b));
-    if (b->drop_invalid || !b->refused.count) BRIO_TRY(b->sink->take(b->sink->user, b->mesh));
+    if (b->drop_invalid && b->refused.count > before) BRIO_FORWARD(drop_not_finite(b));
+    if (b->drop_invalid || !b->refused.count) BRIO_FORWARD(b->sink->take(b->sink->user, b->mesh));
     b->passed += count;
     b->mesh->num_vertices = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_builder_add_vertices(brio_builder *b, size_t count) {
-    brio_status status = BRIO_OK;
-    if (b->streams && b->mesh->num_vertices && b->mesh->num_vertices + count > BRIO_BLOCK_ROWS) BRIO_TRY(hand_on(b));
+    if (b->streams && b->mesh->num_vertices && b->mesh->num_vertices + count > BRIO_BLOCK_ROWS)
+        BRIO_FORWARD(hand_on(b));
     size_t need = b->mesh->num_vertices + count;
     if (need > b->vertex_capacity) {
         if (need > BRIO_MAX_VERTICES) return too_many_vertices(b, need);
-        BRIO_TRY(set_vertex_capacity(b, grown(b->vertex_capacity, need)));
+        BRIO_FORWARD(set_vertex_capacity(b, grown(b->vertex_capacity, need)));
     }
     b->mesh->num_vertices = need;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_builder_vertex(brio_builder *b, const double *point) {
@@ -186,31 +179,27 @@ bool brio_builder_has(brio_builder *b, const char *name) {
 }
 
 brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar type) {
-    brio_status status = BRIO_OK;
     char clean[64];
     size_t length = strlen(name);
-    BRIO_REQUIRE(b->ctx, length > 0 && length < sizeof clean, BRIO_ERR_FORMAT,
-                 "%s: a property name of %zu characters, expected 1 to 63", b->name, length);
+    BRIO_EXPECT(b->ctx, length > 0 && length < sizeof clean, BRIO_ERR_FORMAT,
+                "%s: a property name of %zu characters, expected 1 to 63", b->name, length);
     brio_utf8_copy(clean, sizeof clean, name); /* Latin-1 may be longer then: the end is cut */
-    BRIO_REQUIRE(b->ctx, !brio_builder_has(b, clean), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name, clean);
-    BRIO_TRY(brio_limit_numbers(b->ctx, b->name, 0, b->mesh->num_properties + 1));
-    BRIO_TRY(brio_mesh_append_property(b->mesh, clean, type));
+    BRIO_EXPECT(b->ctx, !brio_builder_has(b, clean), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name, clean);
+    BRIO_FORWARD(brio_limit_numbers(b->ctx, b->name, 0, b->mesh->num_properties + 1));
+    BRIO_FORWARD(brio_mesh_append_property(b->mesh, clean, type));
     brio_property *p = &b->mesh->properties[b->mesh->num_properties - 1];
-    if (b->vertex_capacity) BRIO_TRY(brio_resize_to(b->ctx, &p->data, b->vertex_capacity, brio_scalar_size(type)));
-done:
-    return status;
+    if (b->vertex_capacity) BRIO_FORWARD(brio_resize_to(b->ctx, &p->data, b->vertex_capacity, brio_scalar_size(type)));
+    return BRIO_OK;
 }
 
 brio_status brio_builder_leave_out(brio_builder *b, const char *name) {
-    brio_status status = BRIO_OK;
     char clean[64];
     brio_utf8_copy(clean, sizeof clean, b->num_left_out < MOST_LEFT_OUT ? name : "others");
     for (size_t i = 0; i < b->num_left_out; i++)
         if (!strcmp(b->left_out[i], clean)) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(b->ctx, b->left_out, b->left_out_capacity, b->num_left_out + 1));
+    BRIO_FORWARD(BRIO_RESERVE(b->ctx, b->left_out, b->left_out_capacity, b->num_left_out + 1));
     memcpy(b->left_out[b->num_left_out++], clean, sizeof clean);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_builder_new_name(brio_builder *b, const char *source, char name[64]) {
@@ -241,26 +230,22 @@ brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_
 /* --- faces and tetrahedra --- */
 
 static brio_status set_face_capacity(brio_builder *b, size_t capacity) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESIZE(b->ctx, b->mesh->face_offsets, capacity + 1));
+    BRIO_FORWARD(BRIO_RESIZE(b->ctx, b->mesh->face_offsets, capacity + 1));
     if (!b->face_capacity) b->mesh->face_offsets[0] = 0;
     for (size_t i = 0; i < b->mesh->num_face_properties; i++) {
         brio_property *p = &b->mesh->face_properties[i];
-        BRIO_TRY(brio_resize_to(b->ctx, &p->data, capacity, brio_scalar_size(p->type)));
+        BRIO_FORWARD(brio_resize_to(b->ctx, &p->data, capacity, brio_scalar_size(p->type)));
     }
     b->face_capacity = capacity;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_builder_face_property(brio_builder *b, const char *name, brio_scalar type) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_limit_numbers(b->ctx, b->name, 0, b->mesh->num_face_properties + 1));
-    BRIO_TRY(brio_mesh_append_face_property(b->mesh, name, type));
+    BRIO_FORWARD(brio_limit_numbers(b->ctx, b->name, 0, b->mesh->num_face_properties + 1));
+    BRIO_FORWARD(brio_mesh_append_face_property(b->mesh, name, type));
     brio_property *p = &b->mesh->face_properties[b->mesh->num_face_properties - 1];
-    if (b->face_capacity) BRIO_TRY(brio_resize_to(b->ctx, &p->data, b->face_capacity, brio_scalar_size(type)));
-done:
-    return status;
+    if (b->face_capacity) BRIO_FORWARD(brio_resize_to(b->ctx, &p->data, b->face_capacity, brio_scalar_size(type)));
+    return BRIO_OK;
 }
 
 void brio_builder_new_face_name(const brio_builder *b, const char *source, char name[64]) {
@@ -301,55 +286,47 @@ static brio_status bad_index(const brio_builder *b, const char *what, size_t whi
 }
 
 brio_status brio_builder_corner(brio_builder *b, double index) {
-    brio_status status = BRIO_OK;
     if (!is_index(index)) return no_index(b, "face", b->mesh->num_faces, index);
     if (b->num_corners == b->corner_capacity) {
         size_t capacity = grown(b->corner_capacity, b->num_corners + 1);
-        BRIO_TRY(BRIO_RESIZE(b->ctx, b->mesh->face_vertices, capacity));
+        BRIO_FORWARD(BRIO_RESIZE(b->ctx, b->mesh->face_vertices, capacity));
         b->corner_capacity = capacity;
     }
     b->mesh->face_vertices[b->num_corners++] = (uint32_t)index;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_builder_face(brio_builder *b) {
-    brio_status status = BRIO_OK;
     size_t f = b->mesh->num_faces;
-    if (f == b->face_capacity) BRIO_TRY(set_face_capacity(b, grown(f, f + 1)));
+    if (f == b->face_capacity) BRIO_FORWARD(set_face_capacity(b, grown(f, f + 1)));
     b->mesh->face_offsets[f + 1] = b->num_corners;
     b->mesh->num_faces = f + 1;
     for (size_t i = 0; i < b->mesh->num_face_properties; i++) brio_builder_face_value(b, i, 0);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_builder_tetrahedron(brio_builder *b, const double *indices) {
-    brio_status status = BRIO_OK;
     size_t t = b->mesh->num_tetrahedra;
     for (int i = 0; i < 4; i++)
         if (!is_index(indices[i])) return no_index(b, "tetrahedron", t, indices[i]);
-    if (t == b->tetrahedron_capacity) BRIO_TRY(brio_builder_expect_tetrahedra(b, grown(t, t + 1)));
+    if (t == b->tetrahedron_capacity) BRIO_FORWARD(brio_builder_expect_tetrahedra(b, grown(t, t + 1)));
     for (int i = 0; i < 4; i++) b->mesh->tetrahedra[4 * t + i] = (uint32_t)indices[i];
     b->mesh->num_tetrahedra = t + 1;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_builder_edge(brio_builder *b, const double *indices) {
-    brio_status status = BRIO_OK;
     size_t e = b->mesh->num_edges;
     for (int i = 0; i < 2; i++)
         if (!is_index(indices[i])) return no_index(b, "edge", e, indices[i]);
     if (e == b->edge_capacity) {
         size_t capacity = grown(e, e + 1);
-        BRIO_TRY(brio_resize_to(b->ctx, &b->mesh->edges, capacity, 2 * sizeof *b->mesh->edges));
+        BRIO_FORWARD(brio_resize_to(b->ctx, &b->mesh->edges, capacity, 2 * sizeof *b->mesh->edges));
         b->edge_capacity = capacity;
     }
     for (int i = 0; i < 2; i++) b->mesh->edges[2 * e + (size_t)i] = (uint32_t)indices[i];
     b->mesh->num_edges = e + 1;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the end --- */
@@ -369,48 +346,44 @@ static brio_status check_indices(const brio_builder *b) {
 }
 
 static brio_status trim(brio_builder *b) {
-    brio_status status = BRIO_OK;
     brio_mesh *m = b->mesh;
     if (m->num_vertices) {
-        if (m->num_vertices < b->vertex_capacity) BRIO_TRY(set_vertex_capacity(b, m->num_vertices));
+        if (m->num_vertices < b->vertex_capacity) BRIO_FORWARD(set_vertex_capacity(b, m->num_vertices));
     } else {
         brio_release(b->ctx, m->vertices);
         m->vertices = NULL;
     }
     if (m->num_faces) {
-        if (m->num_faces < b->face_capacity) BRIO_TRY(set_face_capacity(b, m->num_faces));
-        BRIO_TRY(BRIO_RESIZE(b->ctx, m->face_vertices, b->num_corners));
+        if (m->num_faces < b->face_capacity) BRIO_FORWARD(set_face_capacity(b, m->num_faces));
+        BRIO_FORWARD(BRIO_RESIZE(b->ctx, m->face_vertices, b->num_corners));
     } else {
         while (m->num_face_properties) brio_release(b->ctx, m->face_properties[--m->num_face_properties].data);
         brio_release(b->ctx, m->face_offsets);
         m->face_offsets = NULL;
     }
     if (m->num_tetrahedra) {
-        BRIO_TRY(brio_resize_to(b->ctx, &m->tetrahedra, m->num_tetrahedra, 4 * sizeof *m->tetrahedra));
+        BRIO_FORWARD(brio_resize_to(b->ctx, &m->tetrahedra, m->num_tetrahedra, 4 * sizeof *m->tetrahedra));
     } else {
         brio_release(b->ctx, m->tetrahedra);
         m->tetrahedra = NULL;
     }
-    if (m->num_edges) BRIO_TRY(brio_resize_to(b->ctx, &m->edges, m->num_edges, 2 * sizeof *m->edges));
-done:
-    return status;
+    if (m->num_edges) BRIO_FORWARD(brio_resize_to(b->ctx, &m->edges, m->num_edges, 2 * sizeof *m->edges));
+    return BRIO_OK;
 }
 
 brio_status brio_builder_finish(brio_builder *b) {
-    brio_status status = BRIO_OK;
     if (b->streams) {
-        if (b->mesh->num_vertices || !b->passed) BRIO_TRY(hand_on(b));
-        if (!b->drop_invalid) BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
+        if (b->mesh->num_vertices || !b->passed) BRIO_FORWARD(hand_on(b));
+        if (!b->drop_invalid) BRIO_FORWARD(brio_refuse_counted(b->ctx, &b->refused, b->name));
         return BRIO_OK;
     }
     brio_mesh faces = brio_mesh_faces_as_points(b->mesh);
     brio_colour_name(b->mesh);
     brio_colour_name(&faces);
-    BRIO_TRY(trim(b));
-    BRIO_TRY(check_indices(b));
+    BRIO_FORWARD(trim(b));
+    BRIO_FORWARD(check_indices(b));
     brio_count_not_finite(&b->refused, 0, b->mesh->vertices, NULL, b->mesh->num_vertices);
-    if (!b->drop_invalid) BRIO_TRY(brio_refuse_counted(b->ctx, &b->refused, b->name));
-    if (b->refused.count) BRIO_TRY(drop_not_finite(b));
-done:
-    return status;
+    if (!b->drop_invalid) BRIO_FORWARD(brio_refuse_counted(b->ctx, &b->refused, b->name));
+    if (b->refused.count) BRIO_FORWARD(drop_not_finite(b));
+    return BRIO_OK;
 }

@@ -85,12 +85,11 @@ static brio_status find_type(const brio_stream *s, ccp4_header *h) {
 }
 
 static brio_status parse_header(const brio_stream *s, ccp4_header *h) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(s->ctx, !memcmp(h->bytes + LABEL, "MAP", 3), BRIO_ERR_FORMAT,
-                 "%s: byte %d: expected the word \"MAP \" of a CCP4 or MRC map", s->name, LABEL);
-    BRIO_REQUIRE(s->ctx, makes_sense(h, !brio_host_is_little()) || makes_sense(h, brio_host_is_little()),
-                 BRIO_ERR_FORMAT, "%s: byte %d: the axes of columns, rows and sections are not 1, 2, 3 in some order",
-                 s->name, AXES);
+    BRIO_EXPECT(s->ctx, !memcmp(h->bytes + LABEL, "MAP", 3), BRIO_ERR_FORMAT,
+                "%s: byte %d: expected the word \"MAP \" of a CCP4 or MRC map", s->name, LABEL);
+    BRIO_EXPECT(s->ctx, makes_sense(h, !brio_host_is_little()) || makes_sense(h, brio_host_is_little()),
+                BRIO_ERR_FORMAT, "%s: byte %d: the axes of columns, rows and sections are not 1, 2, 3 in some order",
+                s->name, AXES);
     h->mode = whole(h, MODE);
     h->symmetry_bytes = whole(h, SYMMETRY_BYTES);
     for (int k = 0; k < 3; k++) {
@@ -101,30 +100,26 @@ static brio_status parse_header(const brio_stream *s, ccp4_header *h) {
         h->angle[k] = real(h, CELL_ANGLES + 4 * k);
         h->origin[k] = real(h, ORIGIN + 4 * k);
     }
-    BRIO_TRY(find_type(s, h));
-done:
-    return status;
+    return find_type(s, h);
 }
 
 static brio_status check_header(const brio_stream *s, const ccp4_header *h) {
     static const char *const parts[3] = {"columns", "rows", "sections"};
-    brio_status status = BRIO_OK;
     for (int k = 0; k < 3; k++) {
-        BRIO_REQUIRE(s->ctx, h->size[k] > 0, BRIO_ERR_FORMAT, "%s: byte %d: %" PRId64 " %s", s->name, SIZE + 4 * k,
-                     h->size[k], parts[k]);
-        BRIO_REQUIRE(s->ctx, h->intervals[k] > 0, BRIO_ERR_FORMAT,
-                     "%s: byte %d: %" PRId64 " intervals along the cell's %c, expected at least 1", s->name,
-                     INTERVALS + 4 * k, h->intervals[k], "xyz"[k]);
-        BRIO_REQUIRE(s->ctx, h->length[k] > 0 && isfinite(h->length[k]), BRIO_ERR_FORMAT,
-                     "%s: byte %d: the cell is %g long along %c, expected a positive number", s->name,
-                     CELL_LENGTHS + 4 * k, h->length[k], "xyz"[k]);
-        BRIO_REQUIRE(s->ctx, isfinite(h->origin[k]), BRIO_ERR_FORMAT, "%s: byte %d: the origin is not a number",
-                     s->name, ORIGIN + 4 * k);
+        BRIO_EXPECT(s->ctx, h->size[k] > 0, BRIO_ERR_FORMAT, "%s: byte %d: %" PRId64 " %s", s->name, SIZE + 4 * k,
+                    h->size[k], parts[k]);
+        BRIO_EXPECT(s->ctx, h->intervals[k] > 0, BRIO_ERR_FORMAT,
+                    "%s: byte %d: %" PRId64 " intervals along the cell's %c, expected at least 1", s->name,
+                    INTERVALS + 4 * k, h->intervals[k], "xyz"[k]);
+        BRIO_EXPECT(s->ctx, h->length[k] > 0 && isfinite(h->length[k]), BRIO_ERR_FORMAT,
+                    "%s: byte %d: the cell is %g long along %c, expected a positive number", s->name,
+                    CELL_LENGTHS + 4 * k, h->length[k], "xyz"[k]);
+        BRIO_EXPECT(s->ctx, isfinite(h->origin[k]), BRIO_ERR_FORMAT, "%s: byte %d: the origin is not a number", s->name,
+                    ORIGIN + 4 * k);
     }
-    BRIO_REQUIRE(s->ctx, h->symmetry_bytes >= 0, BRIO_ERR_FORMAT, "%s: byte %d: %" PRId64 " bytes of symmetry records",
-                 s->name, SYMMETRY_BYTES, h->symmetry_bytes);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, h->symmetry_bytes >= 0, BRIO_ERR_FORMAT, "%s: byte %d: %" PRId64 " bytes of symmetry records",
+                s->name, SYMMETRY_BYTES, h->symmetry_bytes);
+    return BRIO_OK;
 }
 
 /* --- axes in space --- */
@@ -132,7 +127,6 @@ done:
 /* Computes the three axes of the cell, of length 1. The angles are between y and z, x and z, x and y; if all are 0,
  * they are right angles. */
 static brio_status find_axes(const brio_stream *s, const ccp4_header *h, double axes[3][3]) {
-    brio_status status = BRIO_OK;
     double c[3];
     bool none = h->angle[0] == 0 && h->angle[1] == 0 && h->angle[2] == 0;
     for (int k = 0; k < 3; k++) /* a right angle must have the cosine 0 */
@@ -141,18 +135,16 @@ static brio_status find_axes(const brio_stream *s, const ccp4_header *h, double 
     double up = 1 - c[1] * c[1] - across * across;
     bool proper = sine > 0 && up > 0;
     for (int k = 0; k < 3; k++) proper = proper && (none || (h->angle[k] > 0 && h->angle[k] < 180));
-    BRIO_REQUIRE(s->ctx, proper, BRIO_ERR_FORMAT, "%s: byte %d: no cell has the angles %g, %g, %g", s->name,
-                 CELL_ANGLES, h->angle[0], h->angle[1], h->angle[2]);
+    BRIO_EXPECT(s->ctx, proper, BRIO_ERR_FORMAT, "%s: byte %d: no cell has the angles %g, %g, %g", s->name, CELL_ANGLES,
+                h->angle[0], h->angle[1], h->angle[2]);
     memcpy(axes, (const double[3][3]){{1, 0, 0}, {c[2], sine, 0}, {c[1], across, sqrt(up)}}, 9 * sizeof(double));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status place_volume(const brio_stream *s, const ccp4_header *h, brio_volume *volume) {
-    brio_status status = BRIO_OK;
     double axes[3][3];
     bool has_origin = h->origin[0] != 0 || h->origin[1] != 0 || h->origin[2] != 0;
-    BRIO_TRY(find_axes(s, h, axes));
+    BRIO_FORWARD(find_axes(s, h, axes));
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++) volume->step[k][i] = axes[k][i] * h->length[k] / (double)h->intervals[k];
     for (int i = 0; i < 3; i++) {
@@ -160,8 +152,7 @@ static brio_status place_volume(const brio_stream *s, const ccp4_header *h, brio
         for (int part = 0; part < 3 && !has_origin; part++)
             volume->origin[i] += (double)h->start[part] * volume->step[h->axis[part]][i];
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- values --- */
@@ -181,7 +172,6 @@ static void convert_row(const ccp4_header *h, const char *bytes, uint64_t offset
 }
 
 static brio_status read_values(brio_stream *s, const ccp4_header *h, brio_volume *volume) {
-    brio_status status = BRIO_OK;
     size_t size = brio_scalar_size(h->type);
     const size_t of_axis[3] = {1, volume->size[0], (size_t)volume->size[0] * volume->size[1]};
     size_t column = of_axis[h->axis[0]], row = of_axis[h->axis[1]], section = of_axis[h->axis[2]];
@@ -191,38 +181,34 @@ static brio_status read_values(brio_stream *s, const ccp4_header *h, brio_volume
         for (size_t y = 0; y < (size_t)h->size[1]; y++, s->row++) {
             const char *bytes = NULL;
             uint64_t offset = brio_stream_offset(s);
-            BRIO_TRY(brio_stream_take(s, (size_t)h->size[0] * size, &bytes));
+            BRIO_FORWARD(brio_stream_take(s, (size_t)h->size[0] * size, &bytes));
             convert_row(h, bytes, offset, volume->values + z * section + y * row, column, &wrong);
         }
-    BRIO_REQUIRE(s->ctx, !wrong.count, BRIO_ERR_NOT_FINITE,
-                 "%s: byte %" PRIu64 ": the value is not finite; there are %" PRIu64 " such values", s->name,
-                 wrong.offset, wrong.count);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, !wrong.count, BRIO_ERR_NOT_FINITE,
+                "%s: byte %" PRIu64 ": the value is not finite; there are %" PRIu64 " such values", s->name,
+                wrong.offset, wrong.count);
+    return BRIO_OK;
 }
 
 brio_status brio_ccp4_read(brio_stream *s, brio_volume *out) {
-    brio_status status = BRIO_OK;
     char bytes[HEADER_BYTES];
     const char *start = NULL;
     uint64_t count;
     ccp4_header h = {.bytes = bytes};
     *out = (brio_volume){0};
     brio_stream_element(s, "word", HEADER_BYTES / 4);
-    BRIO_TRY(brio_stream_take(s, HEADER_BYTES, &start));
+    BRIO_FORWARD(brio_stream_take(s, HEADER_BYTES, &start));
     memcpy(bytes, start, HEADER_BYTES);
-    BRIO_TRY(parse_header(s, &h));
-    BRIO_TRY(check_header(s, &h));
-    BRIO_TRY(place_volume(s, &h, out));
+    BRIO_FORWARD(parse_header(s, &h));
+    BRIO_FORWARD(check_header(s, &h));
+    BRIO_FORWARD(place_volume(s, &h, out));
     for (int part = 0; part < 3; part++) out->size[h.axis[part]] = (uint32_t)h.size[part];
     bool fits = !__builtin_mul_overflow((uint64_t)h.size[0] * (uint64_t)h.size[1], (uint64_t)h.size[2], &count);
-    BRIO_REQUIRE(s->ctx, fits && count < UINT64_MAX / 8, BRIO_ERR_TOO_LARGE,
-                 "%s: %" PRId64 " x %" PRId64 " x %" PRId64 " values", s->name, h.size[0], h.size[1], h.size[2]);
+    BRIO_EXPECT(s->ctx, fits && count < UINT64_MAX / 8, BRIO_ERR_TOO_LARGE,
+                "%s: %" PRId64 " x %" PRId64 " x %" PRId64 " values", s->name, h.size[0], h.size[1], h.size[2]);
     brio_stream_element(s, "byte of the symmetry records", (uint64_t)h.symmetry_bytes);
-    BRIO_TRY(brio_stream_skip(s, (uint64_t)h.symmetry_bytes));
-    BRIO_TRY(brio_stream_expect(s, count, brio_scalar_size(h.type), "the header"));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, out->values, (size_t)count));
-    BRIO_TRY(read_values(s, &h, out));
-done:
-    return status;
+    BRIO_FORWARD(brio_stream_skip(s, (uint64_t)h.symmetry_bytes));
+    BRIO_FORWARD(brio_stream_expect(s, count, brio_scalar_size(h.type), "the header"));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, out->values, (size_t)count));
+    return read_values(s, &h, out);
 }

@@ -20,34 +20,30 @@ brio_cells_format brio_cells_format_of(const char *path) {
 /* --- CSV --- */
 
 static brio_status cells_csv_write(brio_output *out, const brio_cells *cells) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_string(out, "site,volume,area,faces,bounded,cx,cy,cz\n"));
+    BRIO_FORWARD(brio_output_string(out, "site,volume,area,faces,bounded,cx,cy,cz\n"));
     for (size_t c = 0; c < cells->num_cells; c++) {
-        BRIO_TRY(brio_output_integer(out, 0, cells->site[c]));
-        BRIO_TRY(brio_output_double(out, ',', cells->volume[c]));
-        BRIO_TRY(brio_output_double(out, ',', cells->area[c]));
-        BRIO_TRY(brio_output_integer(out, ',', (int64_t)brio_cells_num_faces(cells, c)));
-        BRIO_TRY(brio_output_integer(out, ',', cells->bounded[c]));
-        for (size_t k = 0; k < 3; k++) BRIO_TRY(brio_output_double(out, ',', cells->centroid[3 * c + k]));
-        BRIO_TRY(brio_output_bytes(out, "\n", 1));
+        BRIO_FORWARD(brio_output_integer(out, 0, cells->site[c]));
+        BRIO_FORWARD(brio_output_double(out, ',', cells->volume[c]));
+        BRIO_FORWARD(brio_output_double(out, ',', cells->area[c]));
+        BRIO_FORWARD(brio_output_integer(out, ',', (int64_t)brio_cells_num_faces(cells, c)));
+        BRIO_FORWARD(brio_output_integer(out, ',', cells->bounded[c]));
+        for (size_t k = 0; k < 3; k++) BRIO_FORWARD(brio_output_double(out, ',', cells->centroid[3 * c + k]));
+        BRIO_FORWARD(brio_output_bytes(out, "\n", 1));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status cells_faces_write(brio_output *out, const brio_cells *cells) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_string(out, "site,neighbour,area,nx,ny,nz\n"));
+    BRIO_FORWARD(brio_output_string(out, "site,neighbour,area,nx,ny,nz\n"));
     for (size_t c = 0; c < cells->num_cells; c++)
         for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
-            BRIO_TRY(brio_output_integer(out, 0, cells->site[c]));
-            BRIO_TRY(brio_output_integer(out, ',', cells->face_neighbours[f]));
-            BRIO_TRY(brio_output_double(out, ',', cells->face_areas[f]));
-            for (size_t k = 0; k < 3; k++) BRIO_TRY(brio_output_double(out, ',', cells->face_normals[3 * f + k]));
-            BRIO_TRY(brio_output_bytes(out, "\n", 1));
+            BRIO_FORWARD(brio_output_integer(out, 0, cells->site[c]));
+            BRIO_FORWARD(brio_output_integer(out, ',', cells->face_neighbours[f]));
+            BRIO_FORWARD(brio_output_double(out, ',', cells->face_areas[f]));
+            for (size_t k = 0; k < 3; k++) BRIO_FORWARD(brio_output_double(out, ',', cells->face_normals[3 * f + k]));
+            BRIO_FORWARD(brio_output_bytes(out, "\n", 1));
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- NPY --- */
@@ -72,33 +68,29 @@ static brio_status write_npy_header(brio_output *out, size_t rows) {
 }
 
 static brio_status cells_npy_write(brio_output *out, const brio_cells *cells) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(write_npy_header(out, cells->num_cells));
+    BRIO_FORWARD(write_npy_header(out, cells->num_cells));
     for (size_t c = 0; c < cells->num_cells; c++) {
         int64_t site = cells->site[c], faces = (int64_t)brio_cells_num_faces(cells, c);
-        BRIO_TRY(brio_output_bytes(out, &site, sizeof site));
-        BRIO_TRY(brio_output_bytes(out, &cells->volume[c], sizeof(double)));
-        BRIO_TRY(brio_output_bytes(out, &cells->area[c], sizeof(double)));
-        BRIO_TRY(brio_output_bytes(out, &faces, sizeof faces));
-        BRIO_TRY(brio_output_bytes(out, &cells->bounded[c], 1));
-        BRIO_TRY(brio_output_bytes(out, &cells->centroid[3 * c], 3 * sizeof(double)));
+        BRIO_FORWARD(brio_output_bytes(out, &site, sizeof site));
+        BRIO_FORWARD(brio_output_bytes(out, &cells->volume[c], sizeof(double)));
+        BRIO_FORWARD(brio_output_bytes(out, &cells->area[c], sizeof(double)));
+        BRIO_FORWARD(brio_output_bytes(out, &faces, sizeof faces));
+        BRIO_FORWARD(brio_output_bytes(out, &cells->bounded[c], 1));
+        BRIO_FORWARD(brio_output_bytes(out, &cells->centroid[3 * c], 3 * sizeof(double)));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- any format --- */
 
 static brio_status check(brio_context *ctx, const char *path, const brio_cells *cells, brio_cells_format format) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, format > BRIO_CELLS_FORMAT_AUTO && format < BRIO_CELLS_FORMAT_END, BRIO_ERR_ARGUMENT,
-                 "%s: unknown format of cells, expected .vtu .npy or .csv", path);
-    BRIO_REQUIRE(ctx, cells->area && cells->centroid && cells->face_offsets, BRIO_ERR_ARGUMENT,
-                 "%s: the cells have no areas, centroids or faces: brio_cells_options asks for them", path);
-    BRIO_REQUIRE(ctx, format != BRIO_CELLS_FORMAT_VTU || cells->corner_offsets, BRIO_ERR_ARGUMENT,
-                 "%s: the cells have no vertices: brio_cells_options asks for them", path);
-done:
-    return status;
+    BRIO_EXPECT(ctx, format > BRIO_CELLS_FORMAT_AUTO && format < BRIO_CELLS_FORMAT_END, BRIO_ERR_ARGUMENT,
+                "%s: unknown format of cells, expected .vtu .npy or .csv", path);
+    BRIO_EXPECT(ctx, cells->area && cells->centroid && cells->face_offsets, BRIO_ERR_ARGUMENT,
+                "%s: the cells have no areas, centroids or faces: brio_cells_options asks for them", path);
+    BRIO_EXPECT(ctx, format != BRIO_CELLS_FORMAT_VTU || cells->corner_offsets, BRIO_ERR_ARGUMENT,
+                "%s: the cells have no vertices: brio_cells_options asks for them", path);
+    return BRIO_OK;
 }
 
 static uint64_t expected_bytes(const brio_cells *cells, brio_cells_format format) {

@@ -132,15 +132,13 @@ static brio_status add_column(chemical_reader *r, role what, size_t target) {
 static brio_status add_property_columns(chemical_reader *r, const char *name, role what, uint64_t count) {
     static const brio_scalar types[] = {
         [ROLE_NUMBER] = BRIO_SCALAR_FLOAT64, [ROLE_INTEGER] = BRIO_SCALAR_INT32, [ROLE_LOGICAL] = BRIO_SCALAR_UINT8};
-    brio_status status = BRIO_OK;
     char part[64];
     for (uint64_t i = 0; i < count; i++) {
         brio_builder_component_name(r->builder, name, i, count, part);
-        BRIO_TRY(add_column(r, what, r->builder->mesh->num_properties));
-        BRIO_TRY(brio_builder_property(r->builder, count > 1 ? part : name, types[what]));
+        BRIO_FORWARD(add_column(r, what, r->builder->mesh->num_properties));
+        BRIO_FORWARD(brio_builder_property(r->builder, count > 1 ? part : name, types[what]));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static bool is_one_of(const char *name, const char *const *names) {
@@ -154,19 +152,17 @@ static brio_status add_entry(chemical_reader *r, const char *name, char type, ui
     static const char *const elements[] = {"species", "element",       "elements",       "symbols", "Z",
                                            "numbers", "atomic_number", "atomic_numbers", NULL};
     static const char *const positions[] = {"pos", "position", "positions", NULL};
-    brio_status status = BRIO_OK;
     if (count == 1 && is_one_of(name, elements)) return add_column(r, ROLE_ELEMENT, 0);
     if (count == 3 && type == 'R' && is_one_of(name, positions)) {
-        for (size_t k = 0; k < 3; k++) BRIO_TRY(add_column(r, ROLE_AXIS, k));
+        for (size_t k = 0; k < 3; k++) BRIO_FORWARD(add_column(r, ROLE_AXIS, k));
     } else if (type == 'S') {
-        BRIO_TRY(brio_builder_leave_out(r->builder, name));
-        for (uint64_t i = 0; i < count; i++) BRIO_TRY(add_column(r, ROLE_LEFT_OUT, 0));
+        BRIO_FORWARD(brio_builder_leave_out(r->builder, name));
+        for (uint64_t i = 0; i < count; i++) BRIO_FORWARD(add_column(r, ROLE_LEFT_OUT, 0));
     } else {
         role what = type == 'R' ? ROLE_NUMBER : type == 'I' ? ROLE_INTEGER : ROLE_LOGICAL;
-        BRIO_TRY(add_property_columns(r, name, what, count));
+        BRIO_FORWARD(add_property_columns(r, name, what, count));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status bad_properties(const chemical_reader *r, const char *what) {
@@ -175,7 +171,6 @@ static brio_status bad_properties(const chemical_reader *r, const char *what) {
 }
 
 static brio_status parse_properties(chemical_reader *r, const char *p) {
-    brio_status status = BRIO_OK;
     uint64_t count;
     size_t elements = 0, axes = 0;
     for (bool more = true; more; p += more) {
@@ -189,7 +184,7 @@ static brio_status parse_properties(chemical_reader *r, const char *p) {
         p += length + 3;
         if (!brio_parse_count(&p, &count) || count < 1 || count > MOST_COLUMNS)
             return bad_properties(r, "a number of columns from 1 to 256");
-        BRIO_TRY(add_entry(r, name, type, count));
+        BRIO_FORWARD(add_entry(r, name, type, count));
         more = *p == ':';
     }
     for (size_t i = 0; i < r->num_columns; i++) {
@@ -197,8 +192,7 @@ static brio_status parse_properties(chemical_reader *r, const char *p) {
         axes += r->columns[i].role == ROLE_AXIS;
     }
     if (elements != 1 || axes != 3) return bad_properties(r, "one column of species or Z, and pos:R:3");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns whether a comment has more than its word of properties, which may be NULL. */
@@ -219,25 +213,22 @@ static bool has_more(const char *comment, const char *properties) {
 }
 
 static brio_status plan(chemical_reader *r, const char *comment) {
-    brio_status status = BRIO_OK;
     const char *properties = strstr(comment, "Properties=");
-    BRIO_TRY(brio_builder_property(r->builder, "atomic_number", BRIO_SCALAR_UINT8));
-    BRIO_TRY(brio_builder_property(r->builder, "radius", BRIO_SCALAR_FLOAT64));
-    if (has_more(comment, properties)) BRIO_TRY(brio_builder_leave_out(r->builder, "comment"));
+    BRIO_FORWARD(brio_builder_property(r->builder, "atomic_number", BRIO_SCALAR_UINT8));
+    BRIO_FORWARD(brio_builder_property(r->builder, "radius", BRIO_SCALAR_FLOAT64));
+    if (has_more(comment, properties)) BRIO_FORWARD(brio_builder_leave_out(r->builder, "comment"));
     if (properties) {
         properties += strlen("Properties=");
         return parse_properties(r, properties + (*properties == '"'));
     }
     r->free_columns = true;
-    BRIO_TRY(add_column(r, ROLE_ELEMENT, 0));
-    for (size_t k = 0; k < 3; k++) BRIO_TRY(add_column(r, ROLE_AXIS, k));
-done:
-    return status;
+    BRIO_FORWARD(add_column(r, ROLE_ELEMENT, 0));
+    for (size_t k = 0; k < 3; k++) BRIO_FORWARD(add_column(r, ROLE_AXIS, k));
+    return BRIO_OK;
 }
 
 /* Adds a property for each number behind the coordinates of the first row. */
 static brio_status plan_more(chemical_reader *r, const char *p) {
-    brio_status status = BRIO_OK;
     double value;
     char name[32];
     r->free_columns = false;
@@ -247,12 +238,12 @@ static brio_status plan_more(chemical_reader *r, const char *p) {
         const char *end = p;
         bool number = brio_parse_number(&end, &value) && ends_word(*end);
         snprintf(name, sizeof name, "column%zu", i + 1);
-        if (i >= 4 && !number) BRIO_TRY(brio_builder_leave_out(r->builder, name));
-        if (i >= 4) BRIO_TRY(number ? add_property_columns(r, name, ROLE_NUMBER, 1) : add_column(r, ROLE_LEFT_OUT, 0));
+        if (i >= 4 && !number) BRIO_FORWARD(brio_builder_leave_out(r->builder, name));
+        if (i >= 4)
+            BRIO_FORWARD(number ? add_property_columns(r, name, ROLE_NUMBER, 1) : add_column(r, ROLE_LEFT_OUT, 0));
         while (!ends_word(*p)) p++;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- rows --- */
@@ -269,21 +260,18 @@ static brio_status read_element(chemical_reader *r) {
 }
 
 static brio_status read_integer(chemical_reader *r, size_t property) {
-    brio_status status = BRIO_OK;
     double value;
     brio_mesh *m = r->builder->mesh;
     char *place = r->text.at;
-    BRIO_TRY(brio_text_number(&r->text, &value));
+    BRIO_FORWARD(brio_text_number(&r->text, &value));
     bool fits = value == floor(value) && value >= INT32_MIN && value <= INT32_MAX;
     if (fits) ((int32_t *)m->properties[property].data)[m->num_vertices - 1] = (int32_t)value;
     r->text.at = place;
     if (!fits) return brio_text_expected(&r->text, "a whole number of 32 bits");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_column(chemical_reader *r, const chemical_column *c) {
-    brio_status status = BRIO_OK;
     brio_text *t = &r->text;
     brio_mesh *m = r->builder->mesh;
     size_t v = m->num_vertices - 1;
@@ -300,63 +288,55 @@ static brio_status read_column(chemical_reader *r, const chemical_column *c) {
         return BRIO_OK;
     case ROLE_AXIS:
     case ROLE_NUMBER:
-        BRIO_TRY(brio_text_number(t, &value));
+        BRIO_FORWARD(brio_text_number(t, &value));
         t->at = place;
         *(c->role == ROLE_AXIS ? &m->vertices[3 * v + c->target] : (double *)m->properties[c->target].data + v) = value;
         break;
     case ROLE_LEFT_OUT:
         break;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_atom(chemical_reader *r) {
-    brio_status status = BRIO_OK;
     brio_text *t = &r->text;
-    if (r->free_columns) BRIO_TRY(plan_more(r, t->at));
-    BRIO_TRY(brio_builder_add_vertices(r->builder, 1));
+    if (r->free_columns) BRIO_FORWARD(plan_more(r, t->at));
+    BRIO_FORWARD(brio_builder_add_vertices(r->builder, 1));
     for (size_t i = 0; i < r->num_columns; i++) {
         if (!brio_text_more(t)) return brio_text_expected(t, "another column of the atom");
-        BRIO_TRY(read_column(r, &r->columns[i]));
+        BRIO_FORWARD(read_column(r, &r->columns[i]));
         while (!ends_word(*t->at)) t->at++;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Checks that the file ends, or that a next frame begins. */
 static brio_status check_end(chemical_reader *r) {
-    brio_status status = BRIO_OK;
     brio_text *t = &r->text;
-    BRIO_TRY(brio_text_next_line(t));
+    BRIO_FORWARD(brio_text_next_line(t));
     if (t->at && !is_count(t->at))
         return brio_text_expected(t, "the end of the file, or the number of atoms of a next frame");
-    if (t->at) BRIO_TRY(brio_builder_leave_out(r->builder, "further frames"));
-done:
-    return status;
+    if (t->at) BRIO_FORWARD(brio_builder_leave_out(r->builder, "further frames"));
+    return BRIO_OK;
 }
 
 brio_status brio_chemical_read(brio_stream *s, brio_builder *b) {
-    brio_status status = BRIO_OK;
     chemical_reader r = {.text = {s, 0, NULL}, .builder = b};
     uint64_t count = 0;
     char *comment;
     brio_stream_element(s, "line", 2);
-    BRIO_TRY(brio_text_next_line(&r.text));
+    BRIO_FORWARD(brio_text_next_line(&r.text));
     if (!r.text.at) return brio_stream_truncated(s);
-    BRIO_TRY(brio_text_count(&r.text, "the number of atoms", BRIO_MAX_VERTICES, &count));
-    BRIO_TRY(brio_text_row_end(&r.text));
-    BRIO_TRY(brio_stream_line(s, &comment));
-    BRIO_TRY(plan(&r, comment ? comment : ""));
-    BRIO_TRY(brio_stream_expect(s, count, 7, "the first line")); /* "C 0 0 0" */
+    BRIO_FORWARD(brio_text_count(&r.text, "the number of atoms", BRIO_MAX_VERTICES, &count));
+    BRIO_FORWARD(brio_text_row_end(&r.text));
+    BRIO_FORWARD(brio_stream_line(s, &comment));
+    BRIO_FORWARD(plan(&r, comment ? comment : ""));
+    BRIO_FORWARD(brio_stream_expect(s, count, 7, "the first line")); /* "C 0 0 0" */
     brio_stream_element(s, "atom", count);
     for (; s->row < count; s->row++) {
-        BRIO_TRY(brio_text_next_line(&r.text));
+        BRIO_FORWARD(brio_text_next_line(&r.text));
         if (!r.text.at) return brio_stream_truncated(s);
-        BRIO_TRY(read_atom(&r));
+        BRIO_FORWARD(read_atom(&r));
     }
-    BRIO_TRY(check_end(&r));
-done:
-    return status;
+    return check_end(&r);
 }

@@ -213,50 +213,43 @@ static double changed(brio_colour_depth *plan, double x, double white) {
 /* A guess by the first block holds as long as no value shows that white is more. */
 static brio_status check_guess(brio_context *ctx, brio_colour_depth *plan, const brio_mesh *m) {
     brio_channels c = brio_colour_of(m);
-    brio_status status = BRIO_OK;
     double guess = plan->white;
     if (!plan->guessed || !c.count) return BRIO_OK;
     look(plan, m);
-    BRIO_REQUIRE(
-        ctx, seen_white(plan, c.of[0]->type) == guess, BRIO_ERR_FORMAT,
-        "the colours of the first points seemed to have a white of %g, but one further on is %g: such an input "
-        "has to be a file, which can be read twice",
-        guess, plan->most > guess ? plan->most : plan->least);
-done:
-    return status;
+    BRIO_EXPECT(ctx, seen_white(plan, c.of[0]->type) == guess, BRIO_ERR_FORMAT,
+                "the colours of the first points seemed to have a white of %g, but one further on is %g: such an input "
+                "has to be a file, which can be read twice",
+                guess, plan->most > guess ? plan->most : plan->least);
+    return BRIO_OK;
 }
 
 static brio_status change(brio_context *ctx, brio_colour_depth *plan, brio_property *p, size_t count, brio_scalar type,
                           double white) {
-    brio_status status = BRIO_OK;
     char *data = NULL;
     size_t size = brio_scalar_size(type);
-    BRIO_TRY(brio_resize_to(ctx, &data, count + 1, size));
+    BRIO_FORWARD(brio_resize_to(ctx, &data, count + 1, size));
     for (size_t v = 0; v < count; v++)
         brio_scalar_store(data + v * size, type, changed(plan, brio_property_value(p, v), white));
     p->data = data;
     p->type = type;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Shows the colours of points: shown->properties is then a list that free_list frees. */
 static brio_status show(brio_context *ctx, brio_colour_depth *plan, const brio_mesh *m, brio_mesh *shown) {
-    brio_status status = BRIO_OK;
     brio_channels c = brio_colour_of(m);
     brio_scalar type = BRIO_SCALAR_END;
     if (!c.count || plan->to == BRIO_COLOURS_AS_THEY_ARE) return BRIO_OK;
     if (!plan->decided) decide(plan, m, &c);
-    BRIO_TRY(check_guess(ctx, plan, m));
+    BRIO_FORWARD(check_guess(ctx, plan, m));
     double white = target_white(plan, c.of[0]->type, &type);
     if (white == 0) return BRIO_OK;
     shown->properties = NULL;
-    BRIO_TRY(BRIO_ALLOC(ctx, shown->properties, m->num_properties));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, shown->properties, m->num_properties));
     memcpy(shown->properties, m->properties, m->num_properties * sizeof *m->properties);
     for (int k = 0; k < c.count; k++)
-        BRIO_TRY(change(ctx, plan, &shown->properties[c.of[k] - m->properties], m->num_vertices, type, white));
-done:
-    return status;
+        BRIO_FORWARD(change(ctx, plan, &shown->properties[c.of[k] - m->properties], m->num_vertices, type, white));
+    return BRIO_OK;
 }
 
 static void free_list(brio_context *ctx, const brio_property *list, size_t count, brio_property *shown) {

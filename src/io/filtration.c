@@ -17,16 +17,13 @@ static size_t dimension_of(const brio_alpha_complex *c, size_t number, size_t *r
 }
 
 static brio_status write_simplex(brio_output *out, const brio_alpha_complex *c, size_t number, bool gudhi) {
-    brio_status status = BRIO_OK;
     size_t row, k = dimension_of(c, number, &row);
     if (!gudhi && k != 1) return BRIO_OK;
-    if (gudhi) BRIO_TRY(brio_output_integer(out, 0, (int64_t)k));
+    if (gudhi) BRIO_FORWARD(brio_output_integer(out, 0, (int64_t)k));
     for (size_t i = 0; i <= k; i++)
-        BRIO_TRY(brio_output_integer(out, gudhi || i ? ' ' : 0, c->simplices[k][row * (k + 1) + i]));
-    BRIO_TRY(brio_output_double(out, ' ', c->values[k][row]));
-    BRIO_TRY(brio_output_string(out, "\n"));
-done:
-    return status;
+        BRIO_FORWARD(brio_output_integer(out, gudhi || i ? ' ' : 0, c->simplices[k][row * (k + 1) + i]));
+    BRIO_FORWARD(brio_output_double(out, ' ', c->values[k][row]));
+    return brio_output_string(out, "\n");
 }
 
 brio_status brio_write_filtration(brio_context *ctx, const char *path, const brio_alpha_complex *c,

@@ -29,14 +29,12 @@ static bool has_extension(const char *path, const char *const *extensions) {
 /* Content before extension; standard input that is no map is taken for atoms. */
 static brio_status find_kind(brio_stream *s, const char *path, bool *is_map) {
     static const char *const maps[] = {".map", ".mrc", ".ccp4", NULL}, *const atoms[] = {".pdb", ".ent", NULL};
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_stream_fill(s, MAP_WORD + 4));
+    BRIO_FORWARD(brio_stream_fill(s, MAP_WORD + 4));
     bool marked = brio_stream_left(s) >= MAP_WORD + 4 && !memcmp(s->buffer + s->begin + MAP_WORD, "MAP ", 4);
     bool known = marked || !strcmp(path, "-") || has_extension(path, maps) || has_extension(path, atoms);
-    BRIO_REQUIRE(s->ctx, known, BRIO_ERR_FORMAT, "%s: unknown format, expected .map .mrc .ccp4 or .pdb .ent", s->name);
+    BRIO_EXPECT(s->ctx, known, BRIO_ERR_FORMAT, "%s: unknown format, expected .map .mrc .ccp4 or .pdb .ent", s->name);
     *is_map = marked || has_extension(path, maps);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_source(brio_context *ctx, const char *path, brio_iso_source *from) {
@@ -55,12 +53,10 @@ done:
 }
 
 static brio_status check_options(brio_context *ctx, const brio_iso_surface_options *o) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, isfinite(o->level), BRIO_ERR_ARGUMENT, "level %g: expected a finite number", o->level);
-    BRIO_REQUIRE(ctx, !o->resolution || !o->vertices, BRIO_ERR_ARGUMENT,
-                 "a resolution and a number of vertices: one decides the other");
-done:
-    return status;
+    BRIO_EXPECT(ctx, isfinite(o->level), BRIO_ERR_ARGUMENT, "level %g: expected a finite number", o->level);
+    BRIO_EXPECT(ctx, !o->resolution || !o->vertices, BRIO_ERR_ARGUMENT,
+                "a resolution and a number of vertices: one decides the other");
+    return BRIO_OK;
 }
 
 brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_surface_options *options,

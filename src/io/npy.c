@@ -29,7 +29,6 @@ static const char *letters_of(const brio_npy_header *h) {
 }
 
 static brio_status plan(brio_builder *b, brio_npy_header *h) {
-    brio_status status = BRIO_OK;
     const char *letters = letters_of(h);
     unsigned axes = 0;
     for (size_t i = 0; i < h->num_fields; i++) {
@@ -37,17 +36,16 @@ static brio_status plan(brio_builder *b, brio_npy_header *h) {
         bool axis = f->name[0] >= letters[0] && f->name[0] <= letters[2] && !f->name[1];
         f->axis = axis ? f->name[0] - letters[0] : -1;
         f->property = b->mesh->num_properties;
-        BRIO_REQUIRE(b->ctx, !axis || !(axes & 1u << f->axis), BRIO_ERR_FORMAT, "%s: two fields named %s", b->name,
-                     f->name);
+        BRIO_EXPECT(b->ctx, !axis || !(axes & 1u << f->axis), BRIO_ERR_FORMAT, "%s: two fields named %s", b->name,
+                    f->name);
         if (axis)
             axes |= 1u << f->axis;
         else
-            BRIO_TRY(brio_builder_property(b, f->name, f->wide ? BRIO_SCALAR_FLOAT64 : f->type));
+            BRIO_FORWARD(brio_builder_property(b, f->name, f->wide ? BRIO_SCALAR_FLOAT64 : f->type));
     }
-    for (size_t i = 0; i < h->num_passed; i++) BRIO_TRY(brio_builder_leave_out(b, h->passed[i]));
-    BRIO_REQUIRE(b->ctx, axes == 7, BRIO_ERR_FORMAT, "%s: the records have no field %c", b->name, "xyxzxyx"[axes]);
-done:
-    return status;
+    for (size_t i = 0; i < h->num_passed; i++) BRIO_FORWARD(brio_builder_leave_out(b, h->passed[i]));
+    BRIO_EXPECT(b->ctx, axes == 7, BRIO_ERR_FORMAT, "%s: the records have no field %c", b->name, "xyxzxyx"[axes]);
+    return BRIO_OK;
 }
 
 static void store(const brio_mesh *m, brio_npy_field *f, size_t v, const char *bytes) {
@@ -77,16 +75,14 @@ done:
 }
 
 static brio_status read_columns(brio_stream *s, brio_builder *b, brio_npy_header *h) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
     for (size_t i = 0; i < h->num_fields; i++)
         for (s->row = 0; s->row < h->rows; s->row++) {
-            if (i == 0) BRIO_TRY(brio_builder_add_vertices(b, 1));
-            BRIO_TRY(brio_stream_take(s, h->record / h->num_fields, &bytes));
+            if (i == 0) BRIO_FORWARD(brio_builder_add_vertices(b, 1));
+            BRIO_FORWARD(brio_stream_take(s, h->record / h->num_fields, &bytes));
             store(b->mesh, &h->fields[i], (size_t)s->row, bytes);
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_npy_read(brio_stream *s, brio_builder *b) {
@@ -138,12 +134,9 @@ static brio_status put(brio_context *ctx, growing_text *t, const char *format, .
 
 /* Writes a name as Python quotes it: a backslash behind a backslash. Other quotes are no part of names here. */
 static brio_status put_name(brio_context *ctx, growing_text *text, const char *name) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(put(ctx, text, "'"));
-    for (; *name; name++) BRIO_TRY(put(ctx, text, *name == '\\' ? "\\\\" : "%c", *name));
-    BRIO_TRY(put(ctx, text, "'"));
-done:
-    return status;
+    BRIO_FORWARD(put(ctx, text, "'"));
+    for (; *name; name++) BRIO_FORWARD(put(ctx, text, *name == '\\' ? "\\\\" : "%c", *name));
+    return put(ctx, text, "'");
 }
 
 /* Returns whether a name is not ASCII, so that the header is UTF-8, which version 3.0 is for. */
@@ -158,25 +151,23 @@ static bool needs_utf8(const brio_write_job *job) {
 static brio_status make_start(brio_context *ctx, const brio_write_job *job, growing_text *text) {
     static const char *const types[BRIO_SCALAR_END] = {"i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8"};
     const char order = brio_host_is_little() ? '<' : '>', *real = job->options->float32 ? "f4" : "f8";
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    BRIO_TRY(put(ctx, text, "............{'descr': ")); /* versions 2.0 and 3.0: a length of 32 bits */
+    BRIO_FORWARD(put(ctx, text, "............{'descr': ")); /* versions 2.0 and 3.0: a length of 32 bits */
     for (int k = 0; k < 3 && m->num_properties; k++)
-        BRIO_TRY(put(ctx, text, "%s('%c', '%c%s')", k ? ", " : "[", "xyz"[k], order, real));
+        BRIO_FORWARD(put(ctx, text, "%s('%c', '%c%s')", k ? ", " : "[", "xyz"[k], order, real));
     for (size_t i = 0; i < m->num_properties; i++) {
         brio_scalar type = m->properties[i].type;
         char letter = brio_scalar_size(type) == 1 ? '|' : order;
-        BRIO_TRY(put(ctx, text, ", ("));
-        BRIO_TRY(put_name(ctx, text, job->names[i]));
-        BRIO_TRY(put(ctx, text, ", '%c%s')", letter, types[type]));
+        BRIO_FORWARD(put(ctx, text, ", ("));
+        BRIO_FORWARD(put_name(ctx, text, job->names[i]));
+        BRIO_FORWARD(put(ctx, text, ", '%c%s')", letter, types[type]));
     }
     if (m->num_properties)
-        BRIO_TRY(put(ctx, text, "]"));
+        BRIO_FORWARD(put(ctx, text, "]"));
     else
-        BRIO_TRY(put(ctx, text, "'%c%s'", order, real));
-    BRIO_TRY(put(ctx, text, ", 'fortran_order': False, 'shape': ("));
-done:
-    return status;
+        BRIO_FORWARD(put(ctx, text, "'%c%s'", order, real));
+    BRIO_FORWARD(put(ctx, text, ", 'fortran_order': False, 'shape': ("));
+    return BRIO_OK;
 }
 
 /* Writes all bytes before the rows, a multiple of 64. BRIO_COUNT_UNKNOWN has as many digits as a number can have. */

@@ -108,19 +108,17 @@ double brio_npy_load(const brio_npy_field *f, const char *bytes) {
 
 /* Adds a field of a type such as <f8. */
 static brio_status add_field(parser *p, brio_npy_header *h, const char *name, const char *type) {
-    brio_status status = BRIO_OK;
     brio_npy_field found;
     if (!find_type(type, &found))
         return expected(p, "a type < > or | with b1 i1 u1 i2 u2 i4 u4 i8 u8 f4 or f8 before here");
     if (h->num_fields == BRIO_MOST_NUMBERS) return expected(p, "at most 4096 numbers in a row");
-    BRIO_TRY(BRIO_RESERVE(p->stream->ctx, h->fields, h->capacity, h->num_fields + 1));
+    BRIO_FORWARD(BRIO_RESERVE(p->stream->ctx, h->fields, h->capacity, h->num_fields + 1));
     brio_npy_field *f = &h->fields[h->num_fields++];
     *f = found;
     f->at = h->record;
     snprintf(f->name, sizeof f->name, "%s", name);
     h->record += brio_npy_size(f);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* The bytes of a type that is no number of a property, such as <U8, |S4, <M8[ns] or <f2; 0 if they are not known. */
@@ -134,31 +132,27 @@ static size_t size_of_other(const char *type) {
 
 /* Passes over a field that is no number. Padding has no name, and is not missed. */
 static brio_status pass_field(parser *p, brio_npy_header *h, const char *name, size_t bytes) {
-    brio_status status = BRIO_OK;
     h->record += bytes;
     if (h->record > MOST_RECORD) return expected(p, "before here records of at most 2^24 bytes");
     if (!name[0]) return BRIO_OK;
     if (h->num_passed == BRIO_MOST_NUMBERS) return expected(p, "at most 4096 fields of words");
-    BRIO_TRY(BRIO_RESERVE(p->stream->ctx, h->passed, h->passed_capacity, h->num_passed + 1));
+    BRIO_FORWARD(BRIO_RESERVE(p->stream->ctx, h->passed, h->passed_capacity, h->num_passed + 1));
     memcpy(h->passed[h->num_passed++], name, sizeof *h->passed);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds the numbers of a field that is an array: x, y and z of positions, otherwise NAME_0, NAME_1, ... */
 static brio_status add_array(parser *p, brio_npy_header *h, const char *name, const char *type, uint64_t count) {
     static const char *const positions[] = {"points", "vertices", "xyz", "positions", "position", "coordinates"};
-    brio_status status = BRIO_OK;
     bool position = false;
     for (size_t i = 0; i < sizeof positions / sizeof *positions; i++)
         position |= count == 3 && !strcasecmp(name, positions[i]);
     for (uint64_t k = 0; k < count; k++) {
         char part[64] = {"xyz"[k % 3]};
         if (!position && count > 1) brio_numbered_name(part, sizeof part, name, (size_t)k);
-        BRIO_TRY(add_field(p, h, position || count > 1 ? part : name, type));
+        BRIO_FORWARD(add_field(p, h, position || count > 1 ? part : name, type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads the shape of a field, (3,), (2, 2) or 3, as the number of its elements. */
@@ -178,30 +172,28 @@ static brio_status take_elements(parser *p, uint64_t *count) {
 /* Reads [('x', '<f8'), ...]. Names are Latin-1 in versions 1.0 and 2.0, UTF-8 in 3.0 and as brio 0.1 wrote them: builder.h takes
  * either. A field without a name is padding in NumPy, which writes it as bytes '|V4'. A field with a title has both as a pair. */
 static brio_status take_records(parser *p, brio_npy_header *h) {
-    brio_status status = BRIO_OK;
     char name[64], type[64];
     brio_npy_field number;
     while (!take(p, ']')) {
         uint64_t count = 1;
         if (!take(p, '(')) return expected(p, "( or ] in the list of fields");
         bool titled = take(p, '(');
-        BRIO_TRY(take_string(p, name));
+        BRIO_FORWARD(take_string(p, name));
         if (!take(p, ',')) return expected(p, "a comma");
-        if (titled) BRIO_TRY(take_string(p, name));
+        if (titled) BRIO_FORWARD(take_string(p, name));
         if (titled && !(take(p, ')') && take(p, ','))) return expected(p, ") and a comma behind title and name");
-        BRIO_TRY(take_string(p, type));
-        if (take(p, ',')) BRIO_TRY(take_elements(p, &count));
+        BRIO_FORWARD(take_string(p, type));
+        if (take(p, ',')) BRIO_FORWARD(take_elements(p, &count));
         if (!take(p, ')')) return expected(p, ") behind the type and the shape of a field");
         take(p, ',');
         if (find_type(type, &number))
-            BRIO_TRY(add_array(p, h, name, type, count));
+            BRIO_FORWARD(add_array(p, h, name, type, count));
         else if (size_of_other(type))
-            BRIO_TRY(pass_field(p, h, name, size_of_other(type) * (size_t)count));
+            BRIO_FORWARD(pass_field(p, h, name, size_of_other(type) * (size_t)count));
         else
             return expected(p, "before here a type < > or | with b1 i1 u1 i2 u2 i4 u4 i8 u8 f4 f8, or of words");
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads a shape: (), (rows,), (rows, columns) or one of more dimensions. */
@@ -245,31 +237,28 @@ static brio_status skip_value(parser *p) {
 /* Makes the fields of an array of rows. */
 static brio_status make_columns(parser *p, brio_npy_header *h, const char *type, const uint64_t *shape,
                                 size_t dimensions) {
-    brio_status status = BRIO_OK;
     if (dimensions != 2 || shape[1] < 3 || shape[1] > BRIO_MOST_NUMBERS)
         return expected(p, "before here the shape (rows, columns) with 3 to 4096 columns");
     for (uint64_t i = 0; i < shape[1]; i++) {
         char name[64];
         snprintf(name, sizeof name, i < 3 ? "%c" : "column%d", i < 3 ? "xyz"[i] : (int)i + 1);
-        BRIO_TRY(add_field(p, h, name, type));
+        BRIO_FORWARD(add_field(p, h, name, type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status parse(parser *p, dictionary *d) {
-    brio_status status = BRIO_OK;
     char key[64];
     if (!take(p, '{')) return expected(p, "{");
     while (!take(p, '}')) {
-        BRIO_TRY(take_string(p, key));
+        BRIO_FORWARD(take_string(p, key));
         if (!take(p, ':')) return expected(p, ":");
         if (!strcmp(key, "descr")) {
             take(p, ' ');
             d->descr = p->at;
-            BRIO_TRY(skip_value(p));
+            BRIO_FORWARD(skip_value(p));
         } else if (!strcmp(key, "shape")) {
-            BRIO_TRY(take_shape(p, d));
+            BRIO_FORWARD(take_shape(p, d));
             d->has_shape = true;
         } else if (!strcmp(key, "fortran_order")) {
             take(p, ' ');
@@ -281,48 +270,43 @@ static brio_status parse(parser *p, dictionary *d) {
         take(p, ',');
     }
     if (!d->descr || !d->has_shape) return expected(p, "before here the keys descr and shape");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the fields of an array of points. */
 static brio_status make_fields(parser *p, const dictionary *d, brio_npy_header *h) {
-    brio_status status = BRIO_OK;
     char type[64];
     p->at = d->descr;
     h->rows = d->shape[0];
     h->fortran = d->fortran;
     if (!take(p, '[')) {
-        BRIO_TRY(take_string(p, type));
+        BRIO_FORWARD(take_string(p, type));
         return make_columns(p, h, type, d->shape, d->dimensions);
     }
-    BRIO_TRY(take_records(p, h));
+    BRIO_FORWARD(take_records(p, h));
     if (!h->num_fields || d->dimensions != 1) return expected(p, "before here fields, and a shape of one dimension");
     h->fortran = false; /* one dimension: the orders are the same */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads the text of the header into *text, which the caller owns, and begins to parse it. */
 static brio_status read_text(brio_stream *s, char **text, parser *p) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
     brio_stream_element(s, "header", 1);
-    BRIO_TRY(brio_stream_take(s, 8, &bytes));
-    BRIO_REQUIRE(s->ctx, !memcmp(bytes, "\x93NUMPY", 6) && bytes[6] >= 1 && bytes[6] <= 3, BRIO_ERR_FORMAT,
-                 "%s: byte 0: expected \\x93NUMPY and a version 1 to 3", s->name);
+    BRIO_FORWARD(brio_stream_take(s, 8, &bytes));
+    BRIO_EXPECT(s->ctx, !memcmp(bytes, "\x93NUMPY", 6) && bytes[6] >= 1 && bytes[6] <= 3, BRIO_ERR_FORMAT,
+                "%s: byte 0: expected \\x93NUMPY and a version 1 to 3", s->name);
     bool wide = bytes[6] > 1;
-    BRIO_TRY(brio_stream_take(s, wide ? 4 : 2, &bytes));
+    BRIO_FORWARD(brio_stream_take(s, wide ? 4 : 2, &bytes));
     size_t size = wide ? brio_le32(bytes) : brio_le16(bytes);
-    BRIO_REQUIRE(s->ctx, size <= MOST_HEADER, BRIO_ERR_FORMAT, "%s: byte 8: a header of %zu bytes, expected at most %d",
-                 s->name, size, MOST_HEADER);
-    BRIO_TRY(brio_stream_take(s, size, &bytes));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, *text, size + 1));
+    BRIO_EXPECT(s->ctx, size <= MOST_HEADER, BRIO_ERR_FORMAT, "%s: byte 8: a header of %zu bytes, expected at most %d",
+                s->name, size, MOST_HEADER);
+    BRIO_FORWARD(brio_stream_take(s, size, &bytes));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, *text, size + 1));
     memcpy(*text, bytes, size);
     (*text)[size] = 0;
     *p = (parser){s, *text, *text, wide ? 12 : 10};
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_npy_header_read(brio_stream *s, brio_npy_header *h) {

@@ -46,14 +46,12 @@ static brio_status continue_line(brio_text *t) {
 
 /* Moves to the next word of the statement, across a backslash at the end of a line. */
 static brio_status next_word(brio_text *t, bool *more) {
-    brio_status status = BRIO_OK;
     for (;;) {
         *more = brio_text_more(t);
         if (!*more || t->at[0] != '\\' || *brio_skip_blanks(t->at + 1)) return BRIO_OK;
-        BRIO_TRY(continue_line(t));
+        BRIO_FORWARD(continue_line(t));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static bool ends_word(const char *p) {
@@ -62,17 +60,15 @@ static bool ends_word(const char *p) {
 
 /* Reads numbers up to the end of the statement, `most` at most. */
 static brio_status read_numbers(brio_text *t, size_t most, double *values, size_t *count) {
-    brio_status status = BRIO_OK;
     bool more;
     for (*count = 0; *count < most; ++*count) {
-        BRIO_TRY(next_word(t, &more));
+        BRIO_FORWARD(next_word(t, &more));
         if (!more) return BRIO_OK;
         const char *p = t->at;
         if (!brio_parse_number(&p, &values[*count]) || !ends_word(p)) return brio_text_expected(t, "a coordinate");
         t->at += p - t->at;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- colours --- */
@@ -80,16 +76,14 @@ done:
 /* Adds the properties of colours. Vertices before the first one with a colour have none yet. */
 static brio_status begin_colours(obj_reader *r) {
     static const char *const names[] = {"red", "green", "blue"};
-    brio_status status = BRIO_OK;
     brio_mesh *m = r->builder->mesh;
     r->colour = m->num_properties;
     for (size_t k = 0; k < 3; k++) {
-        BRIO_TRY(brio_builder_property(r->builder, names[k], BRIO_SCALAR_FLOAT64));
+        BRIO_FORWARD(brio_builder_property(r->builder, names[k], BRIO_SCALAR_FLOAT64));
         for (size_t v = 0; v < m->num_vertices; v++) ((double *)m->properties[r->colour + k].data)[v] = NO_COLOUR;
     }
     r->coloured = true;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Turns whole numbers of 0 to 255 into bytes, so that no reader of the mesh has to guess. */
@@ -136,64 +130,56 @@ static int digit_of(char c) {
 
 /* Takes the entries of a comment #MRGB: eight digits each, of mask, red, green and blue. */
 static brio_status read_painted(obj_reader *r, const char *digits) {
-    brio_status status = BRIO_OK;
     size_t length = strspn(digits, "0123456789abcdefABCDEF") / 8 * 8;
-    BRIO_TRY(BRIO_RESERVE(r->builder->ctx, r->painted, r->painted_capacity, r->num_painted + length / 2));
+    BRIO_FORWARD(BRIO_RESERVE(r->builder->ctx, r->painted, r->painted_capacity, r->num_painted + length / 2));
     for (size_t i = 0; i < length; i += 2)
         r->painted[r->num_painted++] = (uint8_t)(digit_of(digits[i]) << 4 | digit_of(digits[i + 1]));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* The colours of #MRGB are those of the vertices if there are as many. */
 static brio_status end_painted(obj_reader *r) {
     static const char *const names[] = {"red", "green", "blue"};
-    brio_status status = BRIO_OK;
     brio_mesh *m = r->builder->mesh;
     bool masked = false;
     if (!r->num_painted) return BRIO_OK;
     if (r->coloured || r->num_painted != 4 * m->num_vertices) return brio_builder_leave_out(r->builder, "#MRGB");
     for (size_t v = 0; v < m->num_vertices; v++) masked |= r->painted[4 * v] != 255;
-    if (masked) BRIO_TRY(brio_builder_leave_out(r->builder, "mask of #MRGB"));
+    if (masked) BRIO_FORWARD(brio_builder_leave_out(r->builder, "mask of #MRGB"));
     for (size_t k = 0; k < 3; k++) {
-        BRIO_TRY(brio_builder_property(r->builder, names[k], BRIO_SCALAR_UINT8));
+        BRIO_FORWARD(brio_builder_property(r->builder, names[k], BRIO_SCALAR_UINT8));
         uint8_t *target = m->properties[m->num_properties - 1].data;
         for (size_t v = 0; v < m->num_vertices; v++) target[v] = r->painted[4 * v + 1 + k];
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- vertices and normals --- */
 
 static brio_status read_vertex(obj_reader *r) {
-    brio_status status = BRIO_OK;
     double values[3 + MOST_EXTRA];
     size_t count;
-    BRIO_TRY(read_numbers(&r->text, 3 + MOST_EXTRA, values, &count));
+    BRIO_FORWARD(read_numbers(&r->text, 3 + MOST_EXTRA, values, &count));
     if (count < 3) return brio_text_expected(&r->text, "a coordinate");
     const double *colour = count == 6 || count == 7 ? values + 3 : NULL;
-    if (count == 4 && values[3] != 1) BRIO_TRY(brio_builder_leave_out(r->builder, "weights of vertices"));
-    if (count == 5) BRIO_TRY(brio_builder_leave_out(r->builder, "numbers behind the coordinates"));
-    if (count == 7 && values[6] != 1) BRIO_TRY(brio_builder_leave_out(r->builder, "alpha"));
-    if (colour && !r->coloured) BRIO_TRY(begin_colours(r));
-    BRIO_TRY(brio_builder_vertex(r->builder, values));
+    if (count == 4 && values[3] != 1) BRIO_FORWARD(brio_builder_leave_out(r->builder, "weights of vertices"));
+    if (count == 5) BRIO_FORWARD(brio_builder_leave_out(r->builder, "numbers behind the coordinates"));
+    if (count == 7 && values[6] != 1) BRIO_FORWARD(brio_builder_leave_out(r->builder, "alpha"));
+    if (colour && !r->coloured) BRIO_FORWARD(begin_colours(r));
+    BRIO_FORWARD(brio_builder_vertex(r->builder, values));
     brio_mesh *m = r->builder->mesh;
     for (size_t k = 0; r->coloured && k < 3; k++)
         ((double *)m->properties[r->colour + k].data)[m->num_vertices - 1] = colour ? colour[k] : NO_COLOUR;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_normal(obj_reader *r) {
-    brio_status status = BRIO_OK;
     size_t count;
-    BRIO_TRY(BRIO_RESERVE(r->builder->ctx, r->normals, r->normal_capacity, 3 * r->num_normals + 3));
-    BRIO_TRY(read_numbers(&r->text, 3, r->normals + 3 * r->num_normals, &count));
+    BRIO_FORWARD(BRIO_RESERVE(r->builder->ctx, r->normals, r->normal_capacity, 3 * r->num_normals + 3));
+    BRIO_FORWARD(read_numbers(&r->text, 3, r->normals + 3 * r->num_normals, &count));
     if (count < 3) return brio_text_expected(&r->text, "a coordinate");
     r->num_normals++;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static bool same_normal(const obj_reader *r, uint32_t a, uint32_t b) {
@@ -202,42 +188,38 @@ static bool same_normal(const obj_reader *r, uint32_t a, uint32_t b) {
 
 /* Notes the normal that a corner gives to its vertex.   normal  counts from 1 */
 static brio_status note_normal(obj_reader *r, double vertex, uint64_t normal) {
-    brio_status status = BRIO_OK;
     size_t before = r->num_known;
     bool known = vertex >= 0 && vertex < (double)r->builder->mesh->num_vertices && normal && normal <= r->num_normals &&
                  normal < SEVERAL;
     if (!known) return brio_builder_leave_out(r->builder, "normals of corners"); /* of what comes later in the file */
     size_t v = (size_t)vertex;
-    BRIO_TRY(BRIO_RESERVE(r->builder->ctx, r->normal_of, r->known_capacity, v + 1));
+    BRIO_FORWARD(BRIO_RESERVE(r->builder->ctx, r->normal_of, r->known_capacity, v + 1));
     for (; r->num_known <= v; r->num_known++) r->normal_of[r->num_known] = UNSET;
     uint32_t *mine = &r->normal_of[v], given = (uint32_t)normal;
     if (v >= before || *mine == UNSET)
         *mine = given;
     else if (*mine != SEVERAL && *mine != given && !same_normal(r, *mine, given))
         *mine = SEVERAL;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Gives each vertex its normal, 0 to those without a corner. */
 static brio_status end_normals(obj_reader *r) {
     static const char *const names[] = {"nx", "ny", "nz"};
-    brio_status status = BRIO_OK;
     brio_mesh *m = r->builder->mesh;
     bool each = !m->num_faces && r->num_normals == m->num_vertices, one = r->num_known || each;
     if (!r->num_normals) return BRIO_OK;
     for (size_t v = 0; v < r->num_known; v++) one &= r->normal_of[v] != SEVERAL;
     if (!one) return brio_builder_leave_out(r->builder, "normals of corners");
     for (size_t k = 0; k < 3; k++) {
-        BRIO_TRY(brio_builder_property(r->builder, names[k], BRIO_SCALAR_FLOAT64));
+        BRIO_FORWARD(brio_builder_property(r->builder, names[k], BRIO_SCALAR_FLOAT64));
         double *target = m->properties[m->num_properties - 1].data;
         for (size_t v = 0; v < m->num_vertices; v++) {
             size_t normal = each ? v + 1 : v < r->num_known ? r->normal_of[v] : UNSET;
             target[v] = normal == UNSET ? 0 : r->normals[3 * (normal - 1) + k];
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- faces --- */
@@ -256,7 +238,6 @@ static bool scan_index(const char **p, size_t count, double *index) {
 
 /* Reads a corner v, v/vt, v//vn or v/vt/vn. */
 static brio_status read_corner(obj_reader *r) {
-    brio_status status = BRIO_OK;
     brio_text *t = &r->text;
     const char *p = t->at;
     double vertex, normal;
@@ -267,32 +248,27 @@ static brio_status read_corner(obj_reader *r) {
     bool has_normal = *p == '/' && (p++, scan_index(&p, r->num_normals, &normal));
     while (!ends_word(p)) p++;
     t->at += p - t->at;
-    BRIO_TRY(brio_builder_corner(r->builder, vertex));
-    if (has_normal) BRIO_TRY(note_normal(r, vertex, normal >= 0 ? (uint64_t)normal + 1 : 0));
-done:
-    return status;
+    BRIO_FORWARD(brio_builder_corner(r->builder, vertex));
+    if (has_normal) BRIO_FORWARD(note_normal(r, vertex, normal >= 0 ? (uint64_t)normal + 1 : 0));
+    return BRIO_OK;
 }
 
 static brio_status read_face(obj_reader *r) {
-    brio_status status = BRIO_OK;
     bool more;
     for (;;) {
-        BRIO_TRY(next_word(&r->text, &more));
+        BRIO_FORWARD(next_word(&r->text, &more));
         if (!more) return brio_builder_face(r->builder);
-        BRIO_TRY(read_corner(r));
+        BRIO_FORWARD(read_corner(r));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the file --- */
 
 /* Skips a statement with the lines that continue it. */
 static brio_status skip_statement(brio_text *t) {
-    brio_status status = BRIO_OK;
-    while (t->at && *t->at && t->at[strlen(t->at) - 1] == '\\') BRIO_TRY(continue_line(t));
-done:
-    return status;
+    while (t->at && *t->at && t->at[strlen(t->at) - 1] == '\\') BRIO_FORWARD(continue_line(t));
+    return BRIO_OK;
 }
 
 static bool is_statement(const char *at, const char *key) {
@@ -328,39 +304,35 @@ static brio_status name_left_out(obj_reader *r) {
 
 /* Moves to the next statement. text.at becomes NULL at the end of the file. */
 static brio_status next_statement(obj_reader *r) {
-    brio_status status = BRIO_OK;
     brio_text *t = &r->text;
     do {
-        BRIO_TRY(brio_stream_line(t->stream, &t->at));
+        BRIO_FORWARD(brio_stream_line(t->stream, &t->at));
         if (!t->at) return BRIO_OK;
         t->at = brio_skip_blanks(t->at);
-        if (!strncmp(t->at, "#MRGB ", 6)) BRIO_TRY(read_painted(r, brio_skip_blanks(t->at + 6)));
+        if (!strncmp(t->at, "#MRGB ", 6)) BRIO_FORWARD(read_painted(r, brio_skip_blanks(t->at + 6)));
         char *comment = strchr(t->at, t->comment);
         if (comment) *comment = 0;
         for (size_t end = strlen(t->at); end && brio_is_blank(t->at[end - 1]);) t->at[--end] = 0;
     } while (!*t->at);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_statements(obj_reader *r) {
-    brio_status status = BRIO_OK;
     brio_text *t = &r->text;
     for (;;) {
-        BRIO_TRY(next_statement(r));
+        BRIO_FORWARD(next_statement(r));
         if (!t->at) return BRIO_OK;
         bool vertex = is_statement(t->at, "v"), face = is_statement(t->at, "f") || is_statement(t->at, "fo"),
              normal = is_statement(t->at, "vn");
-        if (!vertex && !face && !normal) BRIO_TRY(name_left_out(r));
+        if (!vertex && !face && !normal) BRIO_FORWARD(name_left_out(r));
         if (vertex || face || normal)
             while (*t->at && !brio_is_blank(*t->at) && *t->at != '\\') t->at++;
-        if (vertex) BRIO_TRY(read_vertex(r));
-        if (face) BRIO_TRY(read_face(r));
-        if (normal) BRIO_TRY(read_normal(r));
-        BRIO_TRY(skip_statement(t));
+        if (vertex) BRIO_FORWARD(read_vertex(r));
+        if (face) BRIO_FORWARD(read_face(r));
+        if (normal) BRIO_FORWARD(read_normal(r));
+        BRIO_FORWARD(skip_statement(t));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_obj_read(brio_stream *s, brio_builder *b) {
@@ -381,45 +353,39 @@ done:
 /* --- writing --- */
 
 static brio_status write_vertices(brio_output *out, const brio_mesh *m, const brio_channels *colour) {
-    brio_status status = BRIO_OK;
     for (size_t v = 0; v < m->num_vertices; v++) {
-        BRIO_TRY(brio_output_string(out, "v "));
-        BRIO_TRY(brio_output_point(out, m->vertices + 3 * v));
-        for (int k = 0; k < colour->count && k < 3; k++) BRIO_TRY(brio_output_scalar(out, ' ', colour->of[k], v));
-        BRIO_TRY(brio_output_string(out, "\n"));
+        BRIO_FORWARD(brio_output_string(out, "v "));
+        BRIO_FORWARD(brio_output_point(out, m->vertices + 3 * v));
+        for (int k = 0; k < colour->count && k < 3; k++) BRIO_FORWARD(brio_output_scalar(out, ' ', colour->of[k], v));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_normals(brio_output *out, const brio_mesh *m, const brio_channels *normal) {
-    brio_status status = BRIO_OK;
     for (size_t v = 0; v < m->num_vertices && normal->count; v++) {
-        BRIO_TRY(brio_output_string(out, "vn"));
-        for (int k = 0; k < 3; k++) BRIO_TRY(brio_output_scalar(out, ' ', normal->of[k], v));
-        BRIO_TRY(brio_output_string(out, "\n"));
+        BRIO_FORWARD(brio_output_string(out, "vn"));
+        for (int k = 0; k < 3; k++) BRIO_FORWARD(brio_output_scalar(out, ' ', normal->of[k], v));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_obj_write(brio_output *out, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
-    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
-    BRIO_TRY(write_vertices(out, m, &colour));
-    BRIO_TRY(write_normals(out, m, &normal));
+    BRIO_FORWARD(brio_output_comment(out, "# ", job->options->comment));
+    BRIO_FORWARD(write_vertices(out, m, &colour));
+    BRIO_FORWARD(write_normals(out, m, &normal));
     for (size_t f = 0; f < m->num_faces; f++) {
-        BRIO_TRY(brio_output_string(out, "f"));
+        BRIO_FORWARD(brio_output_string(out, "f"));
         for (uint64_t i = m->face_offsets[f]; i < m->face_offsets[f + 1]; i++) {
             int64_t corner = (int64_t)m->face_vertices[i] + 1;
-            BRIO_TRY(brio_output_integer(out, ' ', corner));
-            if (normal.count) BRIO_TRY(brio_output_string(out, "//"));
-            if (normal.count) BRIO_TRY(brio_output_integer(out, 0, corner));
+            BRIO_FORWARD(brio_output_integer(out, ' ', corner));
+            if (normal.count) BRIO_FORWARD(brio_output_string(out, "//"));
+            if (normal.count) BRIO_FORWARD(brio_output_integer(out, 0, corner));
         }
-        BRIO_TRY(brio_output_string(out, "\n"));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
     }
-done:
-    return status;
+    return BRIO_OK;
 }

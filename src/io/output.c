@@ -37,16 +37,14 @@ static brio_status take_descriptor(brio_output *out, int descriptor) {
 
 /* Opens a FIFO, and waits here for a reader. The system's own wait could only be ended by a signal. */
 static brio_status open_fifo(brio_output *out, const char *path) {
-    brio_status status = BRIO_OK;
     for (;;) {
         out->file = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK);
         if (out->file >= 0) break;
         if (errno != ENXIO && errno != EINTR) return fail(out);
-        BRIO_TRY(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, 0));
+        BRIO_FORWARD(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, 0));
     }
     out->owned = true;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Opens a pipe, a terminal or a device, which is written in place. */
@@ -95,14 +93,11 @@ done:
 }
 
 brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *path, uint64_t expected) {
-    brio_status status = BRIO_OK;
     bool standard = !strcmp(path, "-");
     *out = (brio_output){
         .ctx = ctx, .name = standard ? "standard output" : path, .target.folder = -1, .file = -1, .expected = expected};
-    BRIO_TRY(BRIO_ALLOC(ctx, out->buffer, BLOCK));
-    BRIO_TRY(standard ? take_descriptor(out, STDOUT_FILENO) : open_file(out, path));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->buffer, BLOCK));
+    return standard ? take_descriptor(out, STDOUT_FILENO) : open_file(out, path);
 }
 
 bool brio_output_is_single(brio_context *ctx, const char *path) {
@@ -127,12 +122,11 @@ static ssize_t write_some(const brio_output *out, const char *bytes, size_t size
 }
 
 static brio_status write_all(brio_output *out, const char *bytes, size_t size) {
-    brio_status status = BRIO_OK;
     while (size) {
-        if (out->waits) BRIO_TRY(brio_wait_for(out->ctx, out->file, BRIO_WAIT_WRITE, share_written(out)));
+        if (out->waits) BRIO_FORWARD(brio_wait_for(out->ctx, out->file, BRIO_WAIT_WRITE, share_written(out)));
         ssize_t done = write_some(out, bytes, size);
         if (done < 0 && (errno == EINTR || errno == EAGAIN)) {
-            BRIO_TRY(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, share_written(out)));
+            BRIO_FORWARD(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, share_written(out)));
             continue;
         }
         if (done == 0) errno = EIO; /* a device that takes nothing would be asked for ever */
@@ -141,8 +135,7 @@ static brio_status write_all(brio_output *out, const char *bytes, size_t size) {
         size -= (size_t)done;
         out->written += (uint64_t)done;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the disk take bytes and, if `waits`, waits until it has them. A failure must not be lost: the system tells of
@@ -174,13 +167,10 @@ static brio_status report(brio_output *out) {
 }
 
 static brio_status flush(brio_output *out) {
-    brio_status status = BRIO_OK;
     size_t used = out->used;
     out->used = 0;
-    BRIO_TRY(write_all(out, out->buffer, used));
-    BRIO_TRY(report(out));
-done:
-    return status;
+    BRIO_FORWARD(write_all(out, out->buffer, used));
+    return report(out);
 }
 
 /* Flushes a file. A signal may end fsync early. */
@@ -191,9 +181,8 @@ static bool is_on_disk(int file) {
 }
 
 brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *bytes, size_t size) {
-    brio_status status = BRIO_OK;
     const char *p = bytes;
-    BRIO_TRY(flush(out));
+    BRIO_FORWARD(flush(out));
     while (size) {
         ssize_t done = pwrite(out->file, p, size, (off_t)offset);
         if (done < 0 && errno == EINTR) continue;
@@ -203,14 +192,12 @@ brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *byt
         offset += (uint64_t)done;
         size -= (size_t)done;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_output_finish(brio_output *out) {
-    brio_status status = BRIO_OK;
     brio_quiet_signals quiet;
-    BRIO_TRY(flush(out));
+    BRIO_FORWARD(flush(out));
     if (!out->owned) return BRIO_OK;
     if (out->target.is_new && !is_on_disk(out->file)) return fail(out);
     if (brio_target_is_nameless(&out->target)) return BRIO_OK; /* needed open to be named; all of it is on the disk */
@@ -219,8 +206,7 @@ brio_status brio_output_finish(brio_output *out) {
     brio_signals_restore(&quiet);
     out->owned = false;
     if (closed != 0 && errno != EINTR) return fail(out);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_output_publish(brio_output *out) {
@@ -248,13 +234,12 @@ void brio_output_close(brio_output *out) {
 /* --- what goes into the buffer --- */
 
 brio_status brio_output_bytes(brio_output *out, const void *bytes, size_t size) {
-    brio_status status = BRIO_OK;
     const char *p = bytes;
     while (size) {
-        if (out->used == BLOCK || (out->used && size >= BLOCK)) BRIO_TRY(flush(out));
+        if (out->used == BLOCK || (out->used && size >= BLOCK)) BRIO_FORWARD(flush(out));
         if (size >= BLOCK) { /* past the buffer */
-            BRIO_TRY(write_all(out, p, BLOCK));
-            BRIO_TRY(report(out));
+            BRIO_FORWARD(write_all(out, p, BLOCK));
+            BRIO_FORWARD(report(out));
             p += BLOCK;
             size -= BLOCK;
             continue;
@@ -265,8 +250,7 @@ brio_status brio_output_bytes(brio_output *out, const void *bytes, size_t size) 
         p += part;
         size -= part;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_output_string(brio_output *out, const char *text) {
@@ -314,22 +298,18 @@ brio_status brio_output_scalar(brio_output *out, char before, const brio_propert
 }
 
 brio_status brio_output_point(brio_output *out, const double *point) {
-    brio_status status = BRIO_OK;
-    for (int k = 0; k < 3; k++) BRIO_TRY(brio_output_double(out, k ? ' ' : 0, point[k]));
-done:
-    return status;
+    for (int k = 0; k < 3; k++) BRIO_FORWARD(brio_output_double(out, k ? ' ' : 0, point[k]));
+    return BRIO_OK;
 }
 
 brio_status brio_output_comment(brio_output *out, const char *prefix, const char *comment) {
-    brio_status status = BRIO_OK;
     while (comment && *comment) {
         size_t length = strcspn(comment, "\r\n");
-        BRIO_TRY(brio_output_string(out, prefix));
-        BRIO_TRY(brio_output_bytes(out, comment, length));
-        BRIO_TRY(brio_output_string(out, "\n"));
+        BRIO_FORWARD(brio_output_string(out, prefix));
+        BRIO_FORWARD(brio_output_bytes(out, comment, length));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
         comment += length;
         comment += strspn(comment, "\r\n");
     }
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -113,18 +113,16 @@ static bool next_count(char **line, uint64_t *value) {
 }
 
 static brio_status read_fields(brio_stream *s, brio_pcd_header *h, char *line) {
-    brio_status status = BRIO_OK;
     if (h->num_fields) return bad_line(s, "FIELDS once");
     for (char *word = next_word(&line); word; word = next_word(&line)) {
         if (strlen(word) > 63 || h->num_fields == BRIO_PCD_MOST_NUMBERS)
             return bad_line(s, "at most 4096 fields with names of at most 63 characters");
-        BRIO_TRY(BRIO_RESERVE(s->ctx, h->fields, h->capacity, h->num_fields + 1));
+        BRIO_FORWARD(BRIO_RESERVE(s->ctx, h->fields, h->capacity, h->num_fields + 1));
         brio_pcd_field *f = &h->fields[h->num_fields++];
         *f = (brio_pcd_field){.type = 'F', .size = 4, .count = 1};
         strcpy(f->name, word);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads SIZE or COUNT: a number for each field. */
@@ -203,11 +201,10 @@ static brio_status read_line(brio_stream *s, brio_pcd_header *h, char *line, pcd
 
 /* Sums up the fields, and checks them. */
 static brio_status finish(brio_stream *s, brio_pcd_header *h, const pcd_size *size) {
-    brio_status status = BRIO_OK;
     if (!size->has_points && !size->has_width) return bad_line(s, "WIDTH or POINTS before this line");
     if (__builtin_mul_overflow(size->width, size->height, &h->points)) h->points = UINT64_MAX;
-    BRIO_REQUIRE(s->ctx, !size->has_points || !size->has_width || size->points == h->points, BRIO_ERR_FORMAT,
-                 "%s: %" PRIu64 " points, WIDTH times HEIGHT is %" PRIu64, s->name, size->points, h->points);
+    BRIO_EXPECT(s->ctx, !size->has_points || !size->has_width || size->points == h->points, BRIO_ERR_FORMAT,
+                "%s: %" PRIu64 " points, WIDTH times HEIGHT is %" PRIu64, s->name, size->points, h->points);
     if (size->has_points) h->points = size->points;
     h->height = size->height;
     static const double nowhere[7] = {0, 0, 0, 1, 0, 0, 0};
@@ -218,29 +215,25 @@ static brio_status finish(brio_stream *s, brio_pcd_header *h, const pcd_size *si
         f->at = h->record;
         h->record += (size_t)f->size * f->count;
         h->numbers += f->count;
-        BRIO_REQUIRE(s->ctx, f->type != 'F' || f->size >= 4, BRIO_ERR_FORMAT,
-                     "%s: field %s is a floating-point number of %u bytes, expected 4 or 8", s->name, f->name, f->size);
+        BRIO_EXPECT(s->ctx, f->type != 'F' || f->size >= 4, BRIO_ERR_FORMAT,
+                    "%s: field %s is a floating-point number of %u bytes, expected 4 or 8", s->name, f->name, f->size);
     }
-    BRIO_REQUIRE(s->ctx, h->numbers && h->numbers <= BRIO_PCD_MOST_NUMBERS, BRIO_ERR_FORMAT,
-                 "%s: %zu numbers for each point, expected 1 to %d", s->name, h->numbers, BRIO_PCD_MOST_NUMBERS);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, h->numbers && h->numbers <= BRIO_PCD_MOST_NUMBERS, BRIO_ERR_FORMAT,
+                "%s: %zu numbers for each point, expected 1 to %d", s->name, h->numbers, BRIO_PCD_MOST_NUMBERS);
+    return BRIO_OK;
 }
 
 brio_status brio_pcd_header_read(brio_stream *s, brio_pcd_header *h) {
-    brio_status status = BRIO_OK;
     pcd_size size = {.height = 1};
     bool end = false;
     char *line;
     *h = (brio_pcd_header){.num_fields = 0};
     while (!end) {
-        BRIO_TRY(brio_stream_line(s, &line));
+        BRIO_FORWARD(brio_stream_line(s, &line));
         if (!line) return bad_line(s, "DATA behind this line");
-        BRIO_TRY(read_line(s, h, line, &size, &end));
+        BRIO_FORWARD(read_line(s, h, line, &size, &end));
     }
-    BRIO_TRY(finish(s, h, &size));
-done:
-    return status;
+    return finish(s, h, &size);
 }
 
 void brio_pcd_header_free(brio_context *ctx, brio_pcd_header *h) {

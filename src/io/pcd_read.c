@@ -50,14 +50,13 @@ static bool is_colour(const brio_pcd_field *f) {
 
 static brio_status plan_colour(pcd_reader *r, const brio_pcd_field *f, size_t *role) {
     static const char *const names[] = {"red", "green", "blue", "alpha"};
-    brio_status status = BRIO_OK;
     r->first_colour = r->builder->mesh->num_properties;
     r->has_alpha = f->name[3] == 'a';
     r->has_colour = true;
     *role = COLOUR;
-    for (int i = 0; i < 3 + r->has_alpha; i++) BRIO_TRY(brio_builder_property(r->builder, names[i], BRIO_SCALAR_UINT8));
-done:
-    return status;
+    for (int i = 0; i < 3 + r->has_alpha; i++)
+        BRIO_FORWARD(brio_builder_property(r->builder, names[i], BRIO_SCALAR_UINT8));
+    return BRIO_OK;
 }
 
 /* Returns the axis of a field whose name is one of three letters, "xyz" or "XYZ", or -1. */
@@ -74,7 +73,6 @@ static const char *letters_of(const brio_pcd_header *h) {
 }
 
 static brio_status plan_field(pcd_reader *r, const brio_pcd_field *f, size_t *roles, unsigned *axes) {
-    brio_status status = BRIO_OK;
     int axis = axis_of(f, letters_of(r->header));
     if (axis >= 0 && !(*axes & 1u << axis)) {
         *axes |= 1u << axis;
@@ -86,25 +84,22 @@ static brio_status plan_field(pcd_reader *r, const brio_pcd_field *f, size_t *ro
         char name[64];
         brio_builder_component_name(r->builder, f->name, i, f->count, name);
         roles[i] = PROPERTY + r->builder->mesh->num_properties;
-        BRIO_TRY(brio_builder_property(r->builder, name, type_of(f)));
+        BRIO_FORWARD(brio_builder_property(r->builder, name, type_of(f)));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status plan(pcd_reader *r) {
-    brio_status status = BRIO_OK;
     unsigned axes = 0;
     size_t number = 0;
-    BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->roles, r->header->numbers));
-    BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->values, r->header->numbers));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(r->stream->ctx, r->roles, r->header->numbers));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(r->stream->ctx, r->values, r->header->numbers));
     for (size_t i = 0; i < r->header->num_fields; number += r->header->fields[i++].count)
-        BRIO_TRY(plan_field(r, &r->header->fields[i], r->roles + number, &axes));
-    BRIO_REQUIRE(r->stream->ctx, axes == 7, BRIO_ERR_FORMAT, "%s: the points have no field %c", r->stream->name,
-                 "xyxzxyx"[axes]);
-    if (r->header->has_place) BRIO_TRY(brio_plan_origins(r->builder));
-done:
-    return status;
+        BRIO_FORWARD(plan_field(r, &r->header->fields[i], r->roles + number, &axes));
+    BRIO_EXPECT(r->stream->ctx, axes == 7, BRIO_ERR_FORMAT, "%s: the points have no field %c", r->stream->name,
+                "xyxzxyx"[axes]);
+    if (r->header->has_place) BRIO_FORWARD(brio_plan_origins(r->builder));
+    return BRIO_OK;
 }
 
 /* --- points --- */
@@ -131,15 +126,13 @@ static brio_status store(pcd_reader *r, size_t v, size_t role, double value) {
 
 /* Adds the point in r->values, unless it is none. */
 static brio_status add_point(pcd_reader *r) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < r->header->numbers; i++)
         if (r->roles[i] >= AXIS && r->roles[i] < PROPERTY && !isfinite(r->values[i])) return BRIO_OK;
-    BRIO_TRY(brio_builder_add_vertices(r->builder, 1));
+    BRIO_FORWARD(brio_builder_add_vertices(r->builder, 1));
     size_t v = r->builder->mesh->num_vertices - 1;
     brio_set_origins(r->builder, v, r->header->viewpoint);
-    for (size_t i = 0; i < r->header->numbers; i++) BRIO_TRY(store(r, v, r->roles[i], r->values[i]));
-done:
-    return status;
+    for (size_t i = 0; i < r->header->numbers; i++) BRIO_FORWARD(store(r, v, r->roles[i], r->values[i]));
+    return BRIO_OK;
 }
 
 /* Returns the number at an address; a packed colour as the integer that it is. */
@@ -220,12 +213,11 @@ static double unpacked(double value) {
 }
 
 static brio_status read_text_row(pcd_reader *r, brio_text *text) {
-    brio_status status = BRIO_OK;
     double *value = r->values;
     for (size_t i = 0; i < r->header->num_fields; i++) {
         const brio_pcd_field *f = &r->header->fields[i];
         for (unsigned j = 0; j < f->count; j++, value++) {
-            BRIO_TRY(brio_text_number(text, value));
+            BRIO_FORWARD(brio_text_number(text, value));
             bool colour = r->roles[value - r->values] == COLOUR;
             if (colour && f->type == 'F') *value = unpacked(*value);
             if (colour && !(*value >= 0 && *value <= UINT32_MAX))
@@ -233,10 +225,8 @@ static brio_status read_text_row(pcd_reader *r, brio_text *text) {
             if (f->size == 8 && f->type != 'F') r->rounded |= fabs(*value) >= 0x1p53;
         }
     }
-    BRIO_TRY(brio_text_row_end(text));
-    BRIO_TRY(add_point(r));
-done:
-    return status;
+    BRIO_FORWARD(brio_text_row_end(text));
+    return add_point(r);
 }
 
 static brio_status read_text(pcd_reader *r) {
@@ -257,17 +247,15 @@ done:
 /* Checks the header's number of points against the bytes that are there. Each number of a text has another character
  * behind it, except the last one. Compressed data tell their size themselves, in 32 bits. */
 static brio_status check_points(brio_stream *s, const brio_pcd_header *h, bool streams, bool salvages) {
-    brio_status status = BRIO_OK;
     bool compressed = h->data == BRIO_PCD_COMPRESSED;
     uint64_t least = h->data == BRIO_PCD_ASCII ? 2 * h->numbers - 1 : h->record;
-    if (!compressed && !salvages) BRIO_TRY(brio_stream_expect(s, h->points, least, "the header"));
-    BRIO_REQUIRE(s->ctx, !compressed || h->points <= UINT32_MAX / least, BRIO_ERR_FORMAT,
-                 "%s: the header announces %" PRIu64 " points of %" PRIu64 " bytes, compressed data hold 4 GiB at most",
-                 s->name, h->points, least);
-    BRIO_REQUIRE(s->ctx, streams || h->points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
-                 "%s: %" PRIu64 " points, the most are %" PRIu64, s->name, h->points, BRIO_MAX_VERTICES);
-done:
-    return status;
+    if (!compressed && !salvages) BRIO_FORWARD(brio_stream_expect(s, h->points, least, "the header"));
+    BRIO_EXPECT(s->ctx, !compressed || h->points <= UINT32_MAX / least, BRIO_ERR_FORMAT,
+                "%s: the header announces %" PRIu64 " points of %" PRIu64 " bytes, compressed data hold 4 GiB at most",
+                s->name, h->points, least);
+    BRIO_EXPECT(s->ctx, streams || h->points <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+                "%s: %" PRIu64 " points, the most are %" PRIu64, s->name, h->points, BRIO_MAX_VERTICES);
+    return BRIO_OK;
 }
 
 brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {

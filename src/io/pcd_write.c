@@ -53,10 +53,9 @@ static void add_field(pcd_writer *w, pcd_field field) {
 }
 
 static brio_status plan(brio_output *out, const brio_write_job *job, pcd_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     w->colour = byte_colour_of(m);
-    BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, w->fields, AXES + m->num_properties));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(out->ctx, w->fields, AXES + m->num_properties));
     for (size_t k = 0; k < AXES; k++) add_field(w, (pcd_field){FIELD_AXIS, k, job->options->float32 ? 4 : 8, NULL, 0});
     for (size_t i = 0; i < m->num_properties; i++) {
         const brio_property *p = &m->properties[i];
@@ -65,8 +64,7 @@ static brio_status plan(brio_output *out, const brio_write_job *job, pcd_writer 
         unsigned size = (unsigned)brio_scalar_size(p->type);
         add_field(w, (pcd_field){FIELD_PROPERTY, i, size, NULL, 0});
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* PCL's reader takes rgb and rgba for packed colours, and _ for bytes to skip. */
@@ -95,47 +93,38 @@ static char letter_of(const brio_write_job *job, const pcd_writer *w, const pcd_
 
 /* Writes a line with a count, and where the count goes if it is not known. */
 static brio_status write_count(brio_output *out, const char *key, uint64_t points, uint64_t *at) {
-    brio_status status = BRIO_OK;
     if (points != BRIO_COUNT_UNKNOWN) return brio_output_format(out, "%s %" PRIu64 "\n", key, points);
-    BRIO_TRY(brio_output_format(out, "%s ", key));
+    BRIO_FORWARD(brio_output_format(out, "%s ", key));
     *at = brio_output_offset(out);
-    BRIO_TRY(brio_output_format(out, "%*s\n", DIGITS, ""));
-done:
-    return status;
+    return brio_output_format(out, "%*s\n", DIGITS, "");
 }
 
 static brio_status write_header(brio_output *out, const brio_write_job *job, pcd_writer *w) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_string(out, "# .PCD v0.7 - Point Cloud Data file format\n"));
-    BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
-    BRIO_TRY(brio_output_string(out, "VERSION 0.7\nFIELDS"));
-    for (size_t i = 0; i < w->num_fields; i++) BRIO_TRY(write_name(out, job, w, &w->fields[i]));
-    BRIO_TRY(brio_output_string(out, "\nSIZE"));
-    for (size_t i = 0; i < w->num_fields; i++) BRIO_TRY(brio_output_format(out, " %u", w->fields[i].size));
-    BRIO_TRY(brio_output_string(out, "\nTYPE"));
+    BRIO_FORWARD(brio_output_string(out, "# .PCD v0.7 - Point Cloud Data file format\n"));
+    BRIO_FORWARD(brio_output_comment(out, "# ", job->options->comment));
+    BRIO_FORWARD(brio_output_string(out, "VERSION 0.7\nFIELDS"));
+    for (size_t i = 0; i < w->num_fields; i++) BRIO_FORWARD(write_name(out, job, w, &w->fields[i]));
+    BRIO_FORWARD(brio_output_string(out, "\nSIZE"));
+    for (size_t i = 0; i < w->num_fields; i++) BRIO_FORWARD(brio_output_format(out, " %u", w->fields[i].size));
+    BRIO_FORWARD(brio_output_string(out, "\nTYPE"));
     for (size_t i = 0; i < w->num_fields; i++)
-        BRIO_TRY(brio_output_format(out, " %c", letter_of(job, w, &w->fields[i])));
-    BRIO_TRY(brio_output_string(out, "\nCOUNT"));
-    for (size_t i = 0; i < w->num_fields; i++) BRIO_TRY(brio_output_string(out, " 1"));
-    BRIO_TRY(brio_output_string(out, "\n"));
-    BRIO_TRY(write_count(out, "WIDTH", job->points, &w->width_at));
-    BRIO_TRY(brio_output_string(out, "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"));
-    BRIO_TRY(write_count(out, "POINTS", job->points, &w->points_at));
+        BRIO_FORWARD(brio_output_format(out, " %c", letter_of(job, w, &w->fields[i])));
+    BRIO_FORWARD(brio_output_string(out, "\nCOUNT"));
+    for (size_t i = 0; i < w->num_fields; i++) BRIO_FORWARD(brio_output_string(out, " 1"));
+    BRIO_FORWARD(brio_output_string(out, "\n"));
+    BRIO_FORWARD(write_count(out, "WIDTH", job->points, &w->width_at));
+    BRIO_FORWARD(brio_output_string(out, "HEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\n"));
+    BRIO_FORWARD(write_count(out, "POINTS", job->points, &w->points_at));
     const char *data = job->options->ascii ? "ascii" : job->options->compress ? "binary_compressed" : "binary";
-    BRIO_TRY(brio_output_format(out, "DATA %s\n", data));
-done:
-    return status;
+    return brio_output_format(out, "DATA %s\n", data);
 }
 
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     pcd_writer *w = state;
     for (size_t i = 0; i < job->mesh->num_properties; i++)
         if (is_reserved(job->names[i])) strcat(job->names[i], "_2");
-    BRIO_TRY(plan(out, job, w));
-    BRIO_TRY(write_header(out, job, w));
-done:
-    return status;
+    BRIO_FORWARD(plan(out, job, w));
+    return write_header(out, job, w);
 }
 
 /* --- numbers --- */
@@ -167,7 +156,6 @@ static void encode(const brio_mesh *m, const pcd_writer *w, const pcd_field *f, 
 }
 
 static brio_status write_text(brio_output *out, const brio_write_job *job, const pcd_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     for (size_t v = 0; v < m->num_vertices; v++) {
         for (size_t i = 0; i < w->num_fields; i++) {
@@ -175,16 +163,15 @@ static brio_status write_text(brio_output *out, const brio_write_job *job, const
             double x = f->kind == FIELD_AXIS ? m->vertices[AXES * v + f->from] : 0;
             char before = i ? ' ' : 0;
             if (f->kind == FIELD_AXIS)
-                BRIO_TRY(brio_output_double(out, before, f->size == 4 ? (double)(float)x : x));
+                BRIO_FORWARD(brio_output_double(out, before, f->size == 4 ? (double)(float)x : x));
             else if (f->kind == FIELD_COLOUR)
-                BRIO_TRY(brio_output_integer(out, before, packed_colour(w, v)));
+                BRIO_FORWARD(brio_output_integer(out, before, packed_colour(w, v)));
             else
-                BRIO_TRY(brio_output_scalar(out, before, &m->properties[f->from], v));
+                BRIO_FORWARD(brio_output_scalar(out, before, &m->properties[f->from], v));
         }
-        BRIO_TRY(brio_output_string(out, "\n"));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_binary(brio_output *out, const brio_write_job *job, const pcd_writer *w) {
@@ -205,18 +192,16 @@ done:
 }
 
 static brio_status keep_columns(brio_output *out, const brio_write_job *job, pcd_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    BRIO_REQUIRE(out->ctx, m->num_vertices <= UINT32_MAX / w->record - w->rows, BRIO_ERR_ARGUMENT,
-                 "%s: compressed data hold 4 GiB at most", out->name);
+    BRIO_EXPECT(out->ctx, m->num_vertices <= UINT32_MAX / w->record - w->rows, BRIO_ERR_ARGUMENT,
+                "%s: compressed data hold 4 GiB at most", out->name);
     for (size_t i = 0; i < w->num_fields; i++) {
         pcd_field *f = &w->fields[i];
-        BRIO_TRY(BRIO_RESERVE(out->ctx, f->column, f->capacity, (w->rows + m->num_vertices) * f->size));
+        BRIO_FORWARD(BRIO_RESERVE(out->ctx, f->column, f->capacity, (w->rows + m->num_vertices) * f->size));
         for (size_t v = 0; v < m->num_vertices; v++) encode(m, w, f, v, f->column + (w->rows + v) * f->size);
     }
     w->rows += m->num_vertices;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
@@ -261,13 +246,11 @@ static brio_status patch_count(brio_output *out, uint64_t at, uint64_t points) {
 }
 
 static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     const pcd_writer *w = state;
-    BRIO_TRY(patch_count(out, w->width_at, job->points));
-    BRIO_TRY(patch_count(out, w->points_at, job->points));
-    if (job->options->compress) BRIO_TRY(write_compressed(out, w));
-done:
-    return status;
+    BRIO_FORWARD(patch_count(out, w->width_at, job->points));
+    BRIO_FORWARD(patch_count(out, w->points_at, job->points));
+    if (job->options->compress) BRIO_FORWARD(write_compressed(out, w));
+    return BRIO_OK;
 }
 
 static void free_state(brio_context *ctx, void *state) {

@@ -57,28 +57,24 @@ static bool is_wanted(const char *line) {
 }
 
 static brio_status parse_coordinate(const brio_stream *s, const char *line, int axis, double *value) {
-    brio_status status = BRIO_OK;
     char field[COORDINATE_WIDTH + 1] = {0};
     int first = COORDINATES + axis * COORDINATE_WIDTH;
     memcpy(field, line + first, COORDINATE_WIDTH);
     const char *p = brio_skip_blanks(field);
-    BRIO_REQUIRE(s->ctx, brio_parse_number(&p, value) && !p[strspn(p, " ")], BRIO_ERR_FORMAT,
-                 "%s: line %zu: columns %d to %d: expected the coordinate %c, found \"%s\"", s->name, s->line,
-                 first + 1, first + COORDINATE_WIDTH, "xyz"[axis], field);
-    BRIO_REQUIRE(s->ctx, isfinite(*value), BRIO_ERR_NOT_FINITE, "%s: line %zu: the coordinate %c is not finite",
-                 s->name, s->line, "xyz"[axis]);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, brio_parse_number(&p, value) && !p[strspn(p, " ")], BRIO_ERR_FORMAT,
+                "%s: line %zu: columns %d to %d: expected the coordinate %c, found \"%s\"", s->name, s->line, first + 1,
+                first + COORDINATE_WIDTH, "xyz"[axis], field);
+    BRIO_EXPECT(s->ctx, isfinite(*value), BRIO_ERR_NOT_FINITE, "%s: line %zu: the coordinate %c is not finite", s->name,
+                s->line, "xyz"[axis]);
+    return BRIO_OK;
 }
 
 static brio_status parse_atom(const brio_stream *s, const char *line, brio_atom *atom) {
-    brio_status status = BRIO_OK;
     char element[3];
-    for (int k = 0; k < 3; k++) BRIO_TRY(parse_coordinate(s, line, k, &atom->position[k]));
+    for (int k = 0; k < 3; k++) BRIO_FORWARD(parse_coordinate(s, line, k, &atom->position[k]));
     find_element(line, strlen(line), element);
     atom->radius = brio_van_der_waals_radius(brio_element_of(element, strlen(element)));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_pdb_read(brio_stream *s, brio_atom **atoms, size_t *num_atoms) {

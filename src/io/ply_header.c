@@ -64,23 +64,20 @@ static brio_status read_format(brio_stream *s, brio_ply_header *header, char **w
 }
 
 static brio_status read_element(brio_stream *s, brio_ply_header *header, char **words, size_t count) {
-    brio_status status = BRIO_OK;
     brio_ply_element element = {.count = 0};
     const char *digits = count == 3 ? words[2] : "";
     if (count != 3 || !brio_parse_count(&digits, &element.count) || *digits) return bad_line(s, "element NAME COUNT");
-    BRIO_TRY(copy_name(s, element.name, words[1]));
-    BRIO_TRY(brio_limit_elements(s->ctx, s->name, s->line, header->num_elements + 1));
+    BRIO_FORWARD(copy_name(s, element.name, words[1]));
+    BRIO_FORWARD(brio_limit_elements(s->ctx, s->name, s->line, header->num_elements + 1));
     for (size_t i = 0; i < header->num_elements; i++)
-        BRIO_REQUIRE(s->ctx, strcmp(header->elements[i].name, element.name) != 0, BRIO_ERR_FORMAT,
-                     "%s: line %zu: a second element %s", s->name, s->line, brio_excerpt_of(element.name).text);
-    BRIO_TRY(BRIO_RESERVE(s->ctx, header->elements, header->element_capacity, header->num_elements + 1));
+        BRIO_EXPECT(s->ctx, strcmp(header->elements[i].name, element.name) != 0, BRIO_ERR_FORMAT,
+                    "%s: line %zu: a second element %s", s->name, s->line, brio_excerpt_of(element.name).text);
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, header->elements, header->element_capacity, header->num_elements + 1));
     header->elements[header->num_elements++] = element;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_property(brio_stream *s, brio_ply_header *header, char **words, size_t count) {
-    brio_status status = BRIO_OK;
     brio_ply_property p = {.list = count == 5 && !strcmp(words[1], "list")};
     if (!header->num_elements) return bad_line(s, "an element before its properties");
     if (!p.list && count != 3) return bad_line(s, "property TYPE NAME or property list TYPE TYPE NAME");
@@ -88,29 +85,26 @@ static brio_status read_property(brio_stream *s, brio_ply_header *header, char *
     p.count_type = p.list ? type_of(words[2]) : p.type;
     if (p.type == BRIO_SCALAR_END || p.count_type == BRIO_SCALAR_END)
         return bad_line(s, "a type char uchar short ushort int uint float double, or int8 uint8 ... float64");
-    BRIO_TRY(copy_name(s, p.name, words[count - 1]));
+    BRIO_FORWARD(copy_name(s, p.name, words[count - 1]));
     brio_ply_element *e = &header->elements[header->num_elements - 1];
-    BRIO_TRY(brio_limit_numbers(s->ctx, s->name, s->line, e->num_properties + 1));
+    BRIO_FORWARD(brio_limit_numbers(s->ctx, s->name, s->line, e->num_properties + 1));
     p.offset = e->row_size;
     e->row_size += brio_scalar_size(p.count_type);
     e->has_list |= p.list;
-    BRIO_TRY(BRIO_RESERVE(s->ctx, e->properties, e->property_capacity, e->num_properties + 1));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, e->properties, e->property_capacity, e->num_properties + 1));
     e->properties[e->num_properties++] = p;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Keeps the text of a comment that is a part of the coordinate system. */
 static brio_status keep_crs(brio_stream *s, brio_ply_header *header, const char *line) {
-    brio_status status = BRIO_OK;
     static const char begins[] = "comment crs ";
     if (strncmp(line, begins, strlen(begins)) != 0) return BRIO_OK;
     size_t length = strlen(line) - strlen(begins);
-    BRIO_TRY(BRIO_RESERVE(s->ctx, header->crs, header->crs_capacity, header->crs_length + length + 1));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, header->crs, header->crs_capacity, header->crs_length + length + 1));
     strcpy(header->crs + header->crs_length, line + strlen(begins));
     header->crs_length += length;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads one line between the first and the last line of the header. */
@@ -149,23 +143,21 @@ static brio_status check_promise(brio_stream *s, const brio_ply_header *header) 
 }
 
 brio_status brio_ply_header_read(brio_stream *s, bool may_end_early, brio_ply_header *header) {
-    brio_status status = BRIO_OK;
     char *line;
     bool format = false, end = false;
     *header = (brio_ply_header){.num_elements = 0};
-    BRIO_TRY(brio_stream_line(s, &line));
+    BRIO_FORWARD(brio_stream_line(s, &line));
     if (!line || strncmp(line, "ply", 3) != 0 || *brio_skip_blanks(line + 3)) {
         s->line = 1;
         return bad_line(s, "ply");
     }
     while (!end) {
-        BRIO_TRY(brio_stream_line(s, &line));
+        BRIO_FORWARD(brio_stream_line(s, &line));
         if (!line) return bad_line(s, "end_header behind this line");
-        BRIO_TRY(read_line(s, header, line, &format, &end));
+        BRIO_FORWARD(read_line(s, header, line, &format, &end));
     }
-    if (!may_end_early) BRIO_TRY(check_promise(s, header));
-done:
-    return status;
+    if (!may_end_early) BRIO_FORWARD(check_promise(s, header));
+    return BRIO_OK;
 }
 
 void brio_ply_header_free(brio_context *ctx, brio_ply_header *header) {

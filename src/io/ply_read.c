@@ -52,7 +52,6 @@ static const char *letters_of(const brio_ply_element *e) {
 }
 
 static brio_status plan_vertex(brio_builder *b, brio_ply_element *e) {
-    brio_status status = BRIO_OK;
     unsigned seen = 0;
     const char *letters = letters_of(e);
     for (size_t i = 0; i < e->num_properties; i++) {
@@ -60,21 +59,19 @@ static brio_status plan_vertex(brio_builder *b, brio_ply_element *e) {
         int axis = axis_of(p->name, letters);
         if (p->list) continue;
         if (axis >= 0) {
-            BRIO_REQUIRE(b->ctx, !(seen & 1u << axis), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name,
-                         p->name);
+            BRIO_EXPECT(b->ctx, !(seen & 1u << axis), BRIO_ERR_FORMAT, "%s: two properties named %s", b->name, p->name);
             seen |= 1u << axis;
             p->role = BRIO_PLY_COORDINATE;
             p->target = (size_t)axis;
         } else {
             p->role = BRIO_PLY_PROPERTY;
             p->target = b->mesh->num_properties;
-            BRIO_TRY(brio_builder_property(b, p->name, p->type));
+            BRIO_FORWARD(brio_builder_property(b, p->name, p->type));
         }
     }
-    BRIO_REQUIRE(b->ctx, seen == 7 || e->count == 0, BRIO_ERR_FORMAT, "%s: the vertices have no property %c", b->name,
-                 "xyxzxyx"[seen]);
-done:
-    return status;
+    BRIO_EXPECT(b->ctx, seen == 7 || e->count == 0, BRIO_ERR_FORMAT, "%s: the vertices have no property %c", b->name,
+                "xyxzxyx"[seen]);
+    return BRIO_OK;
 }
 
 static void plan_list(brio_ply_element *e, brio_ply_role role) {
@@ -88,7 +85,6 @@ static void plan_list(brio_ply_element *e, brio_ply_role role) {
 
 /* Numbers of the faces are properties, unless there are strips, too: their triangles have none. */
 static brio_status plan_of_faces(brio_builder *b, const brio_ply_header *header, brio_ply_element *e) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < header->num_elements; i++)
         if (header->elements[i].count && !strcmp(header->elements[i].name, "tristrips")) return BRIO_OK;
     for (size_t i = 0; i < e->num_properties && e->count; i++) {
@@ -98,10 +94,9 @@ static brio_status plan_of_faces(brio_builder *b, const brio_ply_header *header,
         p->role = BRIO_PLY_OF_FACE;
         p->target = b->mesh->num_face_properties;
         brio_builder_new_face_name(b, p->name, name);
-        BRIO_TRY(brio_builder_face_property(b, name, p->type));
+        BRIO_FORWARD(brio_builder_face_property(b, name, p->type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Edges are read if both their ends are there. */
@@ -134,7 +129,6 @@ static bool holds_cells(const brio_ply_header *header) {
 
 /* Names what is not read of an element: all of it, or some of its properties. */
 static brio_status name_left_out(brio_builder *b, const brio_ply_element *e) {
-    brio_status status = BRIO_OK;
     bool used = false, vertices = !strcmp(e->name, "vertex");
     for (size_t i = 0; i < e->num_properties; i++) used |= e->properties[i].role != BRIO_PLY_SKIP;
     if (!e->count || !e->num_properties) return BRIO_OK;
@@ -144,25 +138,20 @@ static brio_status name_left_out(brio_builder *b, const brio_ply_element *e) {
         char name[64 + 4 + 64 + 2];
         if (p->role != BRIO_PLY_SKIP) continue;
         snprintf(name, sizeof name, vertices ? "%s" : "%s of %s", p->name, e->name);
-        BRIO_TRY(brio_builder_leave_out(b, name));
+        BRIO_FORWARD(brio_builder_leave_out(b, name));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Takes the coordinate system from the comments: well-known text, or a code. */
 static brio_status take_crs(brio_builder *b, const char *text) {
-    brio_status status = BRIO_OK;
     if (!strncmp(text, "EPSG:", 5)) return brio_mesh_set_metadata(b->mesh, "crs.code", text, strlen(text));
     if (!strchr(text, '[')) return BRIO_OK;
-    BRIO_TRY(brio_mesh_set_metadata(b->mesh, "crs.wkt", text, strlen(text)));
-    BRIO_TRY(brio_crs_describe(b->mesh));
-done:
-    return status;
+    BRIO_FORWARD(brio_mesh_set_metadata(b->mesh, "crs.wkt", text, strlen(text)));
+    return brio_crs_describe(b->mesh);
 }
 
 static brio_status plan(ply_reader *r, brio_ply_header *header) {
-    brio_status status = BRIO_OK;
     brio_builder *b = r->builder;
     bool known = r->stream->size != BRIO_SIZE_UNKNOWN && !b->salvage, vertices = false;
     for (size_t i = 0; i < header->num_elements; i++) {
@@ -170,29 +159,28 @@ static brio_status plan(ply_reader *r, brio_ply_header *header) {
         if (!strcmp(e->name, "vertex")) {
             vertices = true;
             if (!holds_cells(header)) brio_builder_stream(b, b->salvage ? BRIO_COUNT_UNKNOWN : e->count);
-            BRIO_REQUIRE(b->ctx, b->streams || e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
-                         "%s: %zu points, the most are %zu", b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
-            BRIO_TRY(plan_vertex(b, e));
-            if (known) BRIO_TRY(brio_builder_expect_vertices(b, e->count));
+            BRIO_EXPECT(b->ctx, b->streams || e->count <= BRIO_MAX_VERTICES, BRIO_ERR_TOO_LARGE,
+                        "%s: %zu points, the most are %zu", b->name, (size_t)e->count, (size_t)BRIO_MAX_VERTICES);
+            BRIO_FORWARD(plan_vertex(b, e));
+            if (known) BRIO_FORWARD(brio_builder_expect_vertices(b, e->count));
         } else if (!strcmp(e->name, "face")) {
             plan_list(e, BRIO_PLY_FACE);
-            if (has_role(e, BRIO_PLY_FACE)) BRIO_TRY(plan_of_faces(b, header, e));
-            if (known && has_role(e, BRIO_PLY_FACE)) BRIO_TRY(brio_builder_expect_faces(b, e->count));
+            if (has_role(e, BRIO_PLY_FACE)) BRIO_FORWARD(plan_of_faces(b, header, e));
+            if (known && has_role(e, BRIO_PLY_FACE)) BRIO_FORWARD(brio_builder_expect_faces(b, e->count));
         } else if (!strcmp(e->name, "tristrips")) {
             plan_list(e, BRIO_PLY_STRIP);
         } else if (!strcmp(e->name, "tetrahedron")) {
             plan_list(e, BRIO_PLY_TETRAHEDRON);
-            if (known && has_role(e, BRIO_PLY_TETRAHEDRON)) BRIO_TRY(brio_builder_expect_tetrahedra(b, e->count));
+            if (known && has_role(e, BRIO_PLY_TETRAHEDRON)) BRIO_FORWARD(brio_builder_expect_tetrahedra(b, e->count));
         } else if (!strcmp(e->name, "edge")) {
             plan_edge(e);
         }
-        BRIO_TRY(name_left_out(b, e));
+        BRIO_FORWARD(name_left_out(b, e));
     }
-    if (header->crs) BRIO_TRY(take_crs(b, header->crs));
-    if (header->textures) BRIO_TRY(brio_builder_leave_out(b, "textures"));
-    BRIO_REQUIRE(b->ctx, vertices, BRIO_ERR_FORMAT, "%s: the header has no element vertex", b->name);
-done:
-    return status;
+    if (header->crs) BRIO_FORWARD(take_crs(b, header->crs));
+    if (header->textures) BRIO_FORWARD(brio_builder_leave_out(b, "textures"));
+    BRIO_EXPECT(b->ctx, vertices, BRIO_ERR_FORMAT, "%s: the header has no element vertex", b->name);
+    return BRIO_OK;
 }
 
 /* --- rows of fixed size --- */
@@ -288,75 +276,69 @@ static brio_status store_scalar(ply_reader *r, const brio_ply_property *p, doubl
 /* Adds a corner to a strip, and the triangle that the corner ends: every second one is turned round. A negative number
  * begins another strip, and two equal corners join parts of one: a triangle with such corners is none. */
 static brio_status add_strip_corner(brio_builder *b, strip *s, double corner) {
-    brio_status status = BRIO_OK;
     if (corner < 0) {
         s->corners = 0;
         return BRIO_OK;
     }
     bool turned = s->corners & 1, flat = corner == s->last || corner == s->before || s->before == s->last;
     if (s->corners++ >= 2 && !flat) {
-        BRIO_TRY(brio_builder_corner(b, turned ? s->last : s->before));
-        BRIO_TRY(brio_builder_corner(b, turned ? s->before : s->last));
-        BRIO_TRY(brio_builder_corner(b, corner));
-        BRIO_TRY(brio_builder_face(b));
+        BRIO_FORWARD(brio_builder_corner(b, turned ? s->last : s->before));
+        BRIO_FORWARD(brio_builder_corner(b, turned ? s->before : s->last));
+        BRIO_FORWARD(brio_builder_corner(b, corner));
+        BRIO_FORWARD(brio_builder_face(b));
     }
     s->before = s->last;
     s->last = corner;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_list(ply_reader *r, const brio_ply_property *p) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     double count, item, corners[4];
     strip triangles = {-1, -1, 0};
-    BRIO_TRY(next_scalar(r, p->count_type, &count));
-    BRIO_REQUIRE(s->ctx, count >= 0 && count < 0x1p53 && count == floor(count), BRIO_ERR_FORMAT,
-                 "%s: %s %zu (counted from 0): a list of %.17g numbers", s->name, s->element, (size_t)s->row, count);
-    BRIO_REQUIRE(s->ctx, p->role != BRIO_PLY_TETRAHEDRON || count == 4, BRIO_ERR_FORMAT,
-                 "%s: tetrahedron %zu (counted from 0): %g corners, expected 4", s->name, (size_t)s->row, count);
+    BRIO_FORWARD(next_scalar(r, p->count_type, &count));
+    BRIO_EXPECT(s->ctx, count >= 0 && count < 0x1p53 && count == floor(count), BRIO_ERR_FORMAT,
+                "%s: %s %zu (counted from 0): a list of %.17g numbers", s->name, s->element, (size_t)s->row, count);
+    BRIO_EXPECT(s->ctx, p->role != BRIO_PLY_TETRAHEDRON || count == 4, BRIO_ERR_FORMAT,
+                "%s: tetrahedron %zu (counted from 0): %g corners, expected 4", s->name, (size_t)s->row, count);
     uint64_t items = (uint64_t)count;
     for (uint64_t i = 0; i < items; i++) {
-        BRIO_TRY(next_scalar(r, p->type, &item));
-        if (p->role == BRIO_PLY_FACE) BRIO_TRY(brio_builder_corner(r->builder, item));
-        if (p->role == BRIO_PLY_STRIP) BRIO_TRY(add_strip_corner(r->builder, &triangles, item));
+        BRIO_FORWARD(next_scalar(r, p->type, &item));
+        if (p->role == BRIO_PLY_FACE) BRIO_FORWARD(brio_builder_corner(r->builder, item));
+        if (p->role == BRIO_PLY_STRIP) BRIO_FORWARD(add_strip_corner(r->builder, &triangles, item));
         if (p->role == BRIO_PLY_TETRAHEDRON) corners[i] = item;
     }
-    if (p->role == BRIO_PLY_FACE) BRIO_TRY(brio_builder_face(r->builder));
-    if (p->role == BRIO_PLY_TETRAHEDRON) BRIO_TRY(brio_builder_tetrahedron(r->builder, corners));
-done:
-    return status;
+    if (p->role == BRIO_PLY_FACE) BRIO_FORWARD(brio_builder_face(r->builder));
+    if (p->role == BRIO_PLY_TETRAHEDRON) BRIO_FORWARD(brio_builder_tetrahedron(r->builder, corners));
+    return BRIO_OK;
 }
 
 static brio_status read_row(ply_reader *r, const brio_ply_element *e) {
-    brio_status status = BRIO_OK;
     double ends[2], *of_face = r->of_face;
     bool edge = false;
     for (size_t i = 0; i < e->num_properties; i++) {
         const brio_ply_property *p = &e->properties[i];
         double value;
         if (p->list) {
-            BRIO_TRY(read_list(r, p));
+            BRIO_FORWARD(read_list(r, p));
             continue;
         }
-        BRIO_TRY(next_scalar(r, p->type, &value));
+        BRIO_FORWARD(next_scalar(r, p->type, &value));
         if (p->role == BRIO_PLY_EDGE)
             ends[p->target] = value, edge = true;
         else if (p->role == BRIO_PLY_OF_FACE)
             of_face[p->target] = value;
         else if (p->role != BRIO_PLY_SKIP)
-            BRIO_TRY(store_scalar(r, p, value));
+            BRIO_FORWARD(store_scalar(r, p, value));
     }
-    if (edge) BRIO_TRY(brio_builder_edge(r->builder, ends));
+    if (edge) BRIO_FORWARD(brio_builder_edge(r->builder, ends));
     for (size_t i = 0; i < e->num_properties; i++) { /* numbers may stand before the corners */
         const brio_ply_property *p = &e->properties[i];
         if (p->role == BRIO_PLY_OF_FACE && !brio_builder_face_value(r->builder, p->target, of_face[p->target]))
             return bad_value(r, p, of_face[p->target]);
     }
-    if (r->ascii) BRIO_TRY(brio_text_row_end(&r->text));
-done:
-    return status;
+    if (r->ascii) BRIO_FORWARD(brio_text_row_end(&r->text));
+    return BRIO_OK;
 }
 
 static brio_status read_rows(ply_reader *r, const brio_ply_element *e) {

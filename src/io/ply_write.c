@@ -52,53 +52,49 @@ static brio_status write_count(brio_output *out, const brio_write_job *job, ply_
  * a blank, which some of them drop. */
 static brio_status write_crs(brio_output *out, const brio_mesh *m) {
     enum { CRS_LINE = 200 };
-    brio_status status = BRIO_OK;
     const brio_metadata *crs = brio_mesh_metadata(m, "crs.wkt");
     if (!crs) crs = brio_mesh_metadata(m, "crs.code");
     for (size_t at = 0, end; crs && at < crs->size; at = end) {
-        BRIO_TRY(brio_output_string(out, "comment crs "));
+        BRIO_FORWARD(brio_output_string(out, "comment crs "));
         end = crs->size - at < CRS_LINE ? crs->size : at + CRS_LINE;
         while (end < crs->size && end > at + 1 &&
                (brio_is_blank(crs->bytes[end - 1]) || (crs->bytes[end] & 0xc0) == 0x80))
             end--;
         for (; at < end; at++) {
             char c = (unsigned char)crs->bytes[at] < ' ' ? ' ' : crs->bytes[at];
-            BRIO_TRY(brio_output_bytes(out, &c, 1));
+            BRIO_FORWARD(brio_output_bytes(out, &c, 1));
         }
-        BRIO_TRY(brio_output_string(out, "\n"));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_header(brio_output *out, const brio_write_job *job, ply_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     const char *binary = brio_host_is_little() ? "binary_little_endian" : "binary_big_endian";
     const char *index = m->num_vertices > INT32_MAX ? "uint" : "int";
-    BRIO_TRY(brio_output_format(out, "ply\nformat %s 1.0\n", job->options->ascii ? "ascii" : binary));
-    BRIO_TRY(brio_output_comment(out, "comment ", job->options->comment));
-    if (job->options->crs_comment) BRIO_TRY(write_crs(out, m));
-    BRIO_TRY(write_count(out, job, w));
+    BRIO_FORWARD(brio_output_format(out, "ply\nformat %s 1.0\n", job->options->ascii ? "ascii" : binary));
+    BRIO_FORWARD(brio_output_comment(out, "comment ", job->options->comment));
+    if (job->options->crs_comment) BRIO_FORWARD(write_crs(out, m));
+    BRIO_FORWARD(write_count(out, job, w));
     for (int k = 0; k < 3; k++)
-        BRIO_TRY(brio_output_format(out, "property %s %c\n", job->options->float32 ? "float" : "double", "xyz"[k]));
+        BRIO_FORWARD(brio_output_format(out, "property %s %c\n", job->options->float32 ? "float" : "double", "xyz"[k]));
     for (size_t i = 0; i < m->num_properties; i++)
-        BRIO_TRY(brio_output_format(out, "property %s %s\n", brio_ply_type_name(m->properties[i].type), job->names[i]));
+        BRIO_FORWARD(
+            brio_output_format(out, "property %s %s\n", brio_ply_type_name(m->properties[i].type), job->names[i]));
     if (m->num_faces)
-        BRIO_TRY(brio_output_format(out, "element face %zu\nproperty list %s %s vertex_indices\n", m->num_faces,
-                                    w->long_lists ? "int" : "uchar", index));
+        BRIO_FORWARD(brio_output_format(out, "element face %zu\nproperty list %s %s vertex_indices\n", m->num_faces,
+                                        w->long_lists ? "int" : "uchar", index));
     for (size_t i = 0; i < m->num_face_properties && m->num_faces; i++)
-        BRIO_TRY(brio_output_format(out, "property %s %s\n", brio_ply_type_name(m->face_properties[i].type),
-                                    job->face_names[i]));
+        BRIO_FORWARD(brio_output_format(out, "property %s %s\n", brio_ply_type_name(m->face_properties[i].type),
+                                        job->face_names[i]));
     if (m->num_tetrahedra)
-        BRIO_TRY(brio_output_format(out, "element tetrahedron %zu\nproperty list uchar %s vertex_indices\n",
-                                    m->num_tetrahedra, index));
+        BRIO_FORWARD(brio_output_format(out, "element tetrahedron %zu\nproperty list uchar %s vertex_indices\n",
+                                        m->num_tetrahedra, index));
     if (m->num_edges)
-        BRIO_TRY(brio_output_format(out, "element edge %zu\nproperty %s vertex1\nproperty %s vertex2\n", m->num_edges,
-                                    index, index));
-    BRIO_TRY(brio_output_string(out, "end_header\n"));
-done:
-    return status;
+        BRIO_FORWARD(brio_output_format(out, "element edge %zu\nproperty %s vertex1\nproperty %s vertex2\n",
+                                        m->num_edges, index, index));
+    return brio_output_string(out, "end_header\n");
 }
 
 /* --- binary rows --- */
@@ -161,110 +157,87 @@ done:
 }
 
 static brio_status write_binary(brio_output *out, const brio_write_job *job, bool long_lists) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    BRIO_TRY(write_binary_faces(out, job, long_lists));
+    BRIO_FORWARD(write_binary_faces(out, job, long_lists));
     for (size_t t = 0; t < m->num_tetrahedra; t++) {
         char bytes[1 + 4 * sizeof(uint32_t)];
         encode_list(m->tetrahedra + 4 * t, 4, false, bytes);
-        BRIO_TRY(brio_output_bytes(out, bytes, sizeof bytes));
+        BRIO_FORWARD(brio_output_bytes(out, bytes, sizeof bytes));
     }
-    if (m->num_edges) BRIO_TRY(brio_output_bytes(out, m->edges, 2 * m->num_edges * sizeof *m->edges));
-done:
-    return status;
+    if (m->num_edges) BRIO_FORWARD(brio_output_bytes(out, m->edges, 2 * m->num_edges * sizeof *m->edges));
+    return BRIO_OK;
 }
 
 /* --- text --- */
 
 static brio_status write_text_vertex(brio_output *out, const brio_write_job *job, size_t v) {
-    brio_status status = BRIO_OK;
     const double *p = job->mesh->vertices + 3 * v;
     double rounded[3] = {p[0], p[1], p[2]};
     if (job->options->float32)
         for (int k = 0; k < 3; k++) rounded[k] = (double)(float)p[k];
-    BRIO_TRY(brio_output_point(out, rounded));
+    BRIO_FORWARD(brio_output_point(out, rounded));
     for (size_t i = 0; i < job->mesh->num_properties; i++)
-        BRIO_TRY(brio_output_scalar(out, ' ', &job->mesh->properties[i], v));
-    BRIO_TRY(brio_output_string(out, "\n"));
-done:
-    return status;
+        BRIO_FORWARD(brio_output_scalar(out, ' ', &job->mesh->properties[i], v));
+    return brio_output_string(out, "\n");
 }
 
 static brio_status write_text_list(brio_output *out, const uint32_t *items, size_t count) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_integer(out, 0, (int64_t)count));
-    for (size_t i = 0; i < count; i++) BRIO_TRY(brio_output_integer(out, ' ', items[i]));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_integer(out, 0, (int64_t)count));
+    for (size_t i = 0; i < count; i++) BRIO_FORWARD(brio_output_integer(out, ' ', items[i]));
+    return BRIO_OK;
 }
 
 static brio_status write_text_face(brio_output *out, const brio_mesh *m, size_t f) {
-    brio_status status = BRIO_OK;
     uint64_t from = m->face_offsets[f], to = m->face_offsets[f + 1];
-    BRIO_TRY(write_text_list(out, m->face_vertices + from, (size_t)(to - from)));
+    BRIO_FORWARD(write_text_list(out, m->face_vertices + from, (size_t)(to - from)));
     for (size_t i = 0; i < m->num_face_properties; i++)
-        BRIO_TRY(brio_output_scalar(out, ' ', &m->face_properties[i], f));
-    BRIO_TRY(brio_output_string(out, "\n"));
-done:
-    return status;
+        BRIO_FORWARD(brio_output_scalar(out, ' ', &m->face_properties[i], f));
+    return brio_output_string(out, "\n");
 }
 
 static brio_status write_text_edge(brio_output *out, const uint32_t *edge) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_integer(out, 0, edge[0]));
-    BRIO_TRY(brio_output_integer(out, ' ', edge[1]));
-    BRIO_TRY(brio_output_string(out, "\n"));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_integer(out, 0, edge[0]));
+    BRIO_FORWARD(brio_output_integer(out, ' ', edge[1]));
+    return brio_output_string(out, "\n");
 }
 
 static brio_status write_text(brio_output *out, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    for (size_t f = 0; f < m->num_faces; f++) BRIO_TRY(write_text_face(out, m, f));
+    for (size_t f = 0; f < m->num_faces; f++) BRIO_FORWARD(write_text_face(out, m, f));
     for (size_t t = 0; t < m->num_tetrahedra; t++) {
-        BRIO_TRY(write_text_list(out, m->tetrahedra + 4 * t, 4));
-        BRIO_TRY(brio_output_string(out, "\n"));
+        BRIO_FORWARD(write_text_list(out, m->tetrahedra + 4 * t, 4));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
     }
-    for (size_t e = 0; e < m->num_edges; e++) BRIO_TRY(write_text_edge(out, m->edges + 2 * e));
-done:
-    return status;
+    for (size_t e = 0; e < m->num_edges; e++) BRIO_FORWARD(write_text_edge(out, m->edges + 2 * e));
+    return BRIO_OK;
 }
 
 /* --- file --- */
 
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     ply_writer *w = state;
     size_t corners = most_corners(job->mesh);
     w->long_lists = corners > UINT8_MAX;
-    BRIO_REQUIRE(out->ctx, corners <= INT32_MAX, BRIO_ERR_ARGUMENT, "%s: a face of %zu corners does not fit a PLY file",
-                 out->name, corners);
-    BRIO_TRY(write_header(out, job, w));
-done:
-    return status;
+    BRIO_EXPECT(out->ctx, corners <= INT32_MAX, BRIO_ERR_ARGUMENT, "%s: a face of %zu corners does not fit a PLY file",
+                out->name, corners);
+    return write_header(out, job, w);
 }
 
 static brio_status write_vertices(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     (void)state;
     if (!job->options->ascii) return brio_rows_write(out, job);
-    for (size_t v = 0; v < job->mesh->num_vertices; v++) BRIO_TRY(write_text_vertex(out, job, v));
-done:
-    return status;
+    for (size_t v = 0; v < job->mesh->num_vertices; v++) BRIO_FORWARD(write_text_vertex(out, job, v));
+    return BRIO_OK;
 }
 
 static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     const ply_writer *w = state;
     char count[COUNT_LINES + 1];
     if (w->count_at) {
         count_lines(count, job->points);
-        BRIO_TRY(brio_output_patch(out, w->count_at, count, COUNT_LINES));
+        BRIO_FORWARD(brio_output_patch(out, w->count_at, count, COUNT_LINES));
     }
-    BRIO_TRY(job->options->ascii ? write_text(out, job) : write_binary(out, job, w->long_lists));
-done:
-    return status;
+    return job->options->ascii ? write_text(out, job) : write_binary(out, job, w->long_lists);
 }
 
 const brio_row_format brio_ply_rows = {

@@ -40,49 +40,42 @@ static brio_channels colours_of(const brio_mesh *m) {
 }
 
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     ptx_writer *w = state;
     const brio_mesh *m = job->mesh;
     const brio_channels colours = colours_of(m);
     bool grids = true;
-    BRIO_TRY(brio_scans_settle(out->ctx, &w->scans));
+    BRIO_FORWARD(brio_scans_settle(out->ctx, &w->scans));
     for (size_t i = 0; i < w->scans.count; i++) grids &= has_grid(&w->scans.list[i]);
     w->num_properties = m->num_properties;
     w->has_colours = colours.count != 0;
-    BRIO_TRY(BRIO_ALLOC(out->ctx, w->has, m->num_properties + 1));
+    BRIO_FORWARD(BRIO_ALLOC(out->ctx, w->has, m->num_properties + 1));
     for (size_t i = 0; i < m->num_properties; i++) {
         const char *name = m->properties[i].name;
         bool place_in_grid = !strcmp(name, "row_index") || !strcmp(name, "column_index");
         w->has[i] = !strcmp(name, "intensity") || brio_channels_have(&colours, &m->properties[i]) ||
                     brio_scans_hold(&w->scans, m, i) || (grids && place_in_grid);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- scans --- */
 
 static brio_status write_header(brio_output *out, const brio_scan *scan) {
-    brio_status status = BRIO_OK;
     const double *place = scan->place;
     bool grid = has_grid(scan);
-    BRIO_TRY(brio_output_format(out, "%" PRIu64 "\n%" PRIu64 "\n", grid ? scan->columns : scan->points,
-                                grid ? scan->rows : (uint64_t)(scan->points > 0)));
-    BRIO_TRY(brio_output_point(out, place));
-    BRIO_TRY(brio_output_string(out, "\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"));
-    BRIO_TRY(brio_output_point(out, place));
-    BRIO_TRY(brio_output_string(out, " 1\n"));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_format(out, "%" PRIu64 "\n%" PRIu64 "\n", grid ? scan->columns : scan->points,
+                                    grid ? scan->rows : (uint64_t)(scan->points > 0)));
+    BRIO_FORWARD(brio_output_point(out, place));
+    BRIO_FORWARD(brio_output_string(out, "\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"));
+    BRIO_FORWARD(brio_output_point(out, place));
+    return brio_output_string(out, " 1\n");
 }
 
 /* Writes lines for cells without a point, up to a cell. */
 static brio_status fill_to(brio_output *out, ptx_writer *w, uint64_t cell) {
-    brio_status status = BRIO_OK;
     for (; w->cell < cell; w->cell++)
-        BRIO_TRY(brio_output_string(out, w->has_colours ? "0 0 0 0.5 0 0 0\n" : "0 0 0 0.5\n"));
-done:
-    return status;
+        BRIO_FORWARD(brio_output_string(out, w->has_colours ? "0 0 0 0.5 0 0 0\n" : "0 0 0 0.5\n"));
+    return BRIO_OK;
 }
 
 static brio_status write_coordinates(brio_output *out, ptx_writer *w, const double *place, const double *point) {
@@ -95,47 +88,41 @@ static brio_status write_coordinates(brio_output *out, ptx_writer *w, const doub
 }
 
 static brio_status write_point(brio_output *out, ptx_writer *w, const brio_mesh *m, const brio_scan *scan, size_t v) {
-    brio_status status = BRIO_OK;
     const brio_property *intensity = brio_mesh_property(m, "intensity");
     const brio_channels colours = colours_of(m);
-    BRIO_TRY(write_coordinates(out, w, scan->place, m->vertices + AXES * v));
-    BRIO_TRY(intensity ? brio_output_scalar(out, ' ', intensity, v) : brio_output_string(out, " 0.5"));
-    for (int k = 0; k < colours.count; k++) BRIO_TRY(brio_output_scalar(out, ' ', colours.of[k], v));
-    BRIO_TRY(brio_output_string(out, "\n"));
+    BRIO_FORWARD(write_coordinates(out, w, scan->place, m->vertices + AXES * v));
+    BRIO_FORWARD(intensity ? brio_output_scalar(out, ' ', intensity, v) : brio_output_string(out, " 0.5"));
+    for (int k = 0; k < colours.count; k++) BRIO_FORWARD(brio_output_scalar(out, ' ', colours.of[k], v));
+    BRIO_FORWARD(brio_output_string(out, "\n"));
     w->cell++;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_part(brio_output *out, ptx_writer *w, const brio_mesh *m, const brio_scan_part *part) {
-    brio_status status = BRIO_OK;
     const brio_scan *scan = part->scan;
     const brio_property *column = brio_mesh_property(m, "column_index"), *row = brio_mesh_property(m, "row_index");
     bool grid = has_grid(scan);
     if (part->begins) {
         w->cell = 0;
-        BRIO_TRY(write_header(out, scan));
+        BRIO_FORWARD(write_header(out, scan));
     }
     for (size_t v = part->first; v < part->end; v++) {
         if (grid)
-            BRIO_TRY(fill_to(
+            BRIO_FORWARD(fill_to(
                 out, w, (uint64_t)brio_property_value(column, v) * scan->rows + (uint64_t)brio_property_value(row, v)));
-        BRIO_TRY(write_point(out, w, m, scan, v));
+        BRIO_FORWARD(write_point(out, w, m, scan, v));
     }
-    if (part->ends && grid) BRIO_TRY(fill_to(out, w, scan->columns * scan->rows));
-done:
-    return status;
+    if (part->ends && grid) BRIO_FORWARD(fill_to(out, w, scan->columns * scan->rows));
+    return BRIO_OK;
 }
 
 static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     ptx_writer *w = state;
     brio_scan_part part = {.end = 0};
     w->scans.moved = 0;
-    while (brio_scans_next(&w->scans, job->mesh, &part)) BRIO_TRY(write_part(out, w, job->mesh, &part));
+    while (brio_scans_next(&w->scans, job->mesh, &part)) BRIO_FORWARD(write_part(out, w, job->mesh, &part));
     w->scans.rounds |= w->scans.moved > 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status end(brio_output *out, const brio_write_job *job, void *state) {

@@ -53,14 +53,12 @@ bool brio_is_gltf(const char *path) {
 }
 
 brio_status brio_sibling(brio_context *ctx, const char *path, const char *extension, char **out) {
-    brio_status status = BRIO_OK;
     size_t stem = length_of_stem(path);
     const char *packed = path[stem] ? path + brio_unpacked_length(path) : "";
-    BRIO_TRY(BRIO_ALLOC(ctx, *out, stem + strlen(extension) + strlen(packed) + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, *out, stem + strlen(extension) + strlen(packed) + 1));
     memcpy(*out, path, stem);
     strcpy(stpcpy(*out + stem, extension), packed);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds the format by the content or, failing that, the extension. What has no name (standard input, "-") and is in no
@@ -201,17 +199,15 @@ static void give_findings(brio_context *ctx, const brio_read_options *o, brio_re
 
 brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_options *options, brio_mesh **out) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     brio_read_options o = STANDARD;
     *out = NULL;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
     brio_read_job job = job_of(path, &o);
-    BRIO_TRY(brio_read_file(ctx, &job));
+    BRIO_FORWARD(brio_read_file(ctx, &job));
     give_findings(ctx, &o, &job);
     *out = job.mesh;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
@@ -224,19 +220,17 @@ brio_status brio_read(brio_context *ctx, const char *path, brio_format format, b
 brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
                              const brio_read_options *options, brio_mesh **out) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     brio_read_options o = STANDARD;
     const brio_bytes memory = {bytes, size};
     *out = NULL;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, options, &o));
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_read_options, options, &o));
+    BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
     brio_read_job job = job_of(name ? name : "-", &o);
     job.memory = &memory;
-    BRIO_TRY(brio_read_file(ctx, &job));
+    BRIO_FORWARD(brio_read_file(ctx, &job));
     give_findings(ctx, &o, &job);
     *out = job.mesh;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- blocks --- */

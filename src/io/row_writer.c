@@ -104,17 +104,15 @@ static bool is_taken(char (*names)[64], size_t count, const char *name) {
  * refused for a name. */
 static brio_status make_names(const brio_row_writer *w, const char *path, const brio_property *of, size_t count,
                               bool (*reserved)(const char *name), char (**out)[64]) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(w->ctx, *out, count));
+    BRIO_FORWARD(BRIO_ALLOC(w->ctx, *out, count));
     for (size_t i = 0; i < count; i++) {
         char word[64], *name = (*out)[i];
-        BRIO_REQUIRE(w->ctx, of[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
+        BRIO_EXPECT(w->ctx, of[i].name[0], BRIO_ERR_ARGUMENT, "%s: a property without a name", path);
         make_word(word, of[i].name, w->format->comments);
         memcpy(name, word, sizeof word);
         for (size_t n = 2; is_taken(*out, i, name) || reserved(name); n++) brio_numbered_name(name, 64, word, n);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 bool brio_is_single(brio_format format, const brio_write_options *o) {
@@ -135,12 +133,10 @@ double brio_moved_by_singles(const brio_mesh *m) {
 }
 
 brio_status brio_check_single(brio_context *ctx, const char *path, const brio_mesh *m) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < 3 * m->num_vertices; i++)
-        BRIO_REQUIRE(ctx, !(fabs(m->vertices[i]) >= 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
-                     "%s: point %zu (counted from 0): %g does not fit single precision", path, i / 3, m->vertices[i]);
-done:
-    return status;
+        BRIO_EXPECT(ctx, !(fabs(m->vertices[i]) >= 0x1.ffffffp127), BRIO_ERR_ARGUMENT,
+                    "%s: point %zu (counted from 0): %g does not fit single precision", path, i / 3, m->vertices[i]);
+    return BRIO_OK;
 }
 
 /* --- the file --- */
@@ -195,37 +191,33 @@ uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w) {
 }
 
 static brio_status open_output(brio_row_writer *w, const char *path) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = w->job.mesh;
-    if (!w->format->renames) BRIO_TRY(make_names(w, path, m->properties, m->num_properties, is_axis, &w->job.names));
+    if (!w->format->renames)
+        BRIO_FORWARD(make_names(w, path, m->properties, m->num_properties, is_axis, &w->job.names));
     if (brio_format_holds(w->kind, BRIO_HOLDS_FACE_PROPERTIES))
-        BRIO_TRY(
+        BRIO_FORWARD(
             make_names(w, path, m->face_properties, m->num_face_properties, is_list_of_corners, &w->job.face_names));
-    BRIO_TRY(brio_check_properties(w->ctx, path, w->kind, w->columns));
+    BRIO_FORWARD(brio_check_properties(w->ctx, path, w->kind, w->columns));
     w->begun = true;
-    BRIO_TRY(brio_output_open(&w->out, w->ctx, path, w->job.expected));
-    BRIO_REQUIRE(w->ctx, !w->format->counts || w->job.points != BRIO_COUNT_UNKNOWN || brio_output_can_patch(&w->out),
-                 BRIO_ERR_INTERNAL, "%s: the number of points is not known", path);
-    BRIO_TRY(w->format->begin(&w->out, &w->job, w->state));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_open(&w->out, w->ctx, path, w->job.expected));
+    BRIO_EXPECT(w->ctx, !w->format->counts || w->job.points != BRIO_COUNT_UNKNOWN || brio_output_can_patch(&w->out),
+                BRIO_ERR_INTERNAL, "%s: the number of points is not known", path);
+    return w->format->begin(&w->out, &w->job, w->state);
 }
 
 /* Writes a block whose colours are those of the format. */
 static brio_status write_shown(brio_row_writer *w, const char *path, const brio_mesh *block) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(take_block(w, block));
-    if (!w->begun) BRIO_TRY(open_output(w, path));
+    BRIO_FORWARD(take_block(w, block));
+    if (!w->begun) BRIO_FORWARD(open_output(w, path));
     bool single = brio_is_single(w->kind, w->job.options);
-    if (single) BRIO_TRY(brio_check_single(w->ctx, path, block));
-    BRIO_TRY(w->format->rows(&w->out, &w->job, w->state));
+    if (single) BRIO_FORWARD(brio_check_single(w->ctx, path, block));
+    BRIO_FORWARD(w->format->rows(&w->out, &w->job, w->state));
     if (w->job.options->moved && w->format->moved)
         *w->job.options->moved = fmax(*w->job.options->moved, w->format->moved(w->state, block));
     else if (w->job.options->moved && single)
         *w->job.options->moved = fmax(*w->job.options->moved, brio_moved_by_singles(block));
     w->points += block->num_vertices;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block) {

@@ -29,14 +29,12 @@ static bool is_same(double a, double b) {
 }
 
 static brio_status add_scan(brio_context *ctx, brio_scans *s, const double place[3]) {
-    brio_status status = BRIO_OK;
     brio_scan new = {.grid = true};
-    BRIO_TRY(BRIO_RESERVE(ctx, s->list, s->capacity, s->count + 1));
+    BRIO_FORWARD(BRIO_RESERVE(ctx, s->list, s->capacity, s->count + 1));
     bool known = isfinite(place[0]) && isfinite(place[1]) && isfinite(place[2]);
     for (int k = 0; k < 3 && known; k++) new.place[k] = place[k];
     s->list[s->count++] = new;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Notes the place of a point in the grid of its scan. */
@@ -53,7 +51,6 @@ static void note_cell(brio_scan *scan, double column, double row) {
 
 /* Takes note of a block. */
 static brio_status see(brio_context *ctx, brio_scans *s, const brio_mesh *block) {
-    brio_status status = BRIO_OK;
     const sources from = sources_of(block);
     if (!s->points) s->split = s->numbered = true;
     for (size_t v = 0; v < block->num_vertices; v++, s->points++) {
@@ -62,7 +59,7 @@ static brio_status see(brio_context *ctx, brio_scans *s, const brio_mesh *block)
         bool other = !s->points || !is_same(number, s->number);
         for (int k = 0; k < 3; k++) other |= !is_same(place[k], s->last[k]);
         s->split &= !other || s->count < MOST;
-        if (other && s->split) BRIO_TRY(add_scan(ctx, s, place));
+        if (other && s->split) BRIO_FORWARD(add_scan(ctx, s, place));
         brio_scan *scan = &s->list[s->count - 1];
         s->numbered &= number == (double)(s->count - 1);
         s->number = number;
@@ -73,8 +70,7 @@ static brio_status see(brio_context *ctx, brio_scans *s, const brio_mesh *block)
         else
             scan->grid = false;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_scans_survey(brio_context *ctx, const brio_write_job *job, void *state) {
@@ -95,16 +91,14 @@ double brio_scans_moved(const void *state, const brio_mesh *block) {
 }
 
 brio_status brio_scans_settle(brio_context *ctx, brio_scans *s) {
-    brio_status status = BRIO_OK;
     if (!s->points || !s->split) {
         s->count = 0;
-        BRIO_TRY(add_scan(ctx, s, (const double[]){0, 0, 0}));
+        BRIO_FORWARD(add_scan(ctx, s, (const double[]){0, 0, 0}));
         s->list[0].points = s->points;
         s->list[0].grid = false;
     }
     s->numbered &= s->split && s->count > 1; /* a reader does not number one scan */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_scans_free(brio_context *ctx, brio_scans *s) {

@@ -54,32 +54,28 @@ static size_t find_slot(const brio_weld *weld, const double *vertices, const dou
 }
 
 static brio_status grow(brio_weld *weld, const brio_builder *b) {
-    brio_status status = BRIO_OK;
     size_t size = weld->size ? 2 * weld->size : FIRST_SIZE;
     uint32_t *slots = NULL;
-    BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, slots, size));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(b->ctx, slots, size));
     brio_release(b->ctx, weld->slots);
     *weld = (brio_weld){slots, size};
     for (size_t v = 0; v < b->mesh->num_vertices; v++)
         slots[find_slot(weld, b->mesh->vertices, b->mesh->vertices + 3 * v)] = (uint32_t)v + 1;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds the vertex at a position in the mesh under construction, or adds it.
  *  weld  {0} before the first call; freed by weld_free.
  *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 static brio_status weld_vertex(brio_weld *weld, brio_builder *b, const double *point, uint32_t *vertex) {
-    brio_status status = BRIO_OK;
-    if (2 * (b->mesh->num_vertices + 1) > weld->size) BRIO_TRY(grow(weld, b));
+    if (2 * (b->mesh->num_vertices + 1) > weld->size) BRIO_FORWARD(grow(weld, b));
     size_t slot = find_slot(weld, b->mesh->vertices, point);
     if (!weld->slots[slot]) {
-        BRIO_TRY(brio_builder_vertex(b, point));
+        BRIO_FORWARD(brio_builder_vertex(b, point));
         weld->slots[slot] = (uint32_t)b->mesh->num_vertices;
     }
     *vertex = weld->slots[slot] - 1;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void weld_free(brio_context *ctx, brio_weld *weld) {
@@ -94,55 +90,48 @@ enum { HEADER = 84, COUNT_AT = 80, TRIANGLE = 50, CORNERS_AT = 12, ATTRIBUTE_AT 
 /* --- reading --- */
 
 static brio_status add_triangle(brio_builder *b, brio_weld *weld, double corners[3][3]) {
-    brio_status status = BRIO_OK;
     for (int i = 0; i < 3; i++) {
         uint32_t vertex = 0;
         for (int k = 0; k < 3; k++)
-            BRIO_REQUIRE(b->ctx, isfinite(corners[i][k]), BRIO_ERR_NOT_FINITE,
-                         "%s: triangle %zu (counted from 0) has the coordinate %g", b->name, b->mesh->num_faces,
-                         corners[i][k]);
-        BRIO_TRY(weld_vertex(weld, b, corners[i], &vertex));
-        BRIO_TRY(brio_builder_corner(b, vertex));
+            BRIO_EXPECT(b->ctx, isfinite(corners[i][k]), BRIO_ERR_NOT_FINITE,
+                        "%s: triangle %zu (counted from 0) has the coordinate %g", b->name, b->mesh->num_faces,
+                        corners[i][k]);
+        BRIO_FORWARD(weld_vertex(weld, b, corners[i], &vertex));
+        BRIO_FORWARD(brio_builder_corner(b, vertex));
     }
-    BRIO_TRY(brio_builder_face(b));
-done:
-    return status;
+    return brio_builder_face(b);
 }
 
 static brio_status read_binary(brio_stream *s, brio_builder *b, brio_weld *weld) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
     double corners[3][3];
     brio_stream_element(s, "header", 1);
-    BRIO_TRY(brio_stream_take(s, HEADER, &bytes));
+    BRIO_FORWARD(brio_stream_take(s, HEADER, &bytes));
     uint32_t count = brio_le32(bytes + COUNT_AT);
-    BRIO_TRY(brio_stream_expect(s, count, TRIANGLE, "the header"));
-    if (s->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(brio_builder_expect_faces(b, count));
+    BRIO_FORWARD(brio_stream_expect(s, count, TRIANGLE, "the header"));
+    if (s->size != BRIO_SIZE_UNKNOWN) BRIO_FORWARD(brio_builder_expect_faces(b, count));
     brio_stream_element(s, "triangle", count);
     for (; s->row < count; s->row++) {
-        BRIO_TRY(brio_stream_take(s, TRIANGLE, &bytes));
-        if (brio_le16(bytes + ATTRIBUTE_AT)) BRIO_TRY(brio_builder_leave_out(b, "attributes of faces"));
+        BRIO_FORWARD(brio_stream_take(s, TRIANGLE, &bytes));
+        if (brio_le16(bytes + ATTRIBUTE_AT)) BRIO_FORWARD(brio_builder_leave_out(b, "attributes of faces"));
         brio_scalar_convert_triples(corners[0], bytes + CORNERS_AT, 3, CORNERS_AT, BRIO_SCALAR_FLOAT32,
                                     !brio_host_is_little());
-        BRIO_TRY(add_triangle(b, weld, corners));
+        BRIO_FORWARD(add_triangle(b, weld, corners));
     }
     /* some writers never set the number; a few bytes behind the triangles are theirs */
-    BRIO_TRY(brio_stream_fill(s, TRIANGLE));
-    BRIO_REQUIRE(s->ctx, brio_stream_left(s) < TRIANGLE, BRIO_ERR_FORMAT,
-                 "%s: byte %d: %u triangles are announced, behind which the file has another one", s->name, COUNT_AT,
-                 count);
-done:
-    return status;
+    BRIO_FORWARD(brio_stream_fill(s, TRIANGLE));
+    BRIO_EXPECT(s->ctx, brio_stream_left(s) < TRIANGLE, BRIO_ERR_FORMAT,
+                "%s: byte %d: %u triangles are announced, behind which the file has another one", s->name, COUNT_AT,
+                count);
+    return BRIO_OK;
 }
 
 /* Moves to the first word of the next line and checks it.   words  one or two of them, the second after one blank. */
 static brio_status expect_line(brio_text *t, const char *words) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_text_next_line(t));
+    BRIO_FORWARD(brio_text_next_line(t));
     if (!t->at || strncasecmp(t->at, words, strlen(words)) != 0) return brio_text_expected(t, words);
     t->at += strlen(words);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Notes that a solid has a name, which is the rest of its first line. The writer below knows no other than brio. */
@@ -152,44 +141,39 @@ static brio_status note_name(brio_builder *b, const brio_text *t) {
 }
 
 static brio_status read_facet(brio_text *t, double corners[3][3]) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(expect_line(t, "outer loop"));
+    BRIO_FORWARD(expect_line(t, "outer loop"));
     for (int i = 0; i < 3; i++) {
-        BRIO_TRY(expect_line(t, "vertex"));
-        for (int k = 0; k < 3; k++) BRIO_TRY(brio_text_number(t, &corners[i][k]));
-        BRIO_TRY(brio_text_row_end(t));
+        BRIO_FORWARD(expect_line(t, "vertex"));
+        for (int k = 0; k < 3; k++) BRIO_FORWARD(brio_text_number(t, &corners[i][k]));
+        BRIO_FORWARD(brio_text_row_end(t));
     }
-    BRIO_TRY(expect_line(t, "endloop"));
-    BRIO_TRY(expect_line(t, "endfacet"));
-done:
-    return status;
+    BRIO_FORWARD(expect_line(t, "endloop"));
+    return expect_line(t, "endfacet");
 }
 
 static brio_status read_text(brio_stream *s, brio_builder *b, brio_weld *weld) {
-    brio_status status = BRIO_OK;
     brio_text t = {s, 0, NULL};
     double corners[3][3];
     bool ended = false;
     brio_stream_element(s, "triangle", 0);
-    BRIO_TRY(expect_line(&t, "solid"));
-    BRIO_TRY(note_name(b, &t));
+    BRIO_FORWARD(expect_line(&t, "solid"));
+    BRIO_FORWARD(note_name(b, &t));
     for (;;) {
-        BRIO_TRY(brio_text_next_line(&t));
+        BRIO_FORWARD(brio_text_next_line(&t));
         if (!t.at && ended) return BRIO_OK;
         bool ends = t.at && !strncasecmp(t.at, "endsolid", 8), begins = t.at && !strncasecmp(t.at, "solid", 5);
         if (ends || begins) {
             ended = ends;
             if (begins) t.at += strlen("solid");
-            if (begins) BRIO_TRY(note_name(b, &t));
+            if (begins) BRIO_FORWARD(note_name(b, &t));
             continue;
         }
         if (!t.at || strncasecmp(t.at, "facet", 5) != 0) return brio_text_expected(&t, "facet or endsolid");
-        BRIO_TRY(read_facet(&t, corners));
-        BRIO_TRY(add_triangle(b, weld, corners));
+        BRIO_FORWARD(read_facet(&t, corners));
+        BRIO_FORWARD(add_triangle(b, weld, corners));
         s->row++;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static bool is_text(const brio_stream *s) {
@@ -249,13 +233,10 @@ static brio_status write_numbers(brio_output *out, const char *words, const floa
 }
 
 static brio_status write_text(brio_output *out, const triangle *t) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(write_numbers(out, "facet normal", t->numbers[0]));
-    BRIO_TRY(brio_output_string(out, "outer loop\n"));
-    for (int i = 1; i < 4; i++) BRIO_TRY(write_numbers(out, "vertex", t->numbers[i]));
-    BRIO_TRY(brio_output_string(out, "endloop\nendfacet\n"));
-done:
-    return status;
+    BRIO_FORWARD(write_numbers(out, "facet normal", t->numbers[0]));
+    BRIO_FORWARD(brio_output_string(out, "outer loop\n"));
+    for (int i = 1; i < 4; i++) BRIO_FORWARD(write_numbers(out, "vertex", t->numbers[i]));
+    return brio_output_string(out, "endloop\nendfacet\n");
 }
 
 static brio_status write_triangle(brio_output *out, const triangle *t, bool ascii) {
@@ -279,23 +260,21 @@ static brio_status write_header(brio_output *out, const brio_write_job *job, uin
 }
 
 brio_status brio_stl_write(brio_output *out, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     uint64_t count = 0;
     for (size_t f = 0; f < m->num_faces; f++) {
         uint64_t corners = m->face_offsets[f + 1] - m->face_offsets[f];
         count += corners > 2 ? corners - 2 : 0;
     }
-    BRIO_REQUIRE(out->ctx, count && count <= UINT32_MAX, BRIO_ERR_ARGUMENT,
-                 "%s: %" PRIu64 " triangles, an STL file holds 1 to %" PRIu32, out->name, count, UINT32_MAX);
-    BRIO_TRY(write_header(out, job, (uint32_t)count));
+    BRIO_EXPECT(out->ctx, count && count <= UINT32_MAX, BRIO_ERR_ARGUMENT,
+                "%s: %" PRIu64 " triangles, an STL file holds 1 to %" PRIu32, out->name, count, UINT32_MAX);
+    BRIO_FORWARD(write_header(out, job, (uint32_t)count));
     for (size_t f = 0; f < m->num_faces; f++)
         for (uint64_t i = m->face_offsets[f] + 2; i < m->face_offsets[f + 1]; i++) {
             uint32_t corners[] = {m->face_vertices[m->face_offsets[f]], m->face_vertices[i - 1], m->face_vertices[i]};
             triangle t = make_triangle(m, corners);
-            BRIO_TRY(write_triangle(out, &t, job->options->ascii));
+            BRIO_FORWARD(write_triangle(out, &t, job->options->ascii));
         }
-    if (job->options->ascii) BRIO_TRY(brio_output_string(out, "endsolid brio\n"));
-done:
-    return status;
+    if (job->options->ascii) BRIO_FORWARD(brio_output_string(out, "endsolid brio\n"));
+    return BRIO_OK;
 }

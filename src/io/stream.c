@@ -29,31 +29,25 @@ static int open_input(const char *path) {
 
 /* Makes the buffer and looks at the first bytes. */
 static brio_status start(brio_stream *s) {
-    brio_status status = BRIO_OK;
     size_t capacity = s->size < BLOCK ? (size_t)s->size + 1 : BLOCK;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, s->buffer, capacity + 1));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->buffer, capacity + 1));
     s->capacity = capacity;
-    BRIO_TRY(brio_unpack_start(s));
-done:
-    return status;
+    return brio_unpack_start(s);
 }
 
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path) {
-    brio_status status = BRIO_OK;
     bool standard = !strcmp(path, "-");
     *s = (brio_stream){.ctx = ctx, .name = standard ? "standard input" : path, .file = -1, .size = BRIO_SIZE_UNKNOWN};
     s->file = standard ? STDIN_FILENO : open_input(path);
     s->owned = !standard && s->file >= 0;
-    BRIO_REQUIRE(ctx, s->file >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+    BRIO_EXPECT(ctx, s->file >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
     struct stat facts;
     bool regular = fstat(s->file, &facts) == 0 && S_ISREG(facts.st_mode);
     off_t at = regular ? lseek(s->file, 0, SEEK_CUR) : -1;
     s->waits = !regular;
     /* special file systems report a size of 0 for files with content */
     if (at >= 0 && facts.st_size > at) s->size = (uint64_t)(facts.st_size - at);
-    BRIO_TRY(start(s));
-done:
-    return status;
+    return start(s);
 }
 
 brio_status brio_stream_open_memory(brio_stream *s, brio_context *ctx, const char *name, const void *bytes,
@@ -116,97 +110,86 @@ static brio_status read_part(brio_stream *s, char *to, size_t room, size_t *got)
 }
 
 brio_status brio_stream_read_raw(brio_stream *s, char *to, size_t room, size_t *got) {
-    brio_status status = BRIO_OK;
     *got = 0;
     if (s->outer || s->memory) return read_part(s, to, room, got);
     for (;;) {
-        if (s->waits) BRIO_TRY(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
+        if (s->waits) BRIO_FORWARD(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
         ssize_t count = read(s->file, to, room);
         if (count < 0 && (errno == EINTR || errno == EAGAIN)) { /* a signal: the caller may want to cancel */
-            BRIO_TRY(brio_wait_a_moment(s->ctx, BRIO_WAIT_READ, 0));
+            BRIO_FORWARD(brio_wait_a_moment(s->ctx, BRIO_WAIT_READ, 0));
             continue;
         }
-        BRIO_REQUIRE(s->ctx, count >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+        BRIO_EXPECT(s->ctx, count >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
         *got = (size_t)count;
         return BRIO_OK;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_stream_fill(brio_stream *s, size_t need) {
-    brio_status status = BRIO_OK;
     if (brio_stream_left(s) >= need || s->ended) return BRIO_OK;
-    BRIO_TRY(make_room(s, need));
+    BRIO_FORWARD(make_room(s, need));
     while (brio_stream_left(s) < need && !s->ended) {
         char *to = s->buffer + s->end;
         size_t room = s->capacity - s->end, got = 0;
-        BRIO_TRY(s->unpacker ? brio_unpack_read(s, to, room, &got) : brio_stream_read_raw(s, to, room, &got));
+        BRIO_FORWARD(s->unpacker ? brio_unpack_read(s, to, room, &got) : brio_stream_read_raw(s, to, room, &got));
         if (s->crc) brio_crc32_add(s->crc, to, got);
         s->ended = got == 0;
         s->end += got;
-        BRIO_TRY(report(s));
+        BRIO_FORWARD(report(s));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_stream_hold(brio_stream *s) {
-    brio_status status = BRIO_OK;
     if (s->size != BRIO_SIZE_UNKNOWN) return BRIO_OK;
-    while (!s->ended) BRIO_TRY(brio_stream_fill(s, brio_stream_left(s) + 1));
+    while (!s->ended) BRIO_FORWARD(brio_stream_fill(s, brio_stream_left(s) + 1));
     s->size = s->base + s->end;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_stream_skip(brio_stream *s, uint64_t count) {
-    brio_status status = BRIO_OK;
     while (count) {
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
         size_t left = brio_stream_left(s);
         if (!left) return brio_stream_truncated(s);
         if (left > count) left = (size_t)count;
         s->begin += left;
         count -= left;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size) {
-    brio_status status = BRIO_OK;
     if (offset >= s->base && offset - s->base <= s->end && size <= s->end - (offset - s->base)) {
         memcpy(bytes, s->buffer + (offset - s->base), size);
         return BRIO_OK;
     }
-    BRIO_REQUIRE(s->ctx, offset <= s->size && size <= s->size - offset, BRIO_ERR_FORMAT, "%s: ends at byte %" PRIu64,
-                 s->name, s->size);
+    BRIO_EXPECT(s->ctx, offset <= s->size && size <= s->size - offset, BRIO_ERR_FORMAT, "%s: ends at byte %" PRIu64,
+                s->name, s->size);
     if (s->memory) {
         memcpy(bytes, s->memory + offset, size);
         return BRIO_OK;
     }
     if (s->outer) return brio_stream_peek(s->outer, s->part_at - s->base - s->end + offset, bytes, size);
     off_t here = lseek(s->file, 0, SEEK_CUR);
-    BRIO_REQUIRE(s->ctx, here >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+    BRIO_EXPECT(s->ctx, here >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
     uint64_t start = (uint64_t)here - s->base - s->end;
     char *to = bytes;
     while (size) {
         ssize_t got = pread(s->file, to, size, (off_t)(start + offset));
         if (got < 0 && errno == EINTR) continue;
-        BRIO_REQUIRE(s->ctx, got >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
-        BRIO_REQUIRE(s->ctx, got > 0, BRIO_ERR_FORMAT, "%s: ends at byte %" PRIu64, s->name, offset);
+        BRIO_EXPECT(s->ctx, got >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
+        BRIO_EXPECT(s->ctx, got > 0, BRIO_ERR_FORMAT, "%s: ends at byte %" PRIu64, s->name, offset);
         to += got;
         size -= (size_t)got;
         offset += (uint64_t)got;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds the length of the next line without its end, or brio_stream_left if the file ends without one. */
 static brio_status line_length(brio_stream *s, size_t *length) {
-    brio_status status = BRIO_OK;
     size_t searched = 0;
     for (;;) {
         const char *start = s->buffer + s->begin;
@@ -215,33 +198,30 @@ static brio_status line_length(brio_stream *s, size_t *length) {
         *length = end ? (size_t)(end - start) : left;
         if (end || s->ended) return BRIO_OK;
         searched = left;
-        BRIO_REQUIRE(s->ctx, searched < MAX_LINE, BRIO_ERR_FORMAT, "%s: line %zu: longer than %d bytes: not a text",
-                     s->name, s->line + 1, MAX_LINE);
-        BRIO_TRY(brio_stream_fill(s, searched + 1));
+        BRIO_EXPECT(s->ctx, searched < MAX_LINE, BRIO_ERR_FORMAT, "%s: line %zu: longer than %d bytes: not a text",
+                    s->name, s->line + 1, MAX_LINE);
+        BRIO_FORWARD(brio_stream_fill(s, searched + 1));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_stream_line(brio_stream *s, char **line) {
-    brio_status status = BRIO_OK;
     size_t length;
     *line = NULL;
-    BRIO_TRY(line_length(s, &length));
+    BRIO_FORWARD(line_length(s, &length));
     if (!length && !brio_stream_left(s)) return BRIO_OK;
     char *text = s->buffer + s->begin;
     s->unended = length == brio_stream_left(s);
     s->begin += length + !s->unended;
     s->line++;
-    BRIO_REQUIRE(s->ctx, !length || !memchr(text, 0, length), BRIO_ERR_FORMAT,
-                 "%s: line %zu: holds a byte 0: not a text", s->name, s->line);
+    BRIO_EXPECT(s->ctx, !length || !memchr(text, 0, length), BRIO_ERR_FORMAT,
+                "%s: line %zu: holds a byte 0: not a text", s->name, s->line);
     while (length && text[length - 1] == '\r') length--;
-    BRIO_REQUIRE(s->ctx, !length || !memchr(text, '\r', length), BRIO_ERR_FORMAT,
-                 "%s: line %zu: a carriage return within it; lines end with a line feed", s->name, s->line);
+    BRIO_EXPECT(s->ctx, !length || !memchr(text, '\r', length), BRIO_ERR_FORMAT,
+                "%s: line %zu: a carriage return within it; lines end with a line feed", s->name, s->line);
     text[length] = 0;
     *line = s->line == 1 && !strncmp(text, BYTE_ORDER_MARK, 3) ? text + 3 : text;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_stream_element(brio_stream *s, const char *element, uint64_t rows) {

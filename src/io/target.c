@@ -72,20 +72,18 @@ static bool is_of_processes(int folder) {
 }
 
 brio_status brio_target_find(brio_target *target, brio_context *ctx, const char *path, const char *shown) {
-    brio_status status = BRIO_OK;
     char link[PATH_MAX];
     *target = (brio_target){.folder = -1};
-    BRIO_TRY(step_to(target, ctx, path, shown));
+    BRIO_FORWARD(step_to(target, ctx, path, shown));
     for (int links = 0;; links++) {
         ssize_t length = readlinkat(target->folder, target->name, link, sizeof link - 1);
         if (length >= 0 && is_of_processes(target->folder)) return BRIO_OK;
         if (length < 0) return errno == EINVAL || errno == ENOENT ? BRIO_OK : fail(ctx, shown, errno);
         if (links == MOST_LINKS) return fail(ctx, shown, ELOOP);
         link[length] = 0;
-        BRIO_TRY(step_to(target, ctx, link, shown));
+        BRIO_FORWARD(step_to(target, ctx, link, shown));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 bool brio_target_is_open_file(const brio_target *target) {

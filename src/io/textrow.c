@@ -16,16 +16,14 @@ brio_excerpt brio_excerpt_of(const char *word) {
 }
 
 brio_status brio_text_next_line(brio_text *t) {
-    brio_status status = BRIO_OK;
     do {
-        BRIO_TRY(brio_stream_line(t->stream, &t->at));
+        BRIO_FORWARD(brio_stream_line(t->stream, &t->at));
         if (!t->at) return BRIO_OK;
         char *comment = t->comment ? strchr(t->at, t->comment) : NULL;
         if (comment) *comment = 0;
         t->at = brio_skip_blanks(t->at);
     } while (!*t->at);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 bool brio_text_more(brio_text *t) {
@@ -40,28 +38,24 @@ brio_status brio_text_expected(const brio_text *t, const char *what) {
 }
 
 brio_status brio_text_number(brio_text *t, double *value) {
-    brio_status status = BRIO_OK;
     if (!brio_text_more(t)) {
-        BRIO_TRY(brio_text_next_line(t));
+        BRIO_FORWARD(brio_text_next_line(t));
         if (!t->at) return brio_stream_truncated(t->stream);
     }
     const char *p = t->at;
     if (!brio_parse_number(&p, value) || (*p && !brio_is_blank(*p))) return brio_text_expected(t, "a number");
     t->at += p - t->at;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_text_count(brio_text *t, const char *what, uint64_t most, uint64_t *value) {
-    brio_status status = BRIO_OK;
     double number = 0;
-    BRIO_TRY(brio_text_number(t, &number));
-    BRIO_REQUIRE(t->stream->ctx, number >= 0 && number < 0x1p63 && number == floor(number) && (uint64_t)number <= most,
-                 BRIO_ERR_FORMAT, "%s: line %zu: %s is %g, expected a whole number from 0 to %" PRIu64, t->stream->name,
-                 t->stream->line, what, number, most);
+    BRIO_FORWARD(brio_text_number(t, &number));
+    BRIO_EXPECT(t->stream->ctx, number >= 0 && number < 0x1p63 && number == floor(number) && (uint64_t)number <= most,
+                BRIO_ERR_FORMAT, "%s: line %zu: %s is %g, expected a whole number from 0 to %" PRIu64, t->stream->name,
+                t->stream->line, what, number, most);
     *value = (uint64_t)number;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_text_row_end(brio_text *t) {

@@ -19,29 +19,26 @@ size_t brio_unpacked_length(const char *path) {
 
 /* Refuses what is in the compressed file if it has to be unpacked again. */
 static brio_status refuse_archives(brio_stream *s) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_stream_fill(s, LOOK_AT));
+    BRIO_FORWARD(brio_stream_fill(s, LOOK_AT));
     const char *bytes = s->buffer + s->begin;
     size_t size = brio_stream_left(s);
-    BRIO_REQUIRE(s->ctx, brio_packing_of(bytes, size) == BRIO_PACKING_NONE, BRIO_ERR_FORMAT,
-                 "%s: it is compressed again; only one level is decompressed", s->name);
-    BRIO_REQUIRE(s->ctx, size < LOOK_AT || memcmp(bytes + TAR, "ustar", 5) != 0, BRIO_ERR_FORMAT,
-                 "%s: it is a tar archive; unpack the file that is wanted", s->name);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, brio_packing_of(bytes, size) == BRIO_PACKING_NONE, BRIO_ERR_FORMAT,
+                "%s: it is compressed again; only one level is decompressed", s->name);
+    BRIO_EXPECT(s->ctx, size < LOOK_AT || memcmp(bytes + TAR, "ustar", 5) != 0, BRIO_ERR_FORMAT,
+                "%s: it is a tar archive; unpack the file that is wanted", s->name);
+    return BRIO_OK;
 }
 
 brio_status brio_unpack_start(brio_stream *s) {
     static const char suffix[] = ", decompressed";
-    brio_status status = BRIO_OK;
     brio_unpacker *u = NULL;
-    BRIO_TRY(brio_stream_fill(s, BRIO_PACKING_LOOK_AT));
+    BRIO_FORWARD(brio_stream_fill(s, BRIO_PACKING_LOOK_AT));
     brio_packing packing = brio_packing_of(s->buffer + s->begin, brio_stream_left(s));
     if (packing == BRIO_PACKING_NONE) return BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, u, 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, u, 1));
     s->unpacker = u;
-    BRIO_TRY(brio_decoder_new(s->ctx, s->name, packing, &u->decoder));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, u->name, strlen(s->name) + sizeof suffix));
+    BRIO_FORWARD(brio_decoder_new(s->ctx, s->name, packing, &u->decoder));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, u->name, strlen(s->name) + sizeof suffix));
     strcpy(stpcpy(u->name, s->name), suffix);
     u->size = s->size;
     u->taken = s->base + s->end;
@@ -56,56 +53,47 @@ brio_status brio_unpack_start(brio_stream *s) {
     s->reported = 0;
     s->ended = false;
     s->name = u->name;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, s->buffer, BLOCK + 1));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->buffer, BLOCK + 1));
     s->capacity = BLOCK;
-    BRIO_TRY(refuse_archives(s));
-done:
-    return status;
+    return refuse_archives(s);
 }
 
 brio_status brio_unpack_deflate(brio_stream *s) {
-    brio_status status = BRIO_OK;
     brio_unpacker *u = NULL;
-    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, u, 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, u, 1));
     s->unpacker = u;
     u->size = s->part_left;
-    BRIO_TRY(brio_decoder_new(s->ctx, s->name, BRIO_PACKING_DEFLATE, &u->decoder));
+    BRIO_FORWARD(brio_decoder_new(s->ctx, s->name, BRIO_PACKING_DEFLATE, &u->decoder));
     u->capacity = s->part_left < BLOCK ? (size_t)s->part_left + 1 : BLOCK;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, u->packed, u->capacity));
-done:
-    return status;
+    return BRIO_ALLOC(s->ctx, u->packed, u->capacity);
 }
 
 /* Reads the next block of the compressed file, if the last one is used up. */
 static brio_status next_block(brio_stream *s) {
-    brio_status status = BRIO_OK;
     brio_unpacker *u = s->unpacker;
     size_t got;
     if (u->begin < u->end || u->packed_ended) return BRIO_OK;
-    BRIO_TRY(brio_stream_read_raw(s, u->packed, u->capacity, &got));
+    BRIO_FORWARD(brio_stream_read_raw(s, u->packed, u->capacity, &got));
     u->begin = 0;
     u->end = got;
     u->taken += got;
     u->packed_ended = got == 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_unpack_read(brio_stream *s, char *to, size_t room, size_t *got) {
-    brio_status status = BRIO_OK;
     brio_unpacker *u = s->unpacker;
     *got = 0;
     for (;;) {
-        BRIO_TRY(next_block(s));
+        BRIO_FORWARD(next_block(s));
         brio_decoder_io io = {u->packed + u->begin, u->end - u->begin, to, room};
-        BRIO_TRY(brio_decode(u->decoder, &io));
+        BRIO_FORWARD(brio_decode(u->decoder, &io));
         u->begin = u->end - io.in_left;
         *got = room - io.room;
         if (*got) return BRIO_OK;
         if (u->packed_ended && u->begin == u->end) return brio_decoder_check_end(u->decoder);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_unpack_end(brio_stream *s) {

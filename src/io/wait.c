@@ -11,15 +11,13 @@ static brio_status report(brio_context *ctx, brio_wait what, double fraction) {
 }
 
 brio_status brio_wait_for(brio_context *ctx, int file, brio_wait what, double fraction) {
-    brio_status status = BRIO_OK;
     for (;;) {
         struct pollfd one = {.fd = file, .events = what == BRIO_WAIT_READ ? POLLIN : POLLOUT};
         int ready = poll(&one, 1, TURN);
         if (ready > 0 || (ready < 0 && errno != EINTR)) return BRIO_OK;
-        BRIO_TRY(report(ctx, what, fraction));
+        BRIO_FORWARD(report(ctx, what, fraction));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_wait_a_moment(brio_context *ctx, brio_wait what, double fraction) {

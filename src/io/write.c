@@ -16,61 +16,53 @@ BRIO_OPTIONS_INIT(brio_write_options)
 
 brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format format,
                                 const brio_write_options *options) {
-    brio_status status = BRIO_OK;
     if (!options->compress) return BRIO_OK;
-    BRIO_REQUIRE(ctx, brio_format_holds(format, BRIO_HOLDS_COMPRESSED), BRIO_ERR_ARGUMENT,
-                 "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can", path);
-    BRIO_REQUIRE(ctx, !options->ascii, BRIO_ERR_ARGUMENT, "%s: text is not compressed", path);
-    BRIO_REQUIRE(ctx, format == BRIO_FORMAT_PCD || brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT,
-                 "%s: this brio was built without zlib, which compresses", path);
-done:
-    return status;
+    BRIO_EXPECT(ctx, brio_format_holds(format, BRIO_HOLDS_COMPRESSED), BRIO_ERR_ARGUMENT,
+                "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can", path);
+    BRIO_EXPECT(ctx, !options->ascii, BRIO_ERR_ARGUMENT, "%s: text is not compressed", path);
+    BRIO_EXPECT(ctx, format == BRIO_FORMAT_PCD || brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT,
+                "%s: this brio was built without zlib, which compresses", path);
+    return BRIO_OK;
 }
 
 /* As many as the readers take, which must not believe every header. */
 brio_status brio_check_properties(brio_context *ctx, const char *path, brio_format format, size_t count) {
     const brio_format_info *info = brio_format_facts(format);
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, !info->most_properties || count <= info->most_properties, BRIO_ERR_ARGUMENT,
-                 "%s: %zu properties; readers of this format take at most %u", path, count, info->most_properties);
-done:
-    return status;
+    BRIO_EXPECT(ctx, !info->most_properties || count <= info->most_properties, BRIO_ERR_ARGUMENT,
+                "%s: %zu properties; readers of this format take at most %u", path, count, info->most_properties);
+    return BRIO_OK;
 }
 
 brio_status brio_check_written(brio_context *ctx, const char *path, brio_format format) {
     const brio_format_info *info = brio_format_facts(format);
-    brio_status status = BRIO_OK;
     if (!info) {
         char known[BRIO_FORMAT_LIST];
         brio_format_list(true, known);
         return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s: unknown format, expected one of %s", path, known);
     }
-    BRIO_REQUIRE(ctx, info->written[0], BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
-    BRIO_REQUIRE(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
-                 "%s: .gltf files are read, not written; .glb files are", path);
-done:
-    return status;
+    BRIO_EXPECT(ctx, info->written[0], BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
+    BRIO_EXPECT(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,
+                "%s: .gltf files are read, not written; .glb files are", path);
+    return BRIO_OK;
 }
 
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_check_written(ctx, path, format));
-    BRIO_REQUIRE(ctx, !m->num_tetrahedra || brio_format_holds(format, BRIO_HOLDS_TETRAHEDRA), BRIO_ERR_ARGUMENT,
-                 "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, brio_format_facts(format)->name);
+    BRIO_FORWARD(brio_check_written(ctx, path, format));
+    BRIO_EXPECT(ctx, !m->num_tetrahedra || brio_format_holds(format, BRIO_HOLDS_TETRAHEDRA), BRIO_ERR_ARGUMENT,
+                "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, brio_format_facts(format)->name);
     bool beside = options->neighbours || options->faces || options->edges;
-    BRIO_REQUIRE(ctx, !beside || format == BRIO_FORMAT_NODE, BRIO_ERR_ARGUMENT,
-                 "%s: neighbours, faces and edges are written beside .node only", path);
-    BRIO_REQUIRE(
-        ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || !brio_output_is_single(ctx, path),
-        BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele", strcmp(path, "-") ? path : "standard output");
-    BRIO_TRY(brio_check_compress(ctx, path, format, options));
-    BRIO_TRY(brio_check_properties(ctx, path, format, m->num_properties));
+    BRIO_EXPECT(ctx, !beside || format == BRIO_FORMAT_NODE, BRIO_ERR_ARGUMENT,
+                "%s: neighbours, faces and edges are written beside .node only", path);
+    BRIO_EXPECT(ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || !brio_output_is_single(ctx, path),
+                BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele",
+                strcmp(path, "-") ? path : "standard output");
+    BRIO_FORWARD(brio_check_compress(ctx, path, format, options));
+    BRIO_FORWARD(brio_check_properties(ctx, path, format, m->num_properties));
     if (m->num_faces && brio_format_holds(format, BRIO_HOLDS_FACE_PROPERTIES))
-        BRIO_TRY(brio_check_properties(ctx, path, format, m->num_face_properties));
-    if (brio_is_single(format, options)) BRIO_TRY(brio_check_single(ctx, path, m));
-done:
-    return status;
+        BRIO_FORWARD(brio_check_properties(ctx, path, format, m->num_face_properties));
+    if (brio_is_single(format, options)) BRIO_FORWARD(brio_check_single(ctx, path, m));
+    return BRIO_OK;
 }
 
 /* --- writing --- */
@@ -122,40 +114,36 @@ done:
 /* Refuses indices of vertices that there are not, and coordinates that are no numbers: no format that
  * is written reads back with these. */
 static brio_status check_mesh(brio_context *ctx, const char *path, const brio_mesh *mesh) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, path));
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_FORWARD(brio_refuse_not_finite(ctx, mesh->vertices, NULL, mesh->num_vertices, path));
+    BRIO_FORWARD(brio_mesh_check_faces(ctx, mesh));
     for (size_t i = 0; i < 4 * mesh->num_tetrahedra; i++)
-        BRIO_REQUIRE(ctx, mesh->tetrahedra[i] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
-                     "tetrahedron %zu has vertex %u of %zu", i / 4, mesh->tetrahedra[i], mesh->num_vertices);
+        BRIO_EXPECT(ctx, mesh->tetrahedra[i] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
+                    "tetrahedron %zu has vertex %u of %zu", i / 4, mesh->tetrahedra[i], mesh->num_vertices);
     for (size_t i = 0; i < 2 * mesh->num_edges; i++)
-        BRIO_REQUIRE(ctx, mesh->edges[i] < mesh->num_vertices, BRIO_ERR_ARGUMENT, "edge %zu has vertex %u of %zu",
-                     i / 2, mesh->edges[i], mesh->num_vertices);
-done:
-    return status;
+        BRIO_EXPECT(ctx, mesh->edges[i] < mesh->num_vertices, BRIO_ERR_ARGUMENT, "edge %zu has vertex %u of %zu", i / 2,
+                    mesh->edges[i], mesh->num_vertices);
+    return BRIO_OK;
 }
 
 brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     brio_write_options o = STANDARD;
     brio_write_job job = {.mesh = mesh, .options = &o};
-    BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, options, &o));
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_write_options, options, &o));
     brio_format format = o.format;
     if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
     if (o.moved) *o.moved = 0;
     if (o.colours_rounded) *o.colours_rounded = 0;
-    BRIO_TRY(check_mesh(ctx, path, mesh));
-    BRIO_TRY(check_holds(ctx, path, mesh, format, job.options));
+    BRIO_FORWARD(check_mesh(ctx, path, mesh));
+    BRIO_FORWARD(check_holds(ctx, path, mesh, format, job.options));
     job.expected = expected_bytes(mesh, format, o.ascii);
     job.points = mesh->num_vertices;
     if (o.moved && brio_is_single(format, &o)) *o.moved = brio_moved_by_singles(mesh);
     if (brio_row_format_of(format))
-        BRIO_TRY(write_rows(ctx, path, &job, format));
+        BRIO_FORWARD(write_rows(ctx, path, &job, format));
     else if (format == BRIO_FORMAT_NODE && !brio_output_is_single(ctx, path))
-        BRIO_TRY(brio_node_write_files(ctx, path, &job, job.expected));
+        BRIO_FORWARD(brio_node_write_files(ctx, path, &job, job.expected));
     else
-        BRIO_TRY(write_one(ctx, path, &job, format));
-done:
-    return status;
+        BRIO_FORWARD(write_one(ctx, path, &job, format));
+    return BRIO_OK;
 }

@@ -11,43 +11,35 @@ static char separator_of(const brio_output *out, const brio_write_job *job) {
 }
 
 static brio_status write_names(brio_output *out, const brio_write_job *job, char separator) {
-    brio_status status = BRIO_OK;
     /* spreadsheets read a line that begins with # as data, so that CSV has no comment */
-    BRIO_TRY(brio_output_format(out, "%sx%cy%cz", separator == ' ' ? "# " : "", separator, separator));
+    BRIO_FORWARD(brio_output_format(out, "%sx%cy%cz", separator == ' ' ? "# " : "", separator, separator));
     for (size_t i = 0; i < job->mesh->num_properties; i++)
-        BRIO_TRY(brio_output_format(out, "%c%s", separator, job->names[i]));
-    BRIO_TRY(brio_output_string(out, "\n"));
-done:
-    return status;
+        BRIO_FORWARD(brio_output_format(out, "%c%s", separator, job->names[i]));
+    return brio_output_string(out, "\n");
 }
 
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     (void)state;
     const char *given = job->options->separator;
-    BRIO_REQUIRE(out->ctx, !given || !strcmp(given, ",") || !strcmp(given, " "), BRIO_ERR_ARGUMENT,
-                 "%s: the separator \"%s\", expected a comma or a blank", out->name, given);
+    BRIO_EXPECT(out->ctx, !given || !strcmp(given, ",") || !strcmp(given, " "), BRIO_ERR_ARGUMENT,
+                "%s: the separator \"%s\", expected a comma or a blank", out->name, given);
     char separator = separator_of(out, job);
-    if (separator == ' ') BRIO_TRY(brio_output_comment(out, "# ", job->options->comment));
-    BRIO_TRY(write_names(out, job, separator));
-done:
-    return status;
+    if (separator == ' ') BRIO_FORWARD(brio_output_comment(out, "# ", job->options->comment));
+    return write_names(out, job, separator);
 }
 
 static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
     char separator = separator_of(out, job);
     (void)state;
     for (size_t v = 0; v < m->num_vertices; v++) {
         for (int k = 0; k < 3; k++)
-            BRIO_TRY(brio_output_double(out, k ? separator : 0, m->vertices[3 * v + (size_t)k]));
+            BRIO_FORWARD(brio_output_double(out, k ? separator : 0, m->vertices[3 * v + (size_t)k]));
         for (size_t i = 0; i < m->num_properties; i++)
-            BRIO_TRY(brio_output_scalar(out, separator, &m->properties[i], v));
-        BRIO_TRY(brio_output_string(out, "\n"));
+            BRIO_FORWARD(brio_output_scalar(out, separator, &m->properties[i], v));
+        BRIO_FORWARD(brio_output_string(out, "\n"));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 const brio_row_format brio_xyz_rows = {.comments = true, .begin = begin, .rows = write_rows};

@@ -108,14 +108,12 @@ static brio_status fill_upper_layer(slab *s, uint32_t z) {
 /* --- sites --- */
 
 static brio_status add_site(slab *s, const site *new_site, const double *p, uint32_t *out) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(s->ctx, s->sites, s->site_capacity, s->num_sites + 1));
-    BRIO_TRY(BRIO_RESERVE(s->ctx, s->points, s->point_capacity, 3 * s->num_sites + 3));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, s->sites, s->site_capacity, s->num_sites + 1));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, s->points, s->point_capacity, 3 * s->num_sites + 3));
     s->sites[s->num_sites] = *new_site;
     for (size_t k = 0; k < 3; k++) s->points[3 * s->num_sites + k] = p[k];
     *out = (uint32_t)s->num_sites++;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the corner at node (x, y, z) a site. */
@@ -132,66 +130,56 @@ static brio_status add_corner(slab *s, const uint32_t node[3], uint32_t lowest) 
 /* Places a vertex on the edge from a node to the next one along an axis. */
 static brio_status add_vertex(slab *s, const uint32_t node[3], uint32_t axis, double value, double next_value,
                               uint32_t *out) {
-    brio_status status = BRIO_OK;
     uint32_t next[3] = {node[0], node[1], node[2]};
     double a[3], b[3];
     next[axis]++;
-    BRIO_REQUIRE(s->ctx, s->num_vertices < NONE, BRIO_ERR_TOO_LARGE, "a surface of 2^32 vertices");
-    BRIO_TRY(BRIO_RESERVE(s->ctx, s->vertices, s->vertex_capacity, 3 * s->num_vertices + 3));
+    BRIO_EXPECT(s->ctx, s->num_vertices < NONE, BRIO_ERR_TOO_LARGE, "a surface of 2^32 vertices");
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, s->vertices, s->vertex_capacity, 3 * s->num_vertices + 3));
     double *p = s->vertices + 3 * s->num_vertices;
     brio_implicit_node(s->grid, node, a);
     brio_implicit_node(s->grid, next, b);
     brio_implicit_root(s->grid, a, b, value, next_value, p);
     p[axis] = fmin(fmax(p[axis], a[axis] + s->least), b[axis] - s->least);
     *out = (uint32_t)s->num_vertices++;
-    BRIO_TRY(count_work(s, ROOT_WORK, 0.5));
-done:
-    return status;
+    return count_work(s, ROOT_WORK, 0.5);
 }
 
 /* Makes the vertex between a node and the next node along an axis a site, when the surface passes between them. */
 static brio_status add_crossing(slab *s, const uint32_t node[3], uint32_t axis, uint32_t lowest) {
-    brio_status status = BRIO_OK;
     const size_t step[3] = {1, s->row, 0};
     size_t i = node[1] * s->row + node[0];
     uint32_t side = node[2] - lowest, next_side = side + (axis == 2);
     double value = s->side[side].value[i], next_value = s->side[next_side].value[i + step[axis]];
     uint32_t *vertex = &s->side[side].edge_vertex[AXES * i + axis], *slot = &s->side[side].edge_site[AXES * i + axis];
     if (*slot != NONE || (value < 0) == (next_value < 0)) return BRIO_OK;
-    if (*vertex == NONE) BRIO_TRY(add_vertex(s, node, axis, value, next_value, vertex));
+    if (*vertex == NONE) BRIO_FORWARD(add_vertex(s, node, axis, value, next_value, vertex));
     site crossing = {.vertex = *vertex};
-    BRIO_TRY(add_site(s, &crossing, s->vertices + 3 * (size_t)*vertex, slot));
-done:
-    return status;
+    return add_site(s, &crossing, s->vertices + 3 * (size_t)*vertex, slot);
 }
 
 static brio_status add_cell(slab *s, const uint32_t cell[3]) {
-    brio_status status = BRIO_OK;
     for (uint32_t corner = 0; corner < 8; corner++) {
         uint32_t node[3];
         for (uint32_t k = 0; k < 3; k++) node[k] = cell[k] + (corner >> k & 1);
-        BRIO_TRY(add_corner(s, node, cell[2]));
+        BRIO_FORWARD(add_corner(s, node, cell[2]));
         for (uint32_t axis = 0; axis < AXES; axis++)
-            if (!(corner >> axis & 1)) BRIO_TRY(add_crossing(s, node, axis, cell[2]));
+            if (!(corner >> axis & 1)) BRIO_FORWARD(add_crossing(s, node, axis, cell[2]));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds the sites of the slab's crossed cells. */
 static brio_status add_cells(slab *s, uint32_t z) {
-    brio_status status = BRIO_OK;
     for (uint32_t y = 0; y < s->grid->cells[1]; y++)
         for (uint32_t x = 0; x < s->grid->cells[0]; x++) {
             unsigned inside = 0;
-            if (x % CELLS_AN_EVALUATION == 0) BRIO_TRY(count_work(s, 1, 0.5));
+            if (x % CELLS_AN_EVALUATION == 0) BRIO_FORWARD(count_work(s, 1, 0.5));
             for (unsigned c = 0; c < 8; c++)
                 inside += s->side[c >> 2].value[(y + (c >> 1 & 1)) * s->row + x + (c & 1)] < 0;
             if (inside == 0 || inside == 8) continue;
-            BRIO_TRY(add_cell(s, (const uint32_t[3]){x, y, z}));
+            BRIO_FORWARD(add_cell(s, (const uint32_t[3]){x, y, z}));
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- labels --- */
@@ -212,11 +200,9 @@ static tet_side side_of(const slab *s, const uint32_t *v) {
 /* --- triangles --- */
 
 static brio_status add_triangle(slab *s, triangle_list *list, const uint32_t corners[3]) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(s->ctx, list->corners, list->capacity, 3 * list->count + 3));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, list->corners, list->capacity, 3 * list->count + 3));
     memcpy(list->corners + 3 * list->count++, corners, 3 * sizeof *corners);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns whether a facet at the border of the slab is in the plane over the slab; otherwise it is in the plane under
@@ -243,23 +229,21 @@ static bool is_of_vertices(const slab *s, const uint32_t *v, int facet) {
 }
 
 static brio_status take_boundary(slab *s, const brio_triangulation *t) {
-    brio_status status = BRIO_OK;
     const brio_delaunay_stats *stats = brio_triangulation_stats(t);
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
     size_t count = stats->tetrahedra + stats->hull_facets;
-    BRIO_TRY(BRIO_RESERVE(s->ctx, s->label, s->label_capacity, count));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, s->label, s->label_capacity, count));
     for (size_t i = 0; i < count; i++) {
         s->label[i] = (uint8_t)side_of(s, tet[i].vertex);
-        BRIO_TRY(count_work(s, 1, 0.9));
+        BRIO_FORWARD(count_work(s, 1, 0.9));
     }
     for (size_t i = 0; i < count; i++)
         for (int f = 0; s->label[i] == INSIDE && f < 4; f++) {
             tet_side beyond = (tet_side)s->label[tet[i].mate[f] / 4];
             if (beyond == INSIDE || !is_of_vertices(s, tet[i].vertex, f)) continue;
-            BRIO_TRY(add_facet(s, tet[i].vertex, f, beyond == BEYOND));
+            BRIO_FORWARD(add_facet(s, tet[i].vertex, f, beyond == BEYOND));
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- slabs --- */
@@ -358,7 +342,6 @@ static brio_status settle_lower_plane(slab *s) {
  * doubles at the largest coordinate. Otherwise rounded nodes could coincide, or leave no double between them for a
  * vertex.   *least  least distance of a vertex from the ends of its edge. */
 static brio_status settle_grid(brio_context *ctx, brio_implicit_grid *grid, double *least) {
-    brio_status status = BRIO_OK;
     double most = 0;
     for (int k = 0; k < 3; k++)
         most = fmax(most, fmax(fabs(grid->low[k]), fabs(grid->low[k] + (grid->cells[k] + 1.0) * grid->cell)));
@@ -366,24 +349,21 @@ static brio_status settle_grid(brio_context *ctx, brio_implicit_grid *grid, doub
     grid->cell = ceil(grid->cell / unit) * unit;
     for (int k = 0; k < 3; k++) grid->low[k] = floor(grid->low[k] / unit) * unit;
     *least = fmax(LEAST_SHARE * grid->cell, unit);
-    BRIO_REQUIRE(ctx, 2 * unit <= grid->cell, BRIO_ERR_NO_ANSWER,
-                 "cells of %g are too small at coordinates of %g: doubles are %g apart there", grid->cell, most, unit);
-done:
-    return status;
+    BRIO_EXPECT(ctx, 2 * unit <= grid->cell, BRIO_ERR_NO_ANSWER,
+                "cells of %g are too small at coordinates of %g: doubles are %g apart there", grid->cell, most, unit);
+    return BRIO_OK;
 }
 
 /* --- all of it --- */
 
 static brio_status slab_start(slab *s) {
-    brio_status status = BRIO_OK;
     for (int i = 0; i < 2; i++) {
-        BRIO_TRY(BRIO_ALLOC(s->ctx, s->side[i].value, s->layer));
-        BRIO_TRY(BRIO_ALLOC(s->ctx, s->side[i].node_site, s->layer));
-        BRIO_TRY(BRIO_ALLOC(s->ctx, s->side[i].edge_vertex, AXES * s->layer));
-        BRIO_TRY(BRIO_ALLOC(s->ctx, s->side[i].edge_site, AXES * s->layer));
+        BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->side[i].value, s->layer));
+        BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->side[i].node_site, s->layer));
+        BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->side[i].edge_vertex, AXES * s->layer));
+        BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->side[i].edge_site, AXES * s->layer));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void slab_free(slab *s) {

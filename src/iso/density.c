@@ -80,15 +80,13 @@ static void choose_buckets(density *d, const double *extent, double reach, size_
 
 /* Sorts the atoms by bucket; keeps their order inside each bucket. */
 static brio_status fill_buckets(brio_context *ctx, density *d, const brio_atom *atoms, size_t num_atoms) {
-    brio_status status = BRIO_OK;
     size_t buckets = d->size[0] * d->size[1] * d->size[2];
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d->start, buckets + 2));
-    BRIO_TRY(BRIO_ALLOC(ctx, d->atoms, num_atoms));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, d->start, buckets + 2));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, d->atoms, num_atoms));
     for (size_t i = 0; i < num_atoms; i++) d->start[bucket_of(d, &atoms[i]) + 2]++;
     for (size_t b = 0; b < buckets; b++) d->start[b + 2] += d->start[b + 1];
     for (size_t i = 0; i < num_atoms; i++) d->atoms[d->start[bucket_of(d, &atoms[i]) + 1]++] = atoms[i];
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- all of it --- */
@@ -96,31 +94,27 @@ done:
 /* Chooses a grid round the box of the centres, with room for the reach of the largest atom. */
 static brio_status choose_grid(brio_context *ctx, const density *d, const double *extent, double reach,
                                size_t resolution, brio_implicit_grid *grid) {
-    brio_status status = BRIO_OK;
     double room = reach * 1.01 + 1e-9, longest = 0;
     for (int k = 0; k < 3; k++) longest = fmax(longest, extent[k] + 2 * room);
     double cells = resolution ? (double)resolution : fmin(ceil(longest / DEFAULT_CELL), MOST_DEFAULT_RESOLUTION);
     grid->cell = longest / cells;
     for (int k = 0; k < 3; k++) { /* whole cells, with equal excess on both sides */
-        BRIO_TRY(brio_implicit_cells(ctx, ceil((extent[k] + 2 * room) / grid->cell), &grid->cells[k]));
+        BRIO_FORWARD(brio_implicit_cells(ctx, ceil((extent[k] + 2 * room) / grid->cell), &grid->cells[k]));
         grid->low[k] = d->low[k] + 0.5 * (extent[k] - grid->cells[k] * grid->cell);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status check_arguments(brio_context *ctx, const density *d, size_t num_atoms, size_t resolution) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, num_atoms > 0, BRIO_ERR_ARGUMENT, "no atoms");
-    BRIO_REQUIRE(ctx, num_atoms < UINT32_MAX / BUCKETS_AN_ATOM, BRIO_ERR_TOO_LARGE, "%zu atoms", num_atoms);
-    BRIO_REQUIRE(ctx, d->level > 0 && isfinite(d->level), BRIO_ERR_ARGUMENT, "level %g: a density is positive",
-                 d->level);
-    BRIO_REQUIRE(ctx, d->blobbiness > 0 && d->blobbiness <= MOST_BLOBBINESS, BRIO_ERR_ARGUMENT,
-                 "blobbiness %g: expected a number above 0, up to %g", d->blobbiness, MOST_BLOBBINESS);
-    BRIO_REQUIRE(ctx, resolution <= MOST_RESOLUTION, BRIO_ERR_ARGUMENT, "resolution %zu: expected 0 to %d", resolution,
-                 MOST_RESOLUTION);
-done:
-    return status;
+    BRIO_EXPECT(ctx, num_atoms > 0, BRIO_ERR_ARGUMENT, "no atoms");
+    BRIO_EXPECT(ctx, num_atoms < UINT32_MAX / BUCKETS_AN_ATOM, BRIO_ERR_TOO_LARGE, "%zu atoms", num_atoms);
+    BRIO_EXPECT(ctx, d->level > 0 && isfinite(d->level), BRIO_ERR_ARGUMENT, "level %g: a density is positive",
+                d->level);
+    BRIO_EXPECT(ctx, d->blobbiness > 0 && d->blobbiness <= MOST_BLOBBINESS, BRIO_ERR_ARGUMENT,
+                "blobbiness %g: expected a number above 0, up to %g", d->blobbiness, MOST_BLOBBINESS);
+    BRIO_EXPECT(ctx, resolution <= MOST_RESOLUTION, BRIO_ERR_ARGUMENT, "resolution %zu: expected 0 to %d", resolution,
+                MOST_RESOLUTION);
+    return BRIO_OK;
 }
 
 brio_status brio_density_surface(brio_context *ctx, const brio_atom *atoms, size_t num_atoms,

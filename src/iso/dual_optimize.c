@@ -190,35 +190,31 @@ static void take_back_turned(optimizer *o) {
 /* --- all of it --- */
 
 static brio_status make_workspace(brio_context *ctx, optimizer *o) {
-    brio_status status = BRIO_OK;
     size_t n = o->mesh->num_vertices, m = o->mesh->num_faces;
     const uint32_t *corner = o->mesh->face_vertices;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, o->start, n + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, o->incident, 3 * m));
-    BRIO_TRY(BRIO_ALLOC(ctx, o->dual, 6 * m));
-    BRIO_TRY(BRIO_ALLOC(ctx, o->old, 3 * n));
-    BRIO_TRY(BRIO_ALLOC(ctx, o->back, n));
-    BRIO_TRY(brio_mesh_twins(ctx, o->mesh, &o->twin));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, o->start, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, o->incident, 3 * m));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, o->dual, 6 * m));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, o->old, 3 * n));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, o->back, n));
+    BRIO_FORWARD(brio_mesh_twins(ctx, o->mesh, &o->twin));
     for (size_t i = 0; i < 3 * m; i++) o->start[corner[i] + 1]++;
     for (size_t v = 0; v < n; v++) o->start[v + 1] += o->start[v];
     for (size_t i = 3 * m; i-- > 0;) o->incident[--o->start[corner[i] + 1]] = (uint32_t)(i / 3);
     for (size_t v = 0; v < n; v++) o->start[v] = o->start[v + 1];
     o->start[n] = 3 * m;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Calls body for all of n items, batch by batch; reports progress from `from` to `to`. */
 static brio_status in_batches(brio_context *ctx, optimizer *o, size_t n, brio_part_fn body, const double part[2]) {
-    brio_status status = BRIO_OK;
     for (o->first = 0; o->first < n; o->first += BATCH) {
         size_t count = n - o->first < BATCH ? n - o->first : BATCH;
         double share = (double)o->first / (double)n;
-        BRIO_TRY(brio_progress(ctx, "optimize", part[0] + share * (part[1] - part[0])));
-        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, ITEMS_A_THREAD), count, ITEMS_A_THREAD, body, o));
+        BRIO_FORWARD(brio_progress(ctx, "optimize", part[0] + share * (part[1] - part[0])));
+        BRIO_FORWARD(brio_for_chunks(ctx, brio_threads(ctx, count, ITEMS_A_THREAD), count, ITEMS_A_THREAD, body, o));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_dual_optimize(brio_context *ctx, const brio_implicit_grid *grid, brio_mesh *mesh, int rounds) {

@@ -51,12 +51,11 @@ static size_t next_resolution(double wanted, const double resolution[2], const d
 /* Tries resolutions until the number of vertices is close to the wanted one; keeps the last try. */
 static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from,
                                         const brio_iso_surface_options *o, brio_mesh **out) {
-    brio_status status = BRIO_OK;
     double wanted = (double)o->vertices, tried[2] = {0, FIRST_RESOLUTION}, vertices[2] = {0, 0};
     for (int round = 0; round < MOST_ROUNDS; round++) {
         brio_mesh_free(*out);
         *out = NULL;
-        BRIO_TRY(make_surface(ctx, from, o, (size_t)tried[1], out));
+        BRIO_FORWARD(make_surface(ctx, from, o, (size_t)tried[1], out));
         vertices[1] = (double)(*out)->num_vertices;
         size_t next = next_resolution(wanted, tried, vertices);
         if (fabs(vertices[1] / wanted - 1) < CLOSE_ENOUGH || (double)next == tried[1]) break;
@@ -64,22 +63,19 @@ static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source
         vertices[0] = vertices[1];
         tried[1] = (double)next;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Converts a level in standard deviations to the map's unit. */
 static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, brio_iso_surface_options *o) {
-    brio_status status = BRIO_OK;
     double mean, deviation;
     if (!o->deviations) return BRIO_OK;
-    BRIO_REQUIRE(ctx, from->is_map, BRIO_ERR_ARGUMENT,
-                 "a level in standard deviations is for maps: the density of atoms has no mean");
+    BRIO_EXPECT(ctx, from->is_map, BRIO_ERR_ARGUMENT,
+                "a level in standard deviations is for maps: the density of atoms has no mean");
     brio_volume_statistics(&from->volume, &mean, &deviation);
     o->level = mean + o->level * deviation;
     o->deviations = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from,

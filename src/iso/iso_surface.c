@@ -56,29 +56,25 @@ void brio_implicit_node(const brio_implicit_grid *grid, const uint32_t node[3], 
 }
 
 brio_status brio_implicit_cells(brio_context *ctx, double cells, uint32_t *out) {
-    brio_status status = BRIO_OK;
     *out = 0;
-    BRIO_REQUIRE(ctx, cells >= 0 && cells <= BRIO_MOST_CELLS, BRIO_ERR_TOO_LARGE,
-                 "a grid of %g cells along an axis: expected at most %d", cells, BRIO_MOST_CELLS);
+    BRIO_EXPECT(ctx, cells >= 0 && cells <= BRIO_MOST_CELLS, BRIO_ERR_TOO_LARGE,
+                "a grid of %g cells along an axis: expected at most %d", cells, BRIO_MOST_CELLS);
     *out = (uint32_t)cells;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_implicit_check(brio_context *ctx, const brio_implicit_grid *grid) {
-    brio_status status = BRIO_OK;
     const uint32_t *cells = grid->cells;
     bool finite = isfinite(grid->cell) && grid->cell > 0, large = false;
     for (int k = 0; k < 3; k++) {
         finite = finite && isfinite(grid->low[k]) && isfinite(grid->low[k] + cells[k] * grid->cell) && cells[k] > 0;
         large = large || cells[k] > BRIO_MOST_CELLS;
     }
-    BRIO_REQUIRE(ctx, finite, BRIO_ERR_ARGUMENT, "a grid of %u x %u x %u cells with the side %g is no grid", cells[0],
-                 cells[1], cells[2], grid->cell);
-    BRIO_REQUIRE(ctx, !large && (cells[0] + 1.0) * (cells[1] + 1.0) < UINT32_MAX, BRIO_ERR_TOO_LARGE,
-                 "a grid of %u x %u x %u cells: expected at most 2^32 nodes in a layer", cells[0], cells[1], cells[2]);
-done:
-    return status;
+    BRIO_EXPECT(ctx, finite, BRIO_ERR_ARGUMENT, "a grid of %u x %u x %u cells with the side %g is no grid", cells[0],
+                cells[1], cells[2], grid->cell);
+    BRIO_EXPECT(ctx, !large && (cells[0] + 1.0) * (cells[1] + 1.0) < UINT32_MAX, BRIO_ERR_TOO_LARGE,
+                "a grid of %u x %u x %u cells: expected at most 2^32 nodes in a layer", cells[0], cells[1], cells[2]);
+    return BRIO_OK;
 }
 
 brio_status brio_implicit_progress(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double share) {
@@ -116,7 +112,6 @@ static void fill_rows(void *user, size_t begin, size_t end, int thread) {
 
 /* Reports the evaluation of a layer as the first half of the work on the cells below the layer. */
 brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *grid, uint32_t z, double *values) {
-    brio_status status = BRIO_OK;
     uint32_t rows = grid->cells[1] + 1;
     size_t step = (size_t)BRIO_IMPLICIT_WORK * (size_t)brio_context_threads(ctx) / ((size_t)grid->cells[0] + 1) + 1;
     bool closed = true;
@@ -124,24 +119,21 @@ brio_status brio_implicit_layer(brio_context *ctx, const brio_implicit_grid *gri
         uint32_t end = rows - y < step ? rows : y + (uint32_t)step;
         size_t nodes = ((size_t)grid->cells[0] + 1) * (end - y);
         layer_job job = {grid, z, y, values, true};
-        BRIO_TRY(
+        BRIO_FORWARD(
             brio_for_chunks(ctx, brio_threads(ctx, nodes, NODES_A_THREAD), end - y, ROWS_A_CHUNK, fill_rows, &job));
         closed = job.closed && closed;
         y = end;
-        BRIO_TRY(brio_implicit_progress(ctx, grid, z ? z - 1 : 0, z ? 0.5 * y / rows : 0));
+        BRIO_FORWARD(brio_implicit_progress(ctx, grid, z ? z - 1 : 0, z ? 0.5 * y / rows : 0));
     }
-    BRIO_REQUIRE(ctx, closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
-done:
-    return status;
+    BRIO_EXPECT(ctx, closed, BRIO_ERR_ARGUMENT, "the function is negative on the border of the grid");
+    return BRIO_OK;
 }
 
 /* Evaluates layer z into slot 1 and clears the edges of the layer that slot 1 held. */
 static brio_status fill_upper_layer(marcher *m, uint32_t z) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_implicit_layer(m->ctx, m->grid, z, m->value[1]));
+    BRIO_FORWARD(brio_implicit_layer(m->ctx, m->grid, z, m->value[1]));
     for (size_t i = 0; i < m->layer * DIRECTIONS; i++) m->edge_vertex[1][i] = NO_VERTEX;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void upper_layer_becomes_lower(marcher *m) {
@@ -181,7 +173,6 @@ void brio_implicit_root(const brio_implicit_grid *grid, const double *a, const d
 
 /* Returns the vertex on the edge between two corners of cube (x, y, z); makes the vertex when the edge has none yet. */
 static brio_status vertex_on_edge(marcher *m, const uint32_t cube[3], uint32_t corner, uint32_t other, uint32_t *out) {
-    brio_status status = BRIO_OK;
     uint32_t low = corner < other ? corner : other, high = corner ^ other ^ low;
     uint32_t at[2][3];
     size_t node[2];
@@ -193,35 +184,31 @@ static brio_status vertex_on_edge(marcher *m, const uint32_t cube[3], uint32_t c
     }
     uint32_t *slot = &m->edge_vertex[low >> 2][node[0] * DIRECTIONS + (low ^ high) - 1];
     if (*slot == NO_VERTEX) {
-        BRIO_REQUIRE(m->ctx, m->num_vertices < NO_VERTEX, BRIO_ERR_TOO_LARGE, "a surface of 2^32 vertices");
-        BRIO_TRY(BRIO_RESERVE(m->ctx, m->vertices, m->vertex_capacity, 3 * m->num_vertices + 3));
+        BRIO_EXPECT(m->ctx, m->num_vertices < NO_VERTEX, BRIO_ERR_TOO_LARGE, "a surface of 2^32 vertices");
+        BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->vertices, m->vertex_capacity, 3 * m->num_vertices + 3));
         for (int end = 0; end < 2; end++) brio_implicit_node(m->grid, at[end], p[end]);
         brio_implicit_root(m->grid, p[0], p[1], m->value[low >> 2][node[0]], m->value[high >> 2][node[1]],
                            m->vertices + 3 * m->num_vertices);
         *slot = (uint32_t)m->num_vertices++;
     }
     *out = *slot;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- triangles --- */
 
 static brio_status add_triangle(marcher *m, uint32_t a, uint32_t b, uint32_t c) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(m->ctx, m->triangles, m->triangle_capacity, 3 * m->num_triangles + 3));
+    BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->triangles, m->triangle_capacity, 3 * m->num_triangles + 3));
     uint32_t *triangle = m->triangles + 3 * m->num_triangles++;
     triangle[0] = a;
     triangle[1] = b;
     triangle[2] = c;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds the surface inside one tetrahedron. In a positive tetrahedron (a, b, c, d) with only a inside, triangle (ab,
  * ac, ad) faces away from a. With a and b inside, quadrilateral (ac, ad, bd, bc) faces away from both. */
 static brio_status march_tetrahedron(marcher *m, const uint32_t cube[3], const uint8_t *tetrahedron, unsigned inside) {
-    brio_status status = BRIO_OK;
     unsigned set = 0;
     for (unsigned i = 0; i < 4; i++) set |= (inside >> tetrahedron[i] & 1) << i;
     if (set == 0 || set == 15) return BRIO_OK;
@@ -229,22 +216,19 @@ static brio_status march_tetrahedron(marcher *m, const uint32_t cube[3], const u
     for (int i = 0; i < 4; i++) corner[i] = tetrahedron[INSIDE_FIRST[set][i]];
     int count = __builtin_popcount(set);
     if (count == 2) {
-        BRIO_TRY(vertex_on_edge(m, cube, corner[0], corner[2], &v[0]));
-        BRIO_TRY(vertex_on_edge(m, cube, corner[0], corner[3], &v[1]));
-        BRIO_TRY(vertex_on_edge(m, cube, corner[1], corner[3], &v[2]));
-        BRIO_TRY(vertex_on_edge(m, cube, corner[1], corner[2], &v[3]));
-        BRIO_TRY(add_triangle(m, v[0], v[1], v[2]));
-        BRIO_TRY(add_triangle(m, v[0], v[2], v[3]));
-        goto done;
+        BRIO_FORWARD(vertex_on_edge(m, cube, corner[0], corner[2], &v[0]));
+        BRIO_FORWARD(vertex_on_edge(m, cube, corner[0], corner[3], &v[1]));
+        BRIO_FORWARD(vertex_on_edge(m, cube, corner[1], corner[3], &v[2]));
+        BRIO_FORWARD(vertex_on_edge(m, cube, corner[1], corner[2], &v[3]));
+        BRIO_FORWARD(add_triangle(m, v[0], v[1], v[2]));
+        BRIO_FORWARD(add_triangle(m, v[0], v[2], v[3]));
+        return BRIO_OK;
     }
-    for (int i = 0; i < 3; i++) BRIO_TRY(vertex_on_edge(m, cube, corner[0], corner[i + 1], &v[i]));
-    BRIO_TRY(count == 1 ? add_triangle(m, v[0], v[1], v[2]) : add_triangle(m, v[2], v[1], v[0]));
-done:
-    return status;
+    for (int i = 0; i < 3; i++) BRIO_FORWARD(vertex_on_edge(m, cube, corner[0], corner[i + 1], &v[i]));
+    return count == 1 ? add_triangle(m, v[0], v[1], v[2]) : add_triangle(m, v[2], v[1], v[0]);
 }
 
 static brio_status march_layer(marcher *m, uint32_t z) {
-    brio_status status = BRIO_OK;
     const size_t most = BRIO_IMPLICIT_WORK / (ROOT_STEPS * DIRECTIONS); /* cubes between two reports of progress */
     size_t work = 0;
     for (uint32_t y = 0; y < m->grid->cells[1]; y++)
@@ -256,12 +240,11 @@ static brio_status march_layer(marcher *m, uint32_t z) {
                 inside |= (unsigned)(m->value[c >> 2][node] < 0) << c;
             }
             if (inside == 0 || inside == 255) continue;
-            for (int t = 0; t < 6; t++) BRIO_TRY(march_tetrahedron(m, cube, TETRAHEDRA[t], inside));
+            for (int t = 0; t < 6; t++) BRIO_FORWARD(march_tetrahedron(m, cube, TETRAHEDRA[t], inside));
             if (++work % most == 0)
-                BRIO_TRY(brio_implicit_progress(m->ctx, m->grid, z, 0.5 + 0.5 * y / m->grid->cells[1]));
+                BRIO_FORWARD(brio_implicit_progress(m->ctx, m->grid, z, 0.5 + 0.5 * y / m->grid->cells[1]));
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- all of it --- */

@@ -100,7 +100,6 @@ static double step_length(const brio_volume *volume, int axis) {
 
 /* Chooses cells of about equal length along all axes, with `resolution` of them along the longest. */
 static brio_status choose_cells(brio_context *ctx, const brio_volume *volume, size_t resolution, uint32_t cells[3]) {
-    brio_status status = BRIO_OK;
     double length[3], longest = 0;
     for (int k = 0; k < 3; k++) {
         length[k] = step_length(volume, k) * (volume->size[k] - 1.0);
@@ -108,10 +107,9 @@ static brio_status choose_cells(brio_context *ctx, const brio_volume *volume, si
     }
     for (int k = 0; k < 3; k++) {
         double wanted = fmax(1, rint(length[k] / longest * (double)resolution));
-        BRIO_TRY(brio_implicit_cells(ctx, resolution ? wanted : volume->size[k] - 1.0, &cells[k]));
+        BRIO_FORWARD(brio_implicit_cells(ctx, resolution ? wanted : volume->size[k] - 1.0, &cells[k]));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void carry_to_space(const level_set *s, brio_mesh *mesh) {
@@ -157,7 +155,6 @@ static void choose_cube(const level_set *s, size_t resolution, double low[3], do
 /* Chooses a grid of cubes in space round the volume, with one cell to spare. Refuses steps of very different lengths,
  * which would make a grid far too large: then the caller must choose the resolution. */
 static brio_status choose_cubes(brio_context *ctx, level_set *s, size_t resolution, brio_implicit_grid *grid) {
-    brio_status status = BRIO_OK;
     const brio_volume *volume = s->volume;
     double high[3], count[3] = {0}, product = 1;
     choose_cube(s, resolution, grid->low, high, &grid->cell);
@@ -166,55 +163,50 @@ static brio_status choose_cubes(brio_context *ctx, level_set *s, size_t resoluti
         count[i] = ceil((high[i] - grid->low[i]) / grid->cell) + 1;
         product *= count[i];
     }
-    BRIO_REQUIRE(ctx, resolution || product <= MOST_CUBES_A_VALUE * (double)count_values(volume), BRIO_ERR_TOO_LARGE,
-                 "cubes as wide as the shortest step of the volume make a grid of %.0f x %.0f x %.0f: choose their "
-                 "number with a resolution",
-                 count[0], count[1], count[2]);
+    BRIO_EXPECT(ctx, resolution || product <= MOST_CUBES_A_VALUE * (double)count_values(volume), BRIO_ERR_TOO_LARGE,
+                "cubes as wide as the shortest step of the volume make a grid of %.0f x %.0f x %.0f: choose their "
+                "number with a resolution",
+                count[0], count[1], count[2]);
     for (int k = 0; k < 3; k++) {
-        BRIO_TRY(brio_implicit_cells(ctx, count[k], &grid->cells[k]));
+        BRIO_FORWARD(brio_implicit_cells(ctx, count[k], &grid->cells[k]));
         s->cells[k] = step_length(volume, k) * (volume->size[k] - 1.0) / grid->cell;
         s->stretch[k] = (volume->size[k] - 1.0) / s->cells[k];
     }
     invert_steps(volume, s->inverse);
     grid->value = below_level_in_space;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status choose_grid(brio_context *ctx, level_set *s, size_t resolution, brio_implicit_grid *grid) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(choose_cells(ctx, s->volume, resolution, grid->cells));
+    BRIO_FORWARD(choose_cells(ctx, s->volume, resolution, grid->cells));
     for (int k = 0; k < 3; k++) {
         s->cells[k] = grid->cells[k];
         s->stretch[k] = (s->volume->size[k] - 1.0) / s->cells[k];
     }
     grid->cell = 1;
     grid->value = below_level;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_volume_surface(brio_context *ctx, const brio_volume *volume, double level, size_t resolution,
                                 bool conforming, brio_mesh **out) {
-    brio_status status = BRIO_OK;
     level_set s = {.volume = volume, .level = level};
     brio_implicit_grid grid = {.user = &s};
     double mean;
     *out = NULL;
     for (int k = 0; k < 3; k++)
-        BRIO_REQUIRE(ctx, volume->size[k] >= 2, BRIO_ERR_NO_ANSWER, "a volume of %u x %u x %u values has no inside",
-                     volume->size[0], volume->size[1], volume->size[2]);
-    BRIO_REQUIRE(ctx, resolution <= MOST_RESOLUTION, BRIO_ERR_ARGUMENT, "resolution %zu: expected 0 to %d", resolution,
-                 MOST_RESOLUTION);
+        BRIO_EXPECT(ctx, volume->size[k] >= 2, BRIO_ERR_NO_ANSWER, "a volume of %u x %u x %u values has no inside",
+                    volume->size[0], volume->size[1], volume->size[2]);
+    BRIO_EXPECT(ctx, resolution <= MOST_RESOLUTION, BRIO_ERR_ARGUMENT, "resolution %zu: expected 0 to %d", resolution,
+                MOST_RESOLUTION);
     brio_volume_statistics(volume, &mean, &s.scale);
     if (!(s.scale > 0)) s.scale = 1;
     if (conforming) {
-        BRIO_TRY(choose_cubes(ctx, &s, resolution, &grid));
+        BRIO_FORWARD(choose_cubes(ctx, &s, resolution, &grid));
         return brio_conforming_surface(ctx, &grid, out);
     }
-    BRIO_TRY(choose_grid(ctx, &s, resolution, &grid));
-    BRIO_TRY(brio_marched_surface(ctx, &grid, out));
+    BRIO_FORWARD(choose_grid(ctx, &s, resolution, &grid));
+    BRIO_FORWARD(brio_marched_surface(ctx, &grid, out));
     carry_to_space(&s, *out);
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -58,15 +58,13 @@ static brio_status answer_values(void *user, brio_querent *q, const brio_query_r
 }
 
 static brio_status check_options(brio_context *ctx, const brio_locator *l, const brio_interpolation *o) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, o->method >= 0 && o->method < BRIO_INTERPOLATION_END, BRIO_ERR_ARGUMENT,
-                 "there is no interpolation method %d", (int)o->method);
-    BRIO_REQUIRE(ctx, o->components > 0, BRIO_ERR_ARGUMENT, "0 components of each value; at least 1");
-    BRIO_REQUIRE(ctx, o->values || !l->num_points, BRIO_ERR_ARGUMENT, "there are no values to interpolate");
-    BRIO_REQUIRE(ctx, o->method != BRIO_INTERPOLATION_NATURAL || !l->weighted, BRIO_ERR_ARGUMENT,
-                 "natural neighbour interpolation is for triangulations without weights");
-done:
-    return status;
+    BRIO_EXPECT(ctx, o->method >= 0 && o->method < BRIO_INTERPOLATION_END, BRIO_ERR_ARGUMENT,
+                "there is no interpolation method %d", (int)o->method);
+    BRIO_EXPECT(ctx, o->components > 0, BRIO_ERR_ARGUMENT, "0 components of each value; at least 1");
+    BRIO_EXPECT(ctx, o->values || !l->num_points, BRIO_ERR_ARGUMENT, "there are no values to interpolate");
+    BRIO_EXPECT(ctx, o->method != BRIO_INTERPOLATION_NATURAL || !l->weighted, BRIO_ERR_ARGUMENT,
+                "natural neighbour interpolation is for triangulations without weights");
+    return BRIO_OK;
 }
 
 /* Interpolates in the plane of the points, at the projections of the queries. */

@@ -186,15 +186,13 @@ done:
  * caller may write to the caller's arrays meanwhile; what counts is the copy. */
 static brio_status copy_points(brio_context *ctx, const brio_triangulation *t, const brio_input *in,
                                brio_record **record) {
-    brio_status status = BRIO_OK;
     uint64_t hash = 0;
-    BRIO_REQUIRE(ctx, in->count == t->stats.points, BRIO_ERR_ARGUMENT,
-                 "%zu points were given, the triangulation has %zu", in->count, t->stats.points);
-    BRIO_TRY(brio_records_new(ctx, in, NULL, 0, &hash, record));
-    BRIO_REQUIRE(ctx, hash == t->points_hash, BRIO_ERR_ARGUMENT,
-                 "the points are not those of the triangulation, or were changed since");
-done:
-    return status;
+    BRIO_EXPECT(ctx, in->count == t->stats.points, BRIO_ERR_ARGUMENT,
+                "%zu points were given, the triangulation has %zu", in->count, t->stats.points);
+    BRIO_FORWARD(brio_records_new(ctx, in, NULL, 0, &hash, record));
+    BRIO_EXPECT(ctx, hash == t->points_hash, BRIO_ERR_ARGUMENT,
+                "the points are not those of the triangulation, or were changed since");
+    return BRIO_OK;
 }
 
 static brio_status fill(brio_locator *l, const brio_triangulation *t, const brio_input *in) {

@@ -63,14 +63,12 @@ static brio_status meet(brio_natural *n, brio_querent *q, uint32_t tet, const do
 static brio_status add_vertex(brio_natural *n, uint32_t place, uint32_t *local) {
     bool is_new;
     uint32_t *value;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_map_find(n->ctx, &n->vertices, place, (uint32_t)n->num_vertices, &value, &is_new));
+    BRIO_FORWARD(brio_map_find(n->ctx, &n->vertices, place, (uint32_t)n->num_vertices, &value, &is_new));
     *local = *value;
-    if (!is_new) goto done;
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->place, n->place_room, n->num_vertices + 1));
+    if (!is_new) return BRIO_OK;
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->place, n->place_room, n->num_vertices + 1));
     n->place[n->num_vertices++] = place;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status add_centre(brio_natural *n, const uint32_t corner[4], uint32_t *centre) {
@@ -94,49 +92,44 @@ static brio_status add_edge(brio_natural *n, uint32_t from, int i, uint32_t to) 
 
 /* Digs out the cavity from a tetrahedron that holds x: the centres of its tetrahedra have the tetrahedra's numbers. */
 static brio_status dig(brio_natural *n, brio_querent *q, uint32_t first, const double *x) {
-    brio_status status = BRIO_OK;
     uint32_t number, unused, corner[4];
-    BRIO_TRY(meet(n, q, first, x, &number));
+    BRIO_FORWARD(meet(n, q, first, x, &number));
     for (size_t i = 0; i < n->num_tets; i++) {
         const brio_tetrahedron *tet = &q->l->t.tet[n->tet[i]];
         for (int k = 0; k < 4; k++) {
-            BRIO_TRY(add_vertex(n, tet->vertex[k], &corner[k]));
-            BRIO_TRY(meet(n, q, brio_tet_of(tet->mate[k]), x, &number));
+            BRIO_FORWARD(add_vertex(n, tet->vertex[k], &corner[k]));
+            BRIO_FORWARD(meet(n, q, brio_tet_of(tet->mate[k]), x, &number));
         }
-        BRIO_TRY(add_centre(n, corner, &unused));
+        BRIO_FORWARD(add_centre(n, corner, &unused));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Lists the dual edges: of the border, each with a centre of its own, then of the facets inside, each once. */
 static brio_status list_edges(brio_natural *n, brio_querent *q, const double *x) {
-    brio_status status = BRIO_OK;
     uint32_t other, centre;
     for (int inside = 0; inside < 2; inside++)
         for (uint32_t i = 0; i < n->num_tets; i++)
             for (int k = 0; k < 4; k++) {
                 const brio_tetrahedron *tet = &q->l->t.tet[n->tet[i]];
-                BRIO_TRY(meet(n, q, brio_tet_of(tet->mate[k]), x, &other));
-                if (inside && other != OUTSIDE && i < other) BRIO_TRY(add_edge(n, i, k, other));
+                BRIO_FORWARD(meet(n, q, brio_tet_of(tet->mate[k]), x, &other));
+                if (inside && other != OUTSIDE && i < other) BRIO_FORWARD(add_edge(n, i, k, other));
                 if (inside || other != OUTSIDE) continue;
                 const uint32_t *c = n->corner[i];
                 const uint8_t *f = BRIO_FACET[k];
-                BRIO_TRY(add_centre(n, (const uint32_t[4]){c[f[0]], c[f[1]], c[f[2]], 0}, &centre));
-                BRIO_TRY(add_edge(n, i, k, centre));
+                BRIO_FORWARD(add_centre(n, (const uint32_t[4]){c[f[0]], c[f[1]], c[f[2]], 0}, &centre));
+                BRIO_FORWARD(add_edge(n, i, k, centre));
             }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- volumes --- */
 
 /* Computes the offsets of the vertices and the centres. *found becomes false where doubles do not hold them. */
 static brio_status find_centres(brio_natural *n, const brio_locator *l, const double *x, bool *found) {
-    brio_status status = BRIO_OK;
     double scale = brio_offset_scale(l, n->place + 1, n->num_vertices - 1, x);
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->offset, n->offset_room, n->num_vertices));
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->centre, n->centre_room, n->num_centres));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->offset, n->offset_room, n->num_vertices));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->centre, n->centre_room, n->num_centres));
     for (int k = 0; k < 3; k++) n->offset[0][k] = 0;
     for (size_t v = 1; v < n->num_vertices; v++) brio_offset(l, n->place[v], x, scale, n->offset[v]);
     for (size_t c = 0; c < n->num_centres; c += BRIO_CENTRE_BATCH) {
@@ -146,18 +139,17 @@ static brio_status find_centres(brio_natural *n, const brio_locator *l, const do
     }
     *found = scale > 0;
     for (size_t c = 0; c < n->num_centres; c++) *found &= isfinite(n->centre[c][0]);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds a segment between centres to the polygon of a directed edge. */
 static brio_status add_segment(brio_natural *n, uint32_t a, uint32_t b, const brio_dual_edge *e) {
     bool is_new, forward = a < b;
     uint32_t *value, low = forward ? a : b, high = forward ? b : a;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_map_find(n->ctx, &n->edges, (uint64_t)low << 32 | high, (uint32_t)n->num_facets, &value, &is_new));
+    BRIO_FORWARD(
+        brio_map_find(n->ctx, &n->edges, (uint64_t)low << 32 | high, (uint32_t)n->num_facets, &value, &is_new));
     if (is_new) {
-        BRIO_TRY(BRIO_RESERVE(n->ctx, n->facet, n->facet_room, n->num_facets + 1));
+        BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->facet, n->facet_room, n->num_facets + 1));
         n->facet[n->num_facets++] = (brio_dual_facet){{low, high}, e->to, {0, 0, 0}};
     }
     brio_dual_facet *f = &n->facet[*value];
@@ -166,21 +158,18 @@ static brio_status add_segment(brio_natural *n, uint32_t a, uint32_t b, const br
     for (int k = 0; k < 3; k++) u[k] = from[k] - origin[k], v[k] = to[k] - origin[k];
     brio_cross(u, v, w);
     for (int k = 0; k < 3; k++) f->area[k] += forward ? -w[k] : w[k];
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status find_facets(brio_natural *n) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < n->num_edges; i++) {
         const brio_dual_edge *e = &n->edge[i];
         for (int k = 0; k < 3; k++) {
-            BRIO_TRY(add_segment(n, e->corner[k], e->corner[(k + 1) % 3], e));
+            BRIO_FORWARD(add_segment(n, e->corner[k], e->corner[(k + 1) % 3], e));
             if (e->to >= n->num_tets) n->base[e->corner[k]] = e->to;
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds to the volume of R(a) the cone over a facet between the cells of a and b, times 6 |b - a|^2. */
@@ -265,16 +254,14 @@ static brio_status clear(brio_natural *n, brio_context *ctx) {
 
 brio_status brio_natural_coordinates(brio_natural *n, brio_querent *q, const brio_holder *h, const double *x,
                                      bool *found) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(clear(n, n->ctx));
-    BRIO_TRY(dig(n, q, h->tet, x));
-    BRIO_TRY(list_edges(n, q, x));
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->base, n->base_room, n->num_vertices));
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->share, n->share_room, n->num_vertices));
-    BRIO_TRY(find_centres(n, q->l, x, found));
-    if (!*found) goto done;
-    BRIO_TRY(find_facets(n));
+    BRIO_FORWARD(clear(n, n->ctx));
+    BRIO_FORWARD(dig(n, q, h->tet, x));
+    BRIO_FORWARD(list_edges(n, q, x));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->base, n->base_room, n->num_vertices));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->share, n->share_room, n->num_vertices));
+    BRIO_FORWARD(find_centres(n, q->l, x, found));
+    if (!*found) return BRIO_OK;
+    BRIO_FORWARD(find_facets(n));
     *found = divide_by_sum(n, add_volumes(n)) && correct(n) && correct(n);
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -94,16 +94,13 @@ static void make_sets(void *user, size_t begin, size_t end, int thread) {
 
 /* Allocates and fills a topology. On failure the caller frees it. */
 static brio_status topology_new(brio_context *ctx, const brio_mesh *mesh, topology *t) {
-    brio_status status = BRIO_OK;
     *t = (topology){.ctx = ctx, .mesh = mesh, .corners = mesh->num_faces ? mesh->face_offsets[mesh->num_faces] : 0};
-    BRIO_TRY(brio_edge_rings(ctx, mesh, &t->ring));
-    if (!is_of_triangles(mesh)) BRIO_TRY(BRIO_ALLOC(ctx, t->face_of, t->corners));
-    BRIO_TRY(BRIO_ALLOC(ctx, t->fan, t->corners));
-    BRIO_TRY(BRIO_ALLOC(ctx, t->patch, mesh->num_faces));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->vertex, mesh->num_vertices));
-    BRIO_TRY(for_each(t, mesh->num_faces, make_sets, t));
-done:
-    return status;
+    BRIO_FORWARD(brio_edge_rings(ctx, mesh, &t->ring));
+    if (!is_of_triangles(mesh)) BRIO_FORWARD(BRIO_ALLOC(ctx, t->face_of, t->corners));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, t->fan, t->corners));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, t->patch, mesh->num_faces));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, t->vertex, mesh->num_vertices));
+    return for_each(t, mesh->num_faces, make_sets, t);
 }
 
 /* Adds to a counter. The counter is read only after all threads have ended. */
@@ -281,15 +278,13 @@ static void find_roots(void *user, size_t begin, size_t end, int thread) {
 /* Turns roots into component numbers. A root is the first face of its component, so it is numbered before any other
  * face of the component. */
 static brio_status number_components(component_count *c) {
-    brio_status status = BRIO_OK;
     size_t num_faces = c->t->mesh->num_faces;
-    BRIO_TRY(for_each(c->t, num_faces, find_roots, c));
+    BRIO_FORWARD(for_each(c->t, num_faces, find_roots, c));
     for (size_t f = 0; f < num_faces; f++) {
         c->number[f] = c->number[f] == f ? (uint32_t)c->count++ : c->number[c->number[f]];
-        BRIO_TRY(brio_look(c->t->ctx, 1));
+        BRIO_FORWARD(brio_look(c->t->ctx, 1));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Counts faces and edges of each component. */
@@ -510,11 +505,10 @@ static void measure_parts(void *user, size_t begin, size_t end, int thread) {
 /* Sums area and volume. Volumes are relative to the centre of the box of the used vertices, so that a surface far from
  * the origin loses no digits. */
 static brio_status measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {
-    brio_status status = BRIO_OK;
     measures m = {.mesh = mesh};
     if (!mesh->num_faces || !mesh->face_offsets[mesh->num_faces]) return BRIO_OK;
     int threads = brio_threads(ctx, (size_t)mesh->face_offsets[mesh->num_faces], ITEMS_A_THREAD);
-    BRIO_TRY(brio_for_chunks(ctx, threads, PARTS, 1, find_boxes, &m));
+    BRIO_FORWARD(brio_for_chunks(ctx, threads, PARTS, 1, find_boxes, &m));
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int i = 0; i < 3 * PARTS; i++) {
         low[i % 3] = fmin(low[i % 3], m.part[i / 3].low[i % 3]);
@@ -523,12 +517,11 @@ static brio_status measure_faces(brio_context *ctx, const brio_mesh *mesh, brio_
     int exponent = brio_box_exponent(low, high); /* so that no square overflows or underflows */
     m.scale = brio_power_of_two(-exponent);
     for (int k = 0; k < 3; k++) m.centre[k] = (0.5 * low[k] + 0.5 * high[k]) * m.scale;
-    BRIO_TRY(brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m));
+    BRIO_FORWARD(brio_for_chunks(ctx, threads, PARTS, 1, measure_parts, &m));
     for (int i = 0; i < PARTS; i++) out->area += m.part[i].area, out->volume += m.part[i].volume;
     out->area = ldexp(out->area, 2 * exponent);
     out->volume = ldexp(out->volume, 3 * exponent);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out) {

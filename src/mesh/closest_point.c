@@ -181,15 +181,13 @@ static brio_status for_level(brio_context *ctx, builder *b, size_t nodes, brio_p
  * has at least TRIANGLES_A_THREAD / SUBTREES_A_THREAD triangles, so no leaf is split. A split depends only on the
  * node's items, so the tree does not depend on the number of threads. */
 static brio_status build_tree(brio_context *ctx, builder *b) {
-    brio_status status = BRIO_OK;
     size_t threads = (size_t)brio_threads(ctx, b->count, TRIANGLES_A_THREAD), nodes = 1;
     size_t wanted = threads > 1 ? SUBTREES_A_THREAD * threads : 1;
     if (wanted < b->count / LOOKED_AT) wanted = b->count / LOOKED_AT;
-    for (; nodes < wanted; nodes *= 2) BRIO_TRY(for_level(ctx, b, nodes, split_nodes));
-    BRIO_TRY(for_level(ctx, b, nodes, build_subtrees));
+    for (; nodes < wanted; nodes *= 2) BRIO_FORWARD(for_level(ctx, b, nodes, split_nodes));
+    BRIO_FORWARD(for_level(ctx, b, nodes, build_subtrees));
     for (size_t node = nodes - 1; node-- > 0;) join_children(b, node);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status cut_faces(brio_context *ctx, const brio_mesh *mesh, uint32_t (**triangles)[3], size_t *count) {

@@ -90,27 +90,23 @@ static void mark_inside(const blocks *b, size_t begin, size_t end) {
 
 /* Fills the heap with the edges of the vertices inside the block. */
 static brio_status offer_all(const blocks *b, worker *w, size_t begin, size_t end) {
-    brio_status status = BRIO_OK;
     const brio_collapse_mesh *m = b->m;
     w->size = 0;
     for (size_t i = begin; i < end; i++) {
         uint32_t v = b->pass->list[i], h = m->half_edge[v], g = h;
         if (!(m->marks[v] & BRIO_COLLAPSE_INSIDE)) continue;
-        do BRIO_TRY(offer(b, w, g));
+        do BRIO_FORWARD(offer(b, w, g));
         while ((g = brio_collapse_turn(m, g)) != h);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Measures the edges round a vertex that is the result of a collapse, and offers them. */
 static brio_status renew(const blocks *b, worker *w, uint32_t v) {
-    brio_status status = BRIO_OK;
     uint32_t h = b->m->half_edge[v], g = h;
-    do BRIO_TRY(offer(b, w, brio_collapse_measure(b->m, g)));
+    do BRIO_FORWARD(offer(b, w, brio_collapse_measure(b->m, g)));
     while ((g = brio_collapse_turn(b->m, g)) != h);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static size_t most_collapses(const blocks *b, const worker *w) {
@@ -120,25 +116,23 @@ static size_t most_collapses(const blocks *b, const worker *w) {
 
 /* Collapses the edges of one block. */
 static brio_status collapse_block(blocks *b, size_t begin, size_t end, int thread) {
-    brio_status status = BRIO_OK;
     worker *w = &b->workers[thread];
     uint32_t h;
     mark_inside(b, begin, end);
-    BRIO_TRY(offer_all(b, w, begin, end));
+    BRIO_FORWARD(offer_all(b, w, begin, end));
     size_t most = most_collapses(b, w), collapses = 0;
     for (size_t tries = 0; collapses < most && (h = take(b, w)) != BRIO_COLLAPSE_NONE; tries++) {
-        if (thread == 0 && tries % TRIES_A_REPORT == 0) BRIO_TRY(b->report(b->user));
+        if (thread == 0 && tries % TRIES_A_REPORT == 0) BRIO_FORWARD(b->report(b->user));
         uint32_t left = brio_collapse_try(b->m, h);
         if (left == BRIO_COLLAPSE_NONE) {
             b->m->error[h] = INFINITY;
         } else {
             collapses++;
-            BRIO_TRY(renew(b, w, left));
+            BRIO_FORWARD(renew(b, w, left));
         }
     }
     w->collapses += collapses;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void collapse_part(void *user, size_t begin, size_t end, int thread) {

@@ -95,7 +95,6 @@ static brio_status add_node(brio_collapse_guard *g, uint32_t parent, uint32_t *o
 }
 
 static brio_status insert(brio_collapse_guard *g, const brio_collapse_mesh *m, uint32_t face) {
-    brio_status status = BRIO_OK;
     const double *t[3];
     double centre[3], half = g->half, middle[3], side = 0;
     uint32_t at = 0;
@@ -110,7 +109,7 @@ static brio_status insert(brio_collapse_guard *g, const brio_collapse_mesh *m, u
         int which = descend(centre, &half, middle);
         uint32_t below = g->nodes[at].child[which];
         if (below == NONE) {
-            BRIO_TRY(add_node(g, at, &below));
+            BRIO_FORWARD(add_node(g, at, &below));
             g->nodes[at].child[which] = below;
         }
         at = below;
@@ -119,8 +118,7 @@ static brio_status insert(brio_collapse_guard *g, const brio_collapse_mesh *m, u
     g->next[face] = g->nodes[at].first;
     g->nodes[at].first = face;
     for (uint32_t n = at; n != NONE; n = g->nodes[n].parent) g->nodes[n].count++;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void take_out(brio_collapse_guard *g, uint32_t face) {
@@ -131,15 +129,14 @@ static void take_out(brio_collapse_guard *g, uint32_t face) {
 }
 
 brio_status brio_collapse_guard_new(const brio_collapse_mesh *m, brio_collapse_guard **out) {
-    brio_status status = BRIO_OK;
     brio_collapse_guard *g;
     box all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     uint32_t root;
-    BRIO_TRY(BRIO_ALLOC_ZERO(m->ctx, *out, 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(m->ctx, *out, 1));
     g = *out;
     g->ctx = m->ctx;
-    BRIO_TRY(BRIO_ALLOC(g->ctx, g->node_of, m->num_faces));
-    BRIO_TRY(BRIO_ALLOC(g->ctx, g->next, m->num_faces));
+    BRIO_FORWARD(BRIO_ALLOC(g->ctx, g->node_of, m->num_faces));
+    BRIO_FORWARD(BRIO_ALLOC(g->ctx, g->next, m->num_faces));
     for (size_t v = 0; v < m->num_vertices; v++) {
         box point;
         memcpy(point.low, brio_collapse_at(m, (uint32_t)v), sizeof point.low);
@@ -150,13 +147,12 @@ brio_status brio_collapse_guard_new(const brio_collapse_mesh *m, brio_collapse_g
         g->centre[k] = 0.5 * all.low[k] + 0.5 * all.high[k];
         g->half = fmax(g->half, all.high[k] - all.low[k]);
     }
-    BRIO_TRY(add_node(g, NONE, &root));
+    BRIO_FORWARD(add_node(g, NONE, &root));
     for (uint32_t f = 0; f < m->num_faces; f++) {
-        if (f % (1 << 16) == 0) BRIO_TRY(brio_progress(g->ctx, "simplify", 0));
-        BRIO_TRY(insert(g, m, f));
+        if (f % (1 << 16) == 0) BRIO_FORWARD(brio_progress(g->ctx, "simplify", 0));
+        BRIO_FORWARD(insert(g, m, f));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_collapse_guard_free(brio_context *ctx, brio_collapse_guard *g) {
@@ -176,15 +172,13 @@ brio_status brio_collapse_guard_status(const brio_collapse_guard *g) {
 
 /* Lists the triangles round the start of h that the collapse of h replaces. */
 static brio_status list_fan(brio_collapse_guard *g, const brio_collapse_mesh *m, uint32_t h) {
-    brio_status status = BRIO_OK;
     uint32_t last = brio_collapse_next(m->mate[h]);
     for (uint32_t i = brio_collapse_turn(m, h); i != h; i = brio_collapse_turn(m, i)) {
         if (i == last) continue;
-        BRIO_TRY(BRIO_RESERVE(g->ctx, g->fan, g->fan_capacity, g->fan_count + 1));
+        BRIO_FORWARD(BRIO_RESERVE(g->ctx, g->fan, g->fan_capacity, g->fan_count + 1));
         g->fan[g->fan_count++] = (fan_triangle){i / 3, {brio_collapse_end(m, i), m->vertex[brio_collapse_before(i)]}};
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void new_corners(const brio_collapse_mesh *m, const fan_triangle *f, const double *point, const double *t[3]) {

@@ -181,16 +181,14 @@ static void renumbering_free(brio_context *ctx, renumbering *r) {
 /* --- what is refused --- */
 
 static brio_status check_edges(brio_collapse_mesh *m) {
-    brio_status status = BRIO_OK;
     for (uint32_t h = 0; h < 3 * m->num_faces; h++) {
         uint32_t g = m->mate[h], u = m->vertex[h], v = brio_collapse_end(m, h);
-        BRIO_REQUIRE(m->ctx, g == h || (m->mate[g] == h && m->vertex[g] == v), BRIO_ERR_ARGUMENT,
-                     "the surface is not manifold and oriented at the edge from vertex %u to %u", m->vertex_name[u],
-                     m->vertex_name[v]);
+        BRIO_EXPECT(m->ctx, g == h || (m->mate[g] == h && m->vertex[g] == v), BRIO_ERR_ARGUMENT,
+                    "the surface is not manifold and oriented at the edge from vertex %u to %u", m->vertex_name[u],
+                    m->vertex_name[v]);
         if (g == h) m->marks[u] = m->marks[v] = BRIO_COLLAPSE_BOUNDARY;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the number of half-edges that start where h starts and belong to the fan of triangles of h. */
@@ -223,16 +221,14 @@ done:
 }
 
 static brio_status check_faces(brio_context *ctx, const brio_mesh *mesh) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_FORWARD(brio_mesh_check_faces(ctx, mesh));
     for (size_t f = 0; f < mesh->num_faces; f++) {
         const uint32_t *v = mesh->face_vertices + 3 * f;
-        BRIO_REQUIRE(ctx, mesh->face_offsets[f + 1] == 3 * (f + 1), BRIO_ERR_ARGUMENT, "face %zu is not a triangle", f);
-        BRIO_REQUIRE(ctx, v[0] != v[1] && v[1] != v[2] && v[2] != v[0], BRIO_ERR_ARGUMENT,
-                     "the surface is not manifold: face %zu has vertex %u twice", f, v[0] == v[1] ? v[0] : v[2]);
+        BRIO_EXPECT(ctx, mesh->face_offsets[f + 1] == 3 * (f + 1), BRIO_ERR_ARGUMENT, "face %zu is not a triangle", f);
+        BRIO_EXPECT(ctx, v[0] != v[1] && v[1] != v[2] && v[2] != v[0], BRIO_ERR_ARGUMENT,
+                    "the surface is not manifold: face %zu has vertex %u twice", f, v[0] == v[1] ? v[0] : v[2]);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- quadrics --- */

@@ -166,17 +166,15 @@ done:
 }
 
 brio_status brio_disk_cut_make(brio_context *ctx, const brio_mesh *mesh, brio_disk_cut *out) {
-    brio_status status = BRIO_OK;
     *out = (brio_disk_cut){.num_corners = 3 * mesh->num_faces};
-    BRIO_TRY(brio_mesh_twins(ctx, mesh, &out->twin));
-    BRIO_TRY(brio_progress(ctx, "subgraph", 0.2));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->flags, out->num_corners));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->sector, out->num_corners));
-    BRIO_TRY(cut_into_disks(ctx, out));
-    BRIO_TRY(brio_progress(ctx, "subgraph", 0.5));
+    BRIO_FORWARD(brio_mesh_twins(ctx, mesh, &out->twin));
+    BRIO_FORWARD(brio_progress(ctx, "subgraph", 0.2));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->flags, out->num_corners));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->sector, out->num_corners));
+    BRIO_FORWARD(cut_into_disks(ctx, out));
+    BRIO_FORWARD(brio_progress(ctx, "subgraph", 0.5));
     number_sectors(out);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_disk_cut_free(brio_context *ctx, brio_disk_cut *cut) {

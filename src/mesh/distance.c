@@ -71,33 +71,29 @@ static void surface_free(brio_context *ctx, surface *s) {
 
 /* Builds the tree of the surface, times 2^-exponent. */
 static brio_status build_tree(brio_context *ctx, const brio_mesh *mesh, int exponent, surface *s) {
-    brio_status status = BRIO_OK;
     brio_mesh in_unit = *mesh;
     if (exponent) {
-        BRIO_TRY(BRIO_ALLOC(ctx, s->scaled, 3 * mesh->num_vertices));
-        BRIO_TRY(brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, s->scaled));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, s->scaled, 3 * mesh->num_vertices));
+        BRIO_FORWARD(brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, s->scaled));
         in_unit.vertices = s->scaled;
     }
-    BRIO_TRY(brio_triangle_tree_new(ctx, &in_unit, &s->tree));
+    BRIO_FORWARD(brio_triangle_tree_new(ctx, &in_unit, &s->tree));
     s->scale = brio_power_of_two(-brio_box_exponent(s->tree.boxes[0].low, s->tree.boxes[0].high));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status surface_new(brio_context *ctx, const brio_mesh *mesh, int exponent, const char *name, surface *s) {
-    brio_status status = BRIO_OK;
     double sum = 0;
-    BRIO_TRY(build_tree(ctx, mesh, exponent, s));
-    BRIO_TRY(BRIO_ALLOC(ctx, s->area_up_to, s->tree.num_triangles));
+    BRIO_FORWARD(build_tree(ctx, mesh, exponent, s));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, s->area_up_to, s->tree.num_triangles));
     for (size_t t = 0; t < s->tree.num_triangles; t++) {
         double n[3];
         triangle_normal(s, t, n);
         sum += 0.5 * brio_length(n);
         s->area_up_to[t] = sum;
     }
-    BRIO_REQUIRE(ctx, sum > 0 && isfinite(sum), BRIO_ERR_ARGUMENT, "the faces of %s have area %g", name, sum);
-done:
-    return status;
+    BRIO_EXPECT(ctx, sum > 0 && isfinite(sum), BRIO_ERR_ARGUMENT, "the faces of %s have area %g", name, sum);
+    return BRIO_OK;
 }
 
 /* --- samples --- */
@@ -160,16 +156,14 @@ static void measure_part(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status measure(brio_context *ctx, sampler s) {
-    brio_status status = BRIO_OK;
     size_t samples = s.m->samples;
     for (; s.first < samples; s.first += BATCH) {
         size_t count = samples - s.first < BATCH ? samples - s.first : BATCH;
-        BRIO_TRY(brio_progress(ctx, "distance", 0.5 * (double)(s.start + s.first) / (double)samples));
-        BRIO_TRY(
+        BRIO_FORWARD(brio_progress(ctx, "distance", 0.5 * (double)(s.start + s.first) / (double)samples));
+        BRIO_FORWARD(
             brio_for_chunks(ctx, brio_threads(ctx, count, SAMPLES_A_CHUNK), count, SAMPLES_A_CHUNK, measure_part, &s));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- figures --- */
@@ -221,15 +215,13 @@ static double diagonal_of(const brio_box *box) {
 
 /* Turns the figures into the unit of the meshes. */
 static brio_status scale_back(brio_context *ctx, int exponent, brio_distance *d) {
-    brio_status status = BRIO_OK;
     double *const figures[] = {&d->mean, &d->rms, &d->p95, &d->hausdorff, &d->diagonal};
     for (int i = 0; i < 5; i++) {
         *figures[i] = ldexp(*figures[i], exponent);
-        BRIO_REQUIRE(ctx, isfinite(*figures[i]), BRIO_ERR_NO_ANSWER,
-                     "doubles cannot hold the distances: scale the meshes down");
+        BRIO_EXPECT(ctx, isfinite(*figures[i]), BRIO_ERR_NO_ANSWER,
+                    "doubles cannot hold the distances: scale the meshes down");
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples, uint64_t seed,

@@ -28,28 +28,25 @@ static void check_corners(void *user, size_t begin, size_t end, int thread) {
 }
 
 brio_status brio_mesh_check_faces(brio_context *ctx, const brio_mesh *mesh) {
-    brio_status status = BRIO_OK;
     const uint64_t *offsets = mesh->face_offsets;
     if (!mesh->num_faces) return BRIO_OK;
-    BRIO_REQUIRE(ctx, offsets[0] == 0, BRIO_ERR_ARGUMENT, "face 0: starts at corner %llu, expected 0",
-                 (unsigned long long)offsets[0]);
+    BRIO_EXPECT(ctx, offsets[0] == 0, BRIO_ERR_ARGUMENT, "face 0: starts at corner %llu, expected 0",
+                (unsigned long long)offsets[0]);
     for (size_t f = 0; f < mesh->num_faces; f++) {
-        BRIO_REQUIRE(ctx, offsets[f] <= offsets[f + 1], BRIO_ERR_ARGUMENT, "face %zu: ends before it starts", f);
-        if (f % BRIO_LOOK_EVERY == 0) BRIO_TRY(brio_look(ctx, BRIO_LOOK_EVERY));
+        BRIO_EXPECT(ctx, offsets[f] <= offsets[f + 1], BRIO_ERR_ARGUMENT, "face %zu: ends before it starts", f);
+        if (f % BRIO_LOOK_EVERY == 0) BRIO_FORWARD(brio_look(ctx, BRIO_LOOK_EVERY));
     }
-    BRIO_REQUIRE(ctx, offsets[mesh->num_faces] < UINT32_MAX && mesh->num_faces < UINT32_MAX, BRIO_ERR_TOO_LARGE,
-                 "%zu faces with %llu corners are more than 32-bit indices can name", mesh->num_faces,
-                 (unsigned long long)offsets[mesh->num_faces]);
+    BRIO_EXPECT(ctx, offsets[mesh->num_faces] < UINT32_MAX && mesh->num_faces < UINT32_MAX, BRIO_ERR_TOO_LARGE,
+                "%zu faces with %llu corners are more than 32-bit indices can name", mesh->num_faces,
+                (unsigned long long)offsets[mesh->num_faces]);
     size_t corners = (size_t)offsets[mesh->num_faces];
     check all = {mesh, true};
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, corners, CORNERS_A_THREAD), corners, check_corners, &all));
+    BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, corners, CORNERS_A_THREAD), corners, check_corners, &all));
     for (size_t f = 0; !all.sound && f < mesh->num_faces; f++)
         for (uint64_t h = offsets[f]; h < offsets[f + 1]; h++)
-            BRIO_REQUIRE(ctx, mesh->face_vertices[h] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
-                         "face %zu: vertex %u of a mesh of %zu vertices", f, mesh->face_vertices[h],
-                         mesh->num_vertices);
-done:
-    return status;
+            BRIO_EXPECT(ctx, mesh->face_vertices[h] < mesh->num_vertices, BRIO_ERR_ARGUMENT,
+                        "face %zu: vertex %u of a mesh of %zu vertices", f, mesh->face_vertices[h], mesh->num_vertices);
+    return BRIO_OK;
 }
 
 typedef struct {
@@ -102,20 +99,17 @@ static void deal_half_edges(void *user, size_t begin, size_t end, int thread) {
 
 /* Fills the buckets. The caller has zeroed bucket_end; afterwards bucket_end[v] is the end of the bucket of v. */
 static brio_status deal_into_buckets(brio_context *ctx, buckets *b) {
-    brio_status status = BRIO_OK;
     int threads = brio_threads(ctx, b->mesh->num_faces, FACES_A_THREAD);
     uint32_t start = 0;
     b->alone = threads == 1;
-    BRIO_TRY(brio_for(ctx, threads, b->mesh->num_faces, count_half_edges, b));
+    BRIO_FORWARD(brio_for(ctx, threads, b->mesh->num_faces, count_half_edges, b));
     for (size_t v = 0; v < b->mesh->num_vertices; v++) {
         uint32_t count = b->bucket_end[v];
         b->bucket_end[v] = start;
         start += count;
-        BRIO_TRY(brio_look(ctx, 1));
+        BRIO_FORWARD(brio_look(ctx, 1));
     }
-    BRIO_TRY(brio_for(ctx, threads, b->mesh->num_faces, deal_half_edges, b));
-done:
-    return status;
+    return brio_for(ctx, threads, b->mesh->num_faces, deal_half_edges, b);
 }
 
 /* Links each run of equal higher vertices, in the sorted keys of one bucket, into a ring. */

@@ -77,9 +77,8 @@ static bool is_in_cell(const merger *m, uint32_t v, const cell *c) {
 
 /* Finds the cells, and joins the vertices of each one. */
 static brio_status join_cells(merger *m) {
-    brio_status status = BRIO_OK;
     size_t n = m->mesh->num_vertices, capacity = 0;
-    BRIO_TRY(BRIO_ALLOC(m->ctx, m->parent, n));
+    BRIO_FORWARD(BRIO_ALLOC(m->ctx, m->parent, n));
     for (uint32_t v = 0; v < n; v++) m->parent[v] = v;
     for (size_t i = 0; i < n; i++) {
         uint32_t v = m->order[i];
@@ -87,12 +86,11 @@ static brio_status join_cells(merger *m) {
             brio_unite(m->parent, v, m->order[i - 1], true);
             continue;
         }
-        BRIO_TRY(BRIO_RESERVE(m->ctx, m->cells, capacity, m->num_cells + 2));
+        BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->cells, capacity, m->num_cells + 2));
         m->cells[m->num_cells++] = (cell){{place_of(m, v, 0), place_of(m, v, 1), place_of(m, v, 2)}, i};
         m->cells[m->num_cells].begin = n;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Rounded, but the same for both orders of the two. */
@@ -108,7 +106,6 @@ static bool is_near(const merger *m, uint32_t a, uint32_t b) {
 
 /* Joins two cells if a vertex of one is near a vertex of the other. */
 static brio_status join_near(merger *m, const cell *a, const cell *b) {
-    brio_status status = BRIO_OK;
     size_t of_b = b[1].begin - b->begin;
     if (brio_find(m->parent, m->order[a->begin]) == brio_find(m->parent, m->order[b->begin])) return BRIO_OK;
     for (size_t i = a->begin; i < a[1].begin; i++) {
@@ -120,10 +117,9 @@ static brio_status join_near(merger *m, const cell *a, const cell *b) {
         m->tests += of_b;
         if (m->tests < TESTS_A_REPORT) continue;
         m->tests = 0;
-        BRIO_TRY(brio_progress(m->ctx, "merge", 0.6 + 0.3 * (double)i / (double)m->mesh->num_vertices));
+        BRIO_FORWARD(brio_progress(m->ctx, "merge", 0.6 + 0.3 * (double)i / (double)m->mesh->num_vertices));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static int compare_places(const double a[3], const double b[3]) {
@@ -134,7 +130,6 @@ static int compare_places(const double a[3], const double b[3]) {
 
 /* Joins each cell with the near ones behind it in the order. */
 static brio_status join_neighbours(merger *m) {
-    brio_status status = BRIO_OK;
     size_t cursor[ROWS] = {0};
     for (size_t i = 0; i < m->num_cells; i++) {
         const cell *c = &m->cells[i];
@@ -146,13 +141,12 @@ static brio_status join_neighbours(merger *m) {
                 size_t *at = &cursor[row];
                 while (*at < m->num_cells && compare_places(m->cells[*at].place, first) < 0) ++*at;
                 for (size_t j = *at; j < m->num_cells && compare_places(m->cells[j].place, last) <= 0; j++)
-                    BRIO_TRY(join_near(m, c, &m->cells[j]));
+                    BRIO_FORWARD(join_near(m, c, &m->cells[j]));
             }
         if (i % VERTICES_A_REPORT == 0)
-            BRIO_TRY(brio_progress(m->ctx, "merge", 0.6 + 0.3 * (double)i / (double)m->num_cells));
+            BRIO_FORWARD(brio_progress(m->ctx, "merge", 0.6 + 0.3 * (double)i / (double)m->num_cells));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- what stays --- */
@@ -164,11 +158,10 @@ static bool comes_before(const brio_mesh *mesh, uint32_t a, uint32_t b) {
 
 /* Chooses the vertex of each set that stays, and numbers these in the order of the mesh. */
 static brio_status choose(merger *m) {
-    brio_status status = BRIO_OK;
     size_t n = m->mesh->num_vertices;
     uint32_t *best = m->order, kept = 0; /* the order is not needed any more */
-    BRIO_TRY(BRIO_ALLOC(m->ctx, m->number, n));
-    BRIO_TRY(BRIO_ALLOC_ZERO(m->ctx, m->stays, n));
+    BRIO_FORWARD(BRIO_ALLOC(m->ctx, m->number, n));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(m->ctx, m->stays, n));
     for (uint32_t v = 0; v < n; v++) {
         uint32_t root = brio_find(m->parent, v);
         if (root == v || comes_before(m->mesh, v, best[root])) best[root] = v; /* the root is the first of its set */
@@ -177,8 +170,7 @@ static brio_status choose(merger *m) {
     for (uint32_t v = 0; v < n; v++) m->number[v] = m->stays[v] ? kept++ : 0;
     for (uint32_t v = 0; v < n; v++)
         if (!m->stays[v]) m->number[v] = m->number[best[brio_find(m->parent, v)]];
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the mesh, where nothing can fail any more --- */
@@ -261,35 +253,31 @@ static void change_mesh(const merger *m, brio_merge_stats *stats) {
 /* --- the whole --- */
 
 static brio_status check_indices(const merger *m, const uint32_t *indices, size_t count, const char *what) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < count; i++)
-        BRIO_REQUIRE(m->ctx, indices[i] < m->mesh->num_vertices, BRIO_ERR_ARGUMENT, "%s: vertex %u of %zu", what,
-                     indices[i], m->mesh->num_vertices);
-done:
-    return status;
+        BRIO_EXPECT(m->ctx, indices[i] < m->mesh->num_vertices, BRIO_ERR_ARGUMENT, "%s: vertex %u of %zu", what,
+                    indices[i], m->mesh->num_vertices);
+    return BRIO_OK;
 }
 
 /* Checks the call, and finds the side of cells. */
 static brio_status prepare(merger *m, double distance) {
-    brio_status status = BRIO_OK;
     const brio_mesh *mesh = m->mesh;
     double largest = 0;
-    BRIO_REQUIRE(m->ctx, distance == 0 || (distance >= DBL_MIN && isfinite(distance)), BRIO_ERR_ARGUMENT,
-                 "a distance of %g between vertices that merge, expected 0 or a normal number above 0", distance);
-    BRIO_TRY(brio_mesh_check_faces(m->ctx, mesh));
-    BRIO_TRY(check_indices(m, mesh->tetrahedra, 4 * mesh->num_tetrahedra, "a tetrahedron"));
-    BRIO_TRY(check_indices(m, mesh->edges, 2 * mesh->num_edges, "an edge"));
-    BRIO_TRY(brio_refuse_vertices(m->ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
+    BRIO_EXPECT(m->ctx, distance == 0 || (distance >= DBL_MIN && isfinite(distance)), BRIO_ERR_ARGUMENT,
+                "a distance of %g between vertices that merge, expected 0 or a normal number above 0", distance);
+    BRIO_FORWARD(brio_mesh_check_faces(m->ctx, mesh));
+    BRIO_FORWARD(check_indices(m, mesh->tetrahedra, 4 * mesh->num_tetrahedra, "a tetrahedron"));
+    BRIO_FORWARD(check_indices(m, mesh->edges, 2 * mesh->num_edges, "an edge"));
+    BRIO_FORWARD(brio_refuse_vertices(m->ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
     m->side = distance / 2 * WIDER;
     m->scale = distance > 0 ? ldexp(1, -ilogb(distance)) : 1;
     for (size_t i = 0; i < 3 * mesh->num_vertices; i++) largest = fmax(largest, fabs(mesh->vertices[i]));
     double within = (distance + fmin(brio_distance_rounding(largest), MOST_ROUNDED * distance)) * m->scale;
     m->square = within * within;
-    BRIO_REQUIRE(m->ctx, m->side == 0 || largest / m->side < MOST_PLACES, BRIO_ERR_ARGUMENT,
-                 "a distance of %g between vertices that merge, expected 0 or at least %g for coordinates of %g",
-                 distance, largest / MOST_PLACES * 4, largest);
-done:
-    return status;
+    BRIO_EXPECT(m->ctx, m->side == 0 || largest / m->side < MOST_PLACES, BRIO_ERR_ARGUMENT,
+                "a distance of %g between vertices that merge, expected 0 or at least %g for coordinates of %g",
+                distance, largest / MOST_PLACES * 4, largest);
+    return BRIO_OK;
 }
 
 brio_status brio_mesh_merge_vertices(brio_mesh *mesh, double distance, brio_merge_stats *stats) {

@@ -37,29 +37,25 @@ void brio_mesh_free(brio_mesh *mesh) {
 brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size_t num_vertices) {
     brio_context *ctx = mesh->context;
     double *copy = NULL;
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, !mesh->vertices, BRIO_ERR_ARGUMENT, "the mesh has vertices already");
-    BRIO_REQUIRE(ctx, !mesh->num_properties, BRIO_ERR_ARGUMENT, "the mesh has properties already: set vertices first");
-    BRIO_REQUIRE(ctx, num_vertices <= UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu vertices; indices have 32 bits",
-                 num_vertices);
-    BRIO_TRY(vertices ? BRIO_ALLOC(ctx, copy, 3 * num_vertices) : BRIO_ALLOC_ZERO(ctx, copy, 3 * num_vertices));
+    BRIO_EXPECT(ctx, !mesh->vertices, BRIO_ERR_ARGUMENT, "the mesh has vertices already");
+    BRIO_EXPECT(ctx, !mesh->num_properties, BRIO_ERR_ARGUMENT, "the mesh has properties already: set vertices first");
+    BRIO_EXPECT(ctx, num_vertices <= UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu vertices; indices have 32 bits",
+                num_vertices);
+    BRIO_FORWARD(vertices ? BRIO_ALLOC(ctx, copy, 3 * num_vertices) : BRIO_ALLOC_ZERO(ctx, copy, 3 * num_vertices));
     if (vertices && num_vertices) memcpy(copy, vertices, 3 * num_vertices * sizeof *copy);
     mesh->vertices = copy;
     mesh->num_vertices = num_vertices;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status check_offsets(brio_context *ctx, const uint64_t *offsets, size_t num_faces) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, num_faces < MOST, BRIO_ERR_TOO_LARGE, "%zu faces", num_faces);
+    BRIO_EXPECT(ctx, num_faces < MOST, BRIO_ERR_TOO_LARGE, "%zu faces", num_faces);
     if (!num_faces && !offsets) return BRIO_OK;
-    BRIO_REQUIRE(ctx, offsets[0] == 0, BRIO_ERR_ARGUMENT, "the first offset of faces is not 0");
+    BRIO_EXPECT(ctx, offsets[0] == 0, BRIO_ERR_ARGUMENT, "the first offset of faces is not 0");
     for (size_t f = 0; f < num_faces; f++)
-        BRIO_REQUIRE(ctx, offsets[f] <= offsets[f + 1] && offsets[f + 1] < MOST, BRIO_ERR_ARGUMENT,
-                     "face %zu: its offsets decrease or are too large", f);
-done:
-    return status;
+        BRIO_EXPECT(ctx, offsets[f] <= offsets[f + 1] && offsets[f + 1] < MOST, BRIO_ERR_ARGUMENT,
+                    "face %zu: its offsets decrease or are too large", f);
+    return BRIO_OK;
 }
 
 brio_status brio_mesh_set_faces(brio_mesh *mesh, const uint64_t *offsets, const uint32_t *indices, size_t num_faces) {
@@ -111,15 +107,13 @@ done:
 brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges, size_t num_edges) {
     brio_context *ctx = mesh->context;
     uint32_t *copy = NULL;
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, !mesh->edges, BRIO_ERR_ARGUMENT, "the mesh has edges already");
-    BRIO_REQUIRE(ctx, num_edges < MOST, BRIO_ERR_TOO_LARGE, "%zu edges", num_edges);
-    BRIO_TRY(BRIO_ALLOC(ctx, copy, 2 * num_edges));
+    BRIO_EXPECT(ctx, !mesh->edges, BRIO_ERR_ARGUMENT, "the mesh has edges already");
+    BRIO_EXPECT(ctx, num_edges < MOST, BRIO_ERR_TOO_LARGE, "%zu edges", num_edges);
+    BRIO_FORWARD(BRIO_ALLOC(ctx, copy, 2 * num_edges));
     if (num_edges) memcpy(copy, edges, 2 * num_edges * sizeof *copy);
     mesh->edges = copy;
     mesh->num_edges = num_edges;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 size_t brio_scalar_size(brio_scalar type) {
@@ -193,22 +187,18 @@ brio_status brio_mesh_append_face_property(brio_mesh *mesh, const char *name, br
 }
 
 brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(mesh->context, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", name);
-    BRIO_TRY(brio_mesh_append_property(mesh, name, type));
+    BRIO_EXPECT(mesh->context, !brio_mesh_property(mesh, name), BRIO_ERR_ARGUMENT, "two properties named %s", name);
+    BRIO_FORWARD(brio_mesh_append_property(mesh, name, type));
     if (data) *data = mesh->properties[mesh->num_properties - 1].data;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_mesh_add_face_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(mesh->context, !brio_mesh_face_property(mesh, name), BRIO_ERR_ARGUMENT,
-                 "two properties of faces named %s", name);
-    BRIO_TRY(brio_mesh_append_face_property(mesh, name, type));
+    BRIO_EXPECT(mesh->context, !brio_mesh_face_property(mesh, name), BRIO_ERR_ARGUMENT,
+                "two properties of faces named %s", name);
+    BRIO_FORWARD(brio_mesh_append_face_property(mesh, name, type));
     if (data) *data = mesh->face_properties[mesh->num_face_properties - 1].data;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_mesh_drop_properties(brio_mesh *mesh, size_t left) {

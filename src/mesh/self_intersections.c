@@ -134,13 +134,11 @@ static size_t count_nodes(size_t faces) {
 }
 
 static brio_status tree_new(brio_context *ctx, const brio_mesh *mesh, tree *t) {
-    brio_status status = BRIO_OK;
     *t = (tree){.mesh = mesh};
-    BRIO_TRY(sort_faces(ctx, t));
-    BRIO_TRY(BRIO_ALLOC(ctx, t->nodes, count_nodes(t->count)));
+    BRIO_FORWARD(sort_faces(ctx, t));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, t->nodes, count_nodes(t->count)));
     build_node(t, (range){0, 0, t->count});
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Counts the faces that are not asked about. */

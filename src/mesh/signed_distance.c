@@ -150,15 +150,13 @@ done:
 }
 
 static brio_status measure(brio_context *ctx, measurement *m, size_t num_points) {
-    brio_status status = BRIO_OK;
     for (; m->first < num_points; m->first += BATCH) {
         size_t count = num_points - m->first < BATCH ? num_points - m->first : BATCH;
-        BRIO_TRY(brio_progress(ctx, "distance", (double)m->first / (double)num_points));
-        BRIO_TRY(
+        BRIO_FORWARD(brio_progress(ctx, "distance", (double)m->first / (double)num_points));
+        BRIO_FORWARD(
             brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_CHUNK), count, POINTS_A_CHUNK, measure_points, m));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Measures in a unit of 2^exponent. */

@@ -125,47 +125,41 @@ static void drop_vanished(simplifier *s) {
 }
 
 static brio_status run_pass(simplifier *s, const brio_collapse_pass *pass, size_t *collapses) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_collapse_blocks(&s->m, pass, report, s, collapses));
+    BRIO_FORWARD(brio_collapse_blocks(&s->m, pass, report, s, collapses));
     s->excess -= *collapses;
     drop_vanished(s);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Runs passes of many blocks while there is enough to do for them. */
 static brio_status collapse_in_blocks(simplifier *s) {
-    brio_status status = BRIO_OK;
     size_t edges, tried, collapses;
     for (int turn = 0; s->count > ALONE && s->excess > s->count / LAST_SHARE; turn = !turn) {
-        BRIO_TRY(count_edges(s, &edges));
+        BRIO_FORWARD(count_edges(s, &edges));
         if (edges < s->count / LAST_SHARE) break;
         double wanted = PACE * (double)s->excess / s->yield, most = TRIED * (double)edges;
         float limit = limit_for(s, wanted < most ? wanted : most, &tried);
         double share = MOST * (double)s->excess / (double)tried;
         brio_collapse_pass pass = {s->order[turn], s->count, BLOCK, limit, share, s->excess};
-        BRIO_TRY(run_pass(s, &pass, &collapses));
+        BRIO_FORWARD(run_pass(s, &pass, &collapses));
         if (collapses < s->count / LAST_SHARE) break;
         s->yield = (double)collapses / (double)tried;
         if (s->yield < LEAST_YIELD) s->yield = LEAST_YIELD;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the collapses that are left in one block. First its heap has no more edges than will probably do. */
 static brio_status collapse_the_rest(simplifier *s) {
-    brio_status status = BRIO_OK;
     size_t edges, tried, collapses;
     for (int time = 0; time < 2 && s->excess && s->count; time++) {
-        BRIO_TRY(count_edges(s, &edges));
+        BRIO_FORWARD(count_edges(s, &edges));
         float limit = time ? FLT_MAX : limit_for(s, 4 * (double)s->excess / s->yield, &tried);
         if (limit == FLT_MAX) time = 1;
         brio_collapse_pass pass = {s->order[0], s->count, s->count, limit, (double)s->excess, s->excess};
-        BRIO_TRY(run_pass(s, &pass, &collapses));
+        BRIO_FORWARD(run_pass(s, &pass, &collapses));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- beginning --- */
@@ -178,18 +172,15 @@ static void measure_edges(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status prepare(simplifier *s) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = s->m.ctx;
     size_t half_edges = 3 * s->m.num_faces;
     s->count = s->m.num_vertices;
     s->yield = FIRST_YIELD;
     s->order[1] = s->m.second_order;
-    BRIO_TRY(BRIO_ALLOC(ctx, s->order[0], s->count));
-    BRIO_TRY(BRIO_ALLOC(ctx, s->classes, CLASSES));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, s->order[0], s->count));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, s->classes, CLASSES));
     for (size_t v = 0; v < s->count; v++) s->order[0][v] = (uint32_t)v;
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, half_edges, EDGES_A_THREAD), half_edges, measure_edges, &s->m));
-done:
-    return status;
+    return brio_for(ctx, brio_threads(ctx, half_edges, EDGES_A_THREAD), half_edges, measure_edges, &s->m);
 }
 
 /* --- triangles that cross --- */
@@ -217,23 +208,21 @@ done:
 /* Collapses edges of a mesh, whose arrays s->m takes over, but does not write the result.
  * guarded  whether each collapse is tested. */
 static brio_status collapse(simplifier *s, brio_mesh *mesh, bool guarded) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = mesh->context;
     const brio_collapse_options *options = s->m.options;
     *s = (simplifier){0};
-    BRIO_TRY(brio_collapse_mesh_new(ctx, mesh, options, &s->m));
-    if (mesh->num_faces <= options->target_faces) goto done;
+    BRIO_FORWARD(brio_collapse_mesh_new(ctx, mesh, options, &s->m));
+    if (mesh->num_faces <= options->target_faces) return BRIO_OK;
     s->all = s->excess = (mesh->num_faces - options->target_faces + 1) / 2;
-    BRIO_TRY(report(s));
-    BRIO_TRY(prepare(s));
+    BRIO_FORWARD(report(s));
+    BRIO_FORWARD(prepare(s));
     if (guarded)
-        BRIO_TRY(brio_collapse_guard_new(&s->m, &s->m.guard));
+        BRIO_FORWARD(brio_collapse_guard_new(&s->m, &s->m.guard));
     else
-        BRIO_TRY(collapse_in_blocks(s));
-    BRIO_TRY(collapse_the_rest(s));
-    if (guarded) BRIO_TRY(brio_collapse_guard_status(s->m.guard));
-done:
-    return status;
+        BRIO_FORWARD(collapse_in_blocks(s));
+    BRIO_FORWARD(collapse_the_rest(s));
+    if (guarded) BRIO_FORWARD(brio_collapse_guard_status(s->m.guard));
+    return BRIO_OK;
 }
 
 static void free_simplifier(simplifier *s, brio_context *ctx) {

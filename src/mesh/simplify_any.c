@@ -24,25 +24,21 @@ typedef struct {
 } cutting;
 
 static brio_status add_triangle(cutting *c, const uint32_t corners[3], size_t face) {
-    brio_status status = BRIO_OK;
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(c->ctx, c->triangles, c->capacity, c->count + 1));
-    BRIO_TRY(BRIO_RESERVE(c->ctx, c->face, c->face_capacity, c->count + 1));
+    BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->triangles, c->capacity, c->count + 1));
+    BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->face, c->face_capacity, c->count + 1));
     memcpy(c->triangles[c->count], corners, 3 * sizeof *corners);
     c->face[c->count++] = (uint32_t)face;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status cut_face(cutting *c, size_t face, uint32_t *room, uint32_t (*parts)[3]) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = c->mesh;
     size_t corners = (size_t)(m->face_offsets[face + 1] - m->face_offsets[face]);
     if (corners < 3) return BRIO_OK;
     brio_cut_polygon(m->vertices, m->face_vertices + m->face_offsets[face], corners, room, parts);
-    for (size_t i = 0; i + 2 < corners; i++) BRIO_TRY(add_triangle(c, parts[i], face));
-done:
-    return status;
+    for (size_t i = 0; i + 2 < corners; i++) BRIO_FORWARD(add_triangle(c, parts[i], face));
+    return BRIO_OK;
 }
 
 static brio_status cut_faces(cutting *c) {

@@ -81,15 +81,12 @@ done:
 }
 
 brio_status brio_solid_new(brio_context *ctx, const brio_mesh *mesh, brio_solid *out) {
-    brio_status status = BRIO_OK;
     *out = (brio_solid){{0}};
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the solid"));
-    BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
-    BRIO_TRY(check_boundary(ctx, mesh));
-    BRIO_TRY(brio_triangle_tree_new(ctx, mesh, &out->tree));
-done:
-    return status;
+    BRIO_FORWARD(brio_mesh_check_faces(ctx, mesh));
+    BRIO_FORWARD(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the solid"));
+    BRIO_EXPECT(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
+    BRIO_FORWARD(check_boundary(ctx, mesh));
+    return brio_triangle_tree_new(ctx, mesh, &out->tree);
 }
 
 void brio_solid_free(brio_context *ctx, brio_solid *solid) {

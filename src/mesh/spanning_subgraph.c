@@ -142,19 +142,17 @@ static void remove_vertex(peeler *p, uint32_t z) {
 }
 
 static brio_status peel(brio_context *ctx, peeler *p) {
-    brio_status status = BRIO_OK;
     start_cycles(p);
     for (size_t round = 1; p->num_free; round++) {
         uint32_t z = p->free[--p->num_free];
         p->state[z] &= (uint8_t)~LISTED;
         p->cut.steps++;
         if ((p->state[z] & ON_CYCLE) && !p->chords[z]) remove_vertex(p, z);
-        if (round % ROUNDS_A_REPORT == 0) BRIO_TRY(brio_progress(ctx, "subgraph", 0.7));
+        if (round % ROUNDS_A_REPORT == 0) BRIO_FORWARD(brio_progress(ctx, "subgraph", 0.7));
     }
-    BRIO_REQUIRE(ctx, p->num_removals + 3 * p->num_disks == p->cut.num_sectors, BRIO_ERR_INTERNAL,
-                 "a disk is left without a vertex free of chords");
-done:
-    return status;
+    BRIO_EXPECT(ctx, p->num_removals + 3 * p->num_disks == p->cut.num_sectors, BRIO_ERR_INTERNAL,
+                "a disk is left without a vertex free of chords");
+    return BRIO_OK;
 }
 
 /* --- restoring vertices --- */
@@ -190,32 +188,27 @@ static bool is_result(const peeler *p, uint32_t h) {
 }
 
 static brio_status collect(brio_context *ctx, const brio_mesh *mesh, const peeler *p, brio_edges *out) {
-    brio_status status = BRIO_OK;
     size_t count = 0;
     for (uint32_t h = 0; h < p->cut.num_corners; h++) count += is_result(p, h);
-    BRIO_TRY(BRIO_ALLOC(ctx, out->ends, 2 * count));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->ends, 2 * count));
     for (uint32_t h = 0; h < p->cut.num_corners; h++) {
         if (!is_result(p, h)) continue;
         out->ends[2 * out->count] = mesh->face_vertices[h];
         out->ends[2 * out->count++ + 1] = mesh->face_vertices[brio_next_corner(h)];
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- all of it --- */
 
 static brio_status start_peeler(brio_context *ctx, const brio_mesh *mesh, peeler *p) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_disk_cut_make(ctx, mesh, &p->cut));
+    BRIO_FORWARD(brio_disk_cut_make(ctx, mesh, &p->cut));
     size_t n = p->cut.num_sectors;
-    BRIO_TRY(BRIO_ALLOC(ctx, p->out, n));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, p->chords, n));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, p->state, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, p->free, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, p->removals, n));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, p->out, n));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, p->chords, n));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, p->state, n));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, p->free, n));
+    return BRIO_ALLOC(ctx, p->removals, n);
 }
 
 static brio_status fill_stats(brio_context *ctx, const brio_mesh *mesh, const peeler *p, const brio_edges *edges,

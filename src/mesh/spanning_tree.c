@@ -44,14 +44,12 @@ done:
 }
 
 static brio_status check_edges(brio_context *ctx, const brio_edges *edges, size_t num_vertices) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, edges->count < UINT32_MAX / 2 && num_vertices <= UINT32_MAX, BRIO_ERR_TOO_LARGE,
-                 "%zu edges of %zu vertices are more than 32-bit indices can name", edges->count, num_vertices);
+    BRIO_EXPECT(ctx, edges->count < UINT32_MAX / 2 && num_vertices <= UINT32_MAX, BRIO_ERR_TOO_LARGE,
+                "%zu edges of %zu vertices are more than 32-bit indices can name", edges->count, num_vertices);
     for (size_t i = 0; i < 2 * edges->count; i++)
-        BRIO_REQUIRE(ctx, edges->ends[i] < num_vertices, BRIO_ERR_ARGUMENT, "edge %zu: vertex %u of %zu vertices",
-                     i / 2, edges->ends[i], num_vertices);
-done:
-    return status;
+        BRIO_EXPECT(ctx, edges->ends[i] < num_vertices, BRIO_ERR_ARGUMENT, "edge %zu: vertex %u of %zu vertices", i / 2,
+                    edges->ends[i], num_vertices);
+    return BRIO_OK;
 }
 
 /* Allocates a forest: fewer edges than vertices, and at most the edges of the graph. */

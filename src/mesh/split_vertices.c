@@ -37,18 +37,16 @@ static brio_status take_rows(brio_context *ctx, char **rows, size_t size, const 
 }
 
 static brio_status replace_vertices(brio_context *ctx, brio_mesh *m, const uint32_t *from, size_t count) {
-    brio_status status = BRIO_OK;
     char *rows = (char *)m->vertices;
-    BRIO_TRY(take_rows(ctx, &rows, 3 * sizeof *m->vertices, from, count));
+    BRIO_FORWARD(take_rows(ctx, &rows, 3 * sizeof *m->vertices, from, count));
     m->vertices = (double *)(void *)rows;
     for (size_t i = 0; i < m->num_properties; i++) {
         rows = m->properties[i].data;
-        BRIO_TRY(take_rows(ctx, &rows, brio_scalar_size(m->properties[i].type), from, count));
+        BRIO_FORWARD(take_rows(ctx, &rows, brio_scalar_size(m->properties[i].type), from, count));
         m->properties[i].data = rows;
     }
     m->num_vertices = count;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- wedges; the faces are triangles --- */

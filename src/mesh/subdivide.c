@@ -72,23 +72,21 @@ static uint32_t count_round(const subdivider *s, uint32_t corner) {
 /* Finds the kind of each corner's vertex. Walks left from every boundary corner first: a walk to the left from another
  * corner may miss some corners. */
 static brio_status find_kinds(brio_context *ctx, subdivider *s) {
-    brio_status status = BRIO_OK;
     const uint8_t unknown = UINT8_MAX;
     size_t corners = 3 * s->mesh->num_faces;
     memset(s->kind, unknown, corners);
     for (uint32_t c = 0; c < corners; c++) {
-        BRIO_TRY(report(ctx, c, corners, 0.2, 0.25));
+        BRIO_FORWARD(report(ctx, c, corners, 0.2, 0.25));
         if (s->twin[c] != BRIO_NO_HALF_EDGE) continue;
         for (uint32_t at = c; at != BRIO_NO_HALF_EDGE; at = left_of(s, at)) s->kind[at] = BOUNDARY;
     }
     for (uint32_t c = 0; c < corners; c++) {
-        BRIO_TRY(report(ctx, c, corners, 0.25, 0.4));
+        BRIO_FORWARD(report(ctx, c, corners, 0.25, 0.4));
         if (s->kind[c] != unknown) continue;
         uint8_t kind = count_round(s, c) == 6 ? REGULAR : EXTRAORDINARY;
         for (uint32_t at = c; s->kind[at] == unknown; at = left_of(s, at)) s->kind[at] = kind;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static const double *position(const subdivider *s, uint32_t corner) {
@@ -199,23 +197,21 @@ static void place_round(subdivider *s, uint32_t start) {
 
 /* Numbers the edges after the old vertices, in the order of their lower half-edges. */
 static brio_status number_edges(brio_context *ctx, subdivider *s, size_t *count) {
-    brio_status status = BRIO_OK;
     size_t next = s->mesh->num_vertices, corners = 3 * s->mesh->num_faces;
     for (uint32_t h = 0; h < corners; h++) {
-        BRIO_TRY(report(ctx, h, corners, 0, 0.1));
+        BRIO_FORWARD(report(ctx, h, corners, 0, 0.1));
         next += h < s->twin[h];
     }
-    BRIO_REQUIRE(ctx, next <= MOST_VERTICES && 4 * s->mesh->num_faces < UINT32_MAX / 3, BRIO_ERR_TOO_LARGE,
-                 "the subdivided mesh has %zu vertices and %zu faces, more than 32-bit indices can name", next,
-                 4 * s->mesh->num_faces);
+    BRIO_EXPECT(ctx, next <= MOST_VERTICES && 4 * s->mesh->num_faces < UINT32_MAX / 3, BRIO_ERR_TOO_LARGE,
+                "the subdivided mesh has %zu vertices and %zu faces, more than 32-bit indices can name", next,
+                4 * s->mesh->num_faces);
     next = s->mesh->num_vertices;
     for (uint32_t h = 0; h < corners; h++) {
-        BRIO_TRY(report(ctx, h, corners, 0.1, 0.2));
+        BRIO_FORWARD(report(ctx, h, corners, 0.1, 0.2));
         s->edge_vertex[h] = h < s->twin[h] ? (uint32_t)next++ : s->edge_vertex[s->twin[h]];
     }
     *count = next;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void place_by_own_rule(const subdivider *s, uint32_t h) {
@@ -235,39 +231,35 @@ static void place_part(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status place_vertices(brio_context *ctx, subdivider *s) {
-    brio_status status = BRIO_OK;
     size_t corners = 3 * s->mesh->num_faces, old = 3 * s->mesh->num_vertices;
     if (old) memcpy(s->fine->vertices, s->mesh->vertices, old * sizeof(double));
     for (s->from = 0; s->from < corners; s->from += BATCH) {
         size_t count = corners - s->from < BATCH ? corners - s->from : BATCH;
-        BRIO_TRY(brio_for(ctx, brio_threads(ctx, count, HALF_EDGES_A_THREAD), count, place_part, s));
-        BRIO_TRY(brio_progress(ctx, "subdivide", 0.4 + 0.2 * ((double)(s->from + count) / (double)corners)));
+        BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, count, HALF_EDGES_A_THREAD), count, place_part, s));
+        BRIO_FORWARD(brio_progress(ctx, "subdivide", 0.4 + 0.2 * ((double)(s->from + count) / (double)corners)));
     }
     for (uint32_t c = 0; c < corners; c++) {
-        BRIO_TRY(report(ctx, c, corners, 0.6, 0.7));
+        BRIO_FORWARD(report(ctx, c, corners, 0.6, 0.7));
         if (s->kind[c] != EXTRAORDINARY) continue;
         place_round(s, c);
         for (uint32_t at = c; s->kind[at] == EXTRAORDINARY; at = left_of(s, at)) s->kind[at] = PLACED;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status make_faces(brio_context *ctx, subdivider *s) {
-    brio_status status = BRIO_OK;
     size_t faces = s->mesh->num_faces;
-    BRIO_TRY(BRIO_ALLOC(ctx, s->fine->face_offsets, 4 * faces + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, s->fine->face_vertices, 12 * faces));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, s->fine->face_offsets, 4 * faces + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, s->fine->face_vertices, 12 * faces));
     for (size_t f = 0; f <= 4 * faces; f++) s->fine->face_offsets[f] = 3 * f;
     for (size_t f = 0; f < faces; f++) {
-        BRIO_TRY(report(ctx, f, faces, 0.7, 0.8));
+        BRIO_FORWARD(report(ctx, f, faces, 0.7, 0.8));
         const uint32_t *v = s->mesh->face_vertices + 3 * f, *e = s->edge_vertex + 3 * f;
         const uint32_t four[12] = {v[0], e[0], e[2], e[0], v[1], e[1], e[2], e[1], v[2], e[0], e[1], e[2]};
         memcpy(s->fine->face_vertices + 12 * f, four, sizeof four);
     }
     s->fine->num_faces = 4 * faces;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Halves come last where the sum is finite: half of the least double is 0. */
@@ -278,16 +270,15 @@ static double mean_of(double a, double b) {
 /* Copies a property for the old vertices. A new vertex gets the mean of its edge's ends for floating-point types. For
  * integer types it gets the value of the first end, because labels have no mean. */
 static brio_status make_property(brio_context *ctx, subdivider *s, size_t number) {
-    brio_status status = BRIO_OK;
     const brio_property *property = &s->mesh->properties[number];
     const uint32_t *v = s->mesh->face_vertices;
     size_t size = brio_scalar_size(property->type), corners = 3 * s->mesh->num_faces;
     double share = 0.2 / (double)s->mesh->num_properties, from = 0.8 + share * (double)number;
     char *data;
-    BRIO_TRY(brio_mesh_add_property(s->fine, property->name, property->type, (void **)&data));
+    BRIO_FORWARD(brio_mesh_add_property(s->fine, property->name, property->type, (void **)&data));
     memcpy(data, property->data, s->mesh->num_vertices * size);
     for (uint32_t h = 0; h < corners; h++) {
-        BRIO_TRY(report(ctx, h, corners, from, from + share));
+        BRIO_FORWARD(report(ctx, h, corners, from, from + share));
         if (h > s->twin[h]) continue;
         uint32_t a = v[h], b = v[brio_next_corner(h)];
         char *target = data + s->edge_vertex[h] * size;
@@ -299,22 +290,19 @@ static brio_status make_property(brio_context *ctx, subdivider *s, size_t number
         else
             memcpy(target, (const char *)property->data + a * size, size);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* The four parts of a face have its properties. */
 static brio_status make_face_property(brio_context *ctx, const subdivider *s, const brio_property *property) {
-    brio_status status = BRIO_OK;
     size_t size = brio_scalar_size(property->type), faces = s->mesh->num_faces;
     char *data;
-    BRIO_TRY(brio_mesh_add_face_property(s->fine, property->name, property->type, (void **)&data));
+    BRIO_FORWARD(brio_mesh_add_face_property(s->fine, property->name, property->type, (void **)&data));
     for (size_t f = 0; f < 4 * faces; f++) {
-        BRIO_TRY(report(ctx, (uint32_t)f, 4 * faces, 1, 1));
+        BRIO_FORWARD(report(ctx, (uint32_t)f, 4 * faces, 1, 1));
         memcpy(data + f * size, (const char *)property->data + f / 4 * size, size);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status subdivide_once(brio_context *ctx, const brio_mesh *mesh, brio_mesh **out) {
@@ -393,16 +381,12 @@ done:
 
 brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     *out = NULL;
-    BRIO_REQUIRE(ctx, levels >= 1 && levels <= MOST_LEVELS, BRIO_ERR_ARGUMENT, "%d levels: expected 1 to %d", levels,
-                 MOST_LEVELS);
+    BRIO_EXPECT(ctx, levels >= 1 && levels <= MOST_LEVELS, BRIO_ERR_ARGUMENT, "%d levels: expected 1 to %d", levels,
+                MOST_LEVELS);
     double faces = ldexp((double)mesh->num_faces, 2 * levels);
-    BRIO_REQUIRE(ctx, faces < (double)(UINT32_MAX / 3), BRIO_ERR_TOO_LARGE,
-                 "%d levels make %.0f faces of %zu, more than 32-bit indices can name", levels, faces, mesh->num_faces);
+    BRIO_EXPECT(ctx, faces < (double)(UINT32_MAX / 3), BRIO_ERR_TOO_LARGE,
+                "%d levels make %.0f faces of %zu, more than 32-bit indices can name", levels, faces, mesh->num_faces);
     int exponent = brio_exponent(brio_greatest(mesh->vertices, 3 * mesh->num_vertices)) - MOST_EXPONENT;
-    BRIO_TRY(exponent > 0 ? subdivide_scaled(ctx, mesh, levels, exponent, out)
-                          : subdivide_levels(ctx, mesh, levels, out));
-done:
-    return status;
+    return exponent > 0 ? subdivide_scaled(ctx, mesh, levels, exponent, out) : subdivide_levels(ctx, mesh, levels, out);
 }

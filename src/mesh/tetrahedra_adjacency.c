@@ -40,12 +40,11 @@ static uint32_t least_vertex(const brio_mesh *m, uint32_t facet) {
 }
 
 static brio_status fill_buckets(brio_context *ctx, const brio_mesh *m, vertex_of_item vertex, buckets *b) {
-    brio_status status = BRIO_OK;
     size_t n = m->num_vertices, items = 4 * m->num_tetrahedra, largest = 0;
-    BRIO_REQUIRE(ctx, m->num_tetrahedra < MOST_TETRAHEDRA, BRIO_ERR_TOO_LARGE,
-                 "%zu tetrahedra, the neighbours of less than 2^30 can be found", m->num_tetrahedra);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b->offsets, n + 2));
-    BRIO_TRY(BRIO_ALLOC(ctx, b->items, items));
+    BRIO_EXPECT(ctx, m->num_tetrahedra < MOST_TETRAHEDRA, BRIO_ERR_TOO_LARGE,
+                "%zu tetrahedra, the neighbours of less than 2^30 can be found", m->num_tetrahedra);
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, b->offsets, n + 2));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, b->items, items));
     /* the count of vertex v stands at v + 2, its next free place at v + 1, and in the end its bucket's begin at v */
     for (uint32_t i = 0; i < items; i++) b->offsets[vertex(m, i) + 2]++;
     for (size_t v = 0; v < n; v++) {
@@ -53,9 +52,7 @@ static brio_status fill_buckets(brio_context *ctx, const brio_mesh *m, vertex_of
         b->offsets[v + 2] += b->offsets[v + 1];
     }
     for (uint32_t i = 0; i < items; i++) b->items[b->offsets[vertex(m, i) + 1]++] = i;
-    BRIO_TRY(BRIO_ALLOC(ctx, b->keys, 3 * largest));
-done:
-    return status;
+    return BRIO_ALLOC(ctx, b->keys, 3 * largest);
 }
 
 static void free_buckets(brio_context *ctx, buckets *b) {
@@ -84,7 +81,6 @@ static void greater_vertices(const brio_mesh *m, uint32_t facet, uint32_t least,
  * vertex, then its place among the items. */
 static brio_status join_run(brio_context *ctx, const brio_mesh *m, const uint32_t *items, uint64_t *keys, size_t n,
                             uint32_t *neighbours) {
-    brio_status status = BRIO_OK;
     brio_sort_keys(keys, n);
     for (size_t i = 0; i + 1 < n; i++) {
         if (keys[i] >> 32 != keys[i + 1] >> 32) continue;
@@ -92,21 +88,19 @@ static brio_status join_run(brio_context *ctx, const brio_mesh *m, const uint32_
         bool third = i + 2 < n && keys[i + 2] >> 32 == keys[i] >> 32;
         uint32_t v[3];
         facet_vertices(m, f, v);
-        BRIO_REQUIRE(ctx, !third, BRIO_ERR_ARGUMENT,
-                     "the triangle %u %u %u is a facet of three tetrahedra or more, such as %u and %u", v[0], v[1],
-                     v[2], f / 4, g / 4);
+        BRIO_EXPECT(ctx, !third, BRIO_ERR_ARGUMENT,
+                    "the triangle %u %u %u is a facet of three tetrahedra or more, such as %u and %u", v[0], v[1], v[2],
+                    f / 4, g / 4);
         neighbours[f] = g / 4;
         neighbours[g] = f / 4;
         i++;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Joins the facets whose least vertex is v. */
 static brio_status join_bucket(brio_context *ctx, const brio_mesh *m, const buckets *b, uint32_t v,
                                uint32_t *neighbours) {
-    brio_status status = BRIO_OK;
     const uint32_t *items = b->items + b->offsets[v];
     size_t n = b->offsets[v + 1] - b->offsets[v];
     uint32_t middle, greatest;
@@ -121,10 +115,9 @@ static brio_status join_bucket(brio_context *ctx, const brio_mesh *m, const buck
             greater_vertices(m, items[(uint32_t)b->keys[end]], v, &middle, &greatest);
             b->keys[end] = (uint64_t)greatest << 32 | (uint32_t)b->keys[end];
         }
-        BRIO_TRY(join_run(ctx, m, items, b->keys + i, end - i, neighbours));
+        BRIO_FORWARD(join_run(ctx, m, items, b->keys + i, end - i, neighbours));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_tetrahedra_neighbours(brio_context *ctx, const brio_mesh *mesh, uint32_t **neighbours) {

@@ -128,25 +128,21 @@ static void label_part(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status label_all(labeler *l) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = l->w->ctx;
     for (l->first = 0; l->first < l->count; l->first += BATCH) {
         size_t count = l->count - l->first < BATCH ? l->count - l->first : BATCH;
-        BRIO_TRY(brio_offset_progress(l->w));
-        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, l));
+        BRIO_FORWARD(brio_offset_progress(l->w));
+        BRIO_FORWARD(brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, l));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Keeps the labels for the next round. */
 static brio_status remember(labeler *l, size_t finite) {
-    brio_status status = BRIO_OK;
     brio_seen_free(l->w->ctx, &l->w->labels);
-    BRIO_TRY(brio_seen_new(l->w->ctx, finite, &l->w->labels));
+    BRIO_FORWARD(brio_seen_new(l->w->ctx, finite, &l->w->labels));
     for (size_t i = 0; i < finite; i++) brio_seen_add(&l->w->labels, l->tet[i].vertex, l->label[i]);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* A set of tetrahedra of one label, joined across facets. */
@@ -223,12 +219,11 @@ done:
 
 /* Lists the facets between tetrahedra of the solid and others. */
 static brio_status take_boundary(const labeler *l) {
-    brio_status status = BRIO_OK;
     brio_offset_work *w = l->w;
     unsigned solid = w->field.inwards ? 0 : COVERED;
     size_t n = 0;
     for (int pass = 0; pass < 2; pass++) {
-        if (pass) BRIO_TRY(BRIO_ALLOC(w->ctx, w->triangles, n));
+        if (pass) BRIO_FORWARD(BRIO_ALLOC(w->ctx, w->triangles, n));
         n = 0;
         for (size_t i = 0; i < l->count; i++)
             for (int f = 0; f < 4 && (l->label[i] & COVERED) == solid; f++) {
@@ -238,8 +233,7 @@ static brio_status take_boundary(const labeler *l) {
             }
     }
     w->num_triangles = n;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* The triangulation is a part of the work whose stages are not the caller's. */

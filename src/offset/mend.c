@@ -79,7 +79,6 @@ static bool is_free(const mender *m, const uint32_t *corner, const double *p, do
 }
 
 static brio_status take_kind(mender *m, uint8_t kind, size_t *added) {
-    brio_status status = BRIO_OK;
     brio_offset_work *w = m->w;
     for (size_t i = 0; i < w->num_faults; i++) {
         const uint32_t *v = w->triangles[w->faults[i].triangle];
@@ -89,11 +88,10 @@ static brio_status take_kind(mender *m, uint8_t kind, size_t *added) {
             m->next[m->entries] = m->head[v[c]];
             m->head[v[c]] = (uint32_t)m->entries++;
         }
-        BRIO_TRY(brio_offset_add(w, m->sample[i]));
+        BRIO_FORWARD(brio_offset_add(w, m->sample[i]));
         ++*added;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_offset_mend(brio_offset_work *w, size_t *added) {

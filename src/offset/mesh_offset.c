@@ -54,12 +54,10 @@ brio_status brio_offset_progress(brio_offset_work *w) {
 }
 
 brio_status brio_offset_add(brio_offset_work *w, const double *p) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(w->ctx, w->num_points < UINT32_MAX, BRIO_ERR_TOO_LARGE, "an offset of more than 2^32 vertices");
-    BRIO_TRY(BRIO_RESERVE(w->ctx, w->points, w->point_capacity, 3 * w->num_points + 3));
+    BRIO_EXPECT(w->ctx, w->num_points < UINT32_MAX, BRIO_ERR_TOO_LARGE, "an offset of more than 2^32 vertices");
+    BRIO_FORWARD(BRIO_RESERVE(w->ctx, w->points, w->point_capacity, 3 * w->num_points + 3));
     memcpy(w->points + 3 * w->num_points++, p, 3 * sizeof *p);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the largest of the bounds that are proven for the triangles. */
@@ -71,50 +69,43 @@ static double worst_of(const brio_offset_work *w) {
 
 /* Tests the surface and, when it passes or `prove` is set, proves its bound. */
 static brio_status judge(brio_offset_work *w, bool prove) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_offset_test(w));
-    if (!w->num_faults || prove) BRIO_TRY(brio_offset_prove(w));
+    BRIO_FORWARD(brio_offset_test(w));
+    if (!w->num_faults || prove) BRIO_FORWARD(brio_offset_prove(w));
     if (w->num_triangles) w->share = fmax(w->share, 0.9 * (1 - (double)w->num_faults / (double)w->num_triangles));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds samples until the surface through them is proven to be within the error, or nothing more helps. */
 static brio_status refine(brio_offset_work *w, size_t *rounds) {
-    brio_status status = BRIO_OK;
     size_t least = SIZE_MAX, points = 0, added = 1;
     for (int idle = 0; added && idle < MOST_IDLE; ++*rounds) {
-        BRIO_TRY(brio_offset_connect(w));
-        BRIO_TRY(judge(w, idle >= FEW_IDLE));
+        BRIO_FORWARD(brio_offset_connect(w));
+        BRIO_FORWARD(judge(w, idle >= FEW_IDLE));
         if (idle >= FEW_IDLE && worst_of(w) <= w->error / AIM) return BRIO_OK;
         if (!w->num_faults) return BRIO_OK;
         idle = w->num_faults < least || (double)w->num_points > GROWTH * (double)points ? 0 : idle + 1;
         if (!idle) points = w->num_points, least = w->num_faults;
-        BRIO_TRY(brio_offset_mend(w, &added));
+        BRIO_FORWARD(brio_offset_mend(w, &added));
     }
-    BRIO_TRY(brio_offset_prove(w));
-done:
-    return status;
+    return brio_offset_prove(w);
 }
 
 static brio_status make(brio_offset_work *w, size_t *rounds) {
-    brio_status status = BRIO_OK;
     const brio_box *box = &w->field.solid->tree.boxes[0];
     double size = 0, finest = FINEST * w->field.distance;
     for (int k = 0; k < 3; k++) size = fmax(size, box->high[k] - box->low[k]);
     if (!w->field.inwards) size += 2 * w->field.distance;
-    BRIO_TRY(brio_offset_seed(w));
-    BRIO_TRY(refine(w, rounds));
+    BRIO_FORWARD(brio_offset_seed(w));
+    BRIO_FORWARD(refine(w, rounds));
     for (double spacing = size / COARSEST, reached = 0;; spacing *= 0.5) {
         size_t added = 1;
         for (int i = 0; i < MOST_CATCHES && added; i++) {
-            BRIO_TRY(brio_offset_catch(w, spacing, &reached, &added));
-            if (added) BRIO_TRY(refine(w, rounds));
+            BRIO_FORWARD(brio_offset_catch(w, spacing, &reached, &added));
+            if (added) BRIO_FORWARD(refine(w, rounds));
         }
         if (spacing <= finest || reached > spacing) break;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the mesh, of the vertices that are used. */
@@ -144,28 +135,26 @@ static double size_of(const brio_mesh *mesh) {
 
 brio_status brio_offset_settle(brio_context *ctx, const brio_mesh *mesh, double distance,
                                const brio_mesh_offset_options *options, brio_mesh_offset_options *o) {
-    brio_status status = BRIO_OK;
     *o = STANDARD;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_mesh_offset_options, options, o));
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_mesh_offset_options, options, o));
+    BRIO_FORWARD(brio_mesh_check_faces(ctx, mesh));
+    BRIO_FORWARD(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the mesh"));
     double most = brio_greatest(mesh->vertices, 3 * mesh->num_vertices), size = size_of(mesh);
-    BRIO_REQUIRE(ctx, isfinite(distance) && distance != 0, BRIO_ERR_ARGUMENT,
-                 "the distance of an offset of a mesh is a finite number and not 0");
-    BRIO_REQUIRE(ctx, isfinite(o->error) && o->error >= 0, BRIO_ERR_ARGUMENT,
-                 "the error of an offset is a finite number, 0 or more");
+    BRIO_EXPECT(ctx, isfinite(distance) && distance != 0, BRIO_ERR_ARGUMENT,
+                "the distance of an offset of a mesh is a finite number and not 0");
+    BRIO_EXPECT(ctx, isfinite(o->error) && o->error >= 0, BRIO_ERR_ARGUMENT,
+                "the error of an offset is a finite number, 0 or more");
     if (o->error == 0) o->error = USUAL_ERROR * fabs(distance);
-    BRIO_REQUIRE(ctx, o->error < fabs(distance), BRIO_ERR_ARGUMENT,
-                 "the error %g of an offset is not less than its distance %g", o->error, fabs(distance));
-    BRIO_REQUIRE(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
-    BRIO_REQUIRE(ctx, -distance <= size, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
-    BRIO_REQUIRE(ctx, distance / FARTHEST <= size, BRIO_ERR_ARGUMENT,
-                 "the distance %g of the offset is more than 2^30 times the size %g of the mesh", distance, size);
+    BRIO_EXPECT(ctx, o->error < fabs(distance), BRIO_ERR_ARGUMENT,
+                "the error %g of an offset is not less than its distance %g", o->error, fabs(distance));
+    BRIO_EXPECT(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
+    BRIO_EXPECT(ctx, -distance <= size, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
+    BRIO_EXPECT(ctx, distance / FARTHEST <= size, BRIO_ERR_ARGUMENT,
+                "the distance %g of the offset is more than 2^30 times the size %g of the mesh", distance, size);
     most = fmax(most, fabs(distance));
-    BRIO_REQUIRE(ctx, o->error > LEAST_ERROR * most, BRIO_ERR_ARGUMENT,
-                 "an error of %g is too small for doubles at coordinates of %g", o->error, most);
-done:
-    return status;
+    BRIO_EXPECT(ctx, o->error > LEAST_ERROR * most, BRIO_ERR_ARGUMENT,
+                "an error of %g is too small for doubles at coordinates of %g", o->error, most);
+    return BRIO_OK;
 }
 
 brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double distance,

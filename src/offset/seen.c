@@ -6,14 +6,12 @@
 #include <string.h>
 
 brio_status brio_seen_new(brio_context *ctx, size_t count, brio_seen *out) {
-    brio_status status = BRIO_OK;
     *out = (brio_seen){.places = 16};
     while (out->places < 2 * count) out->places *= 2;
-    BRIO_TRY(BRIO_ALLOC(ctx, out->key, out->places));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->value, out->places));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->key, out->places));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->value, out->places));
     for (size_t i = 0; i < out->places; i++) out->key[i][0] = BRIO_SEEN_NONE;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_seen_free(brio_context *ctx, brio_seen *seen) {

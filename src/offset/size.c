@@ -73,18 +73,16 @@ static double most_samples(const brio_mesh *mesh, double distance, double error)
 brio_status brio_estimate_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double distance,
                                       const brio_mesh_offset_options *options, uint64_t *bytes) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     brio_mesh_offset_options o;
     double turn = 0;
     *bytes = 0;
-    BRIO_TRY(brio_offset_settle(ctx, mesh, distance, options, &o));
-    if (!mesh->num_faces) goto done;
-    BRIO_TRY(turn_of(ctx, mesh, &turn));
+    BRIO_FORWARD(brio_offset_settle(ctx, mesh, distance, options, &o));
+    if (!mesh->num_faces) return BRIO_OK;
+    BRIO_FORWARD(turn_of(ctx, mesh, &turn));
     double d = fabs(distance), corners = (double)mesh->face_offsets[mesh->num_faces];
     double samples = A_CORNER * corners + AN_ARC * turn / sqrt(8 * o.error / d) + A_BALL * 4 * PI * d / o.error;
     samples = fmin(samples, most_samples(mesh, d, o.error));
     double all = FIXED_BYTES + SAMPLE_BYTES * samples + CORNER_BYTES * corners;
     *bytes = all < 0x1p63 ? (uint64_t)all : UINT64_MAX;
-done:
-    return status;
+    return BRIO_OK;
 }

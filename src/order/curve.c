@@ -60,19 +60,17 @@ static brio_status refine_cells(const curve *c, range r, range *largest) {
 /* Sorts a range along the curve through the cube of its points, and goes on with the largest cell. Stops at a cell with
  * all points of its range: its cube is too small to be divided. */
 static brio_status sort_range(const curve *c, range r) {
-    brio_status status = BRIO_OK;
     assert(r.begin <= r.end);
     for (range largest; size_of(r); r = largest) {
         uint64_t *items = c->items + r.begin;
         int bits = curve_bits(size_of(r));
-        BRIO_TRY(brio_hilbert_items(c->ctx, c->points, items, size_of(r), &bits, 1));
+        BRIO_FORWARD(brio_hilbert_items(c->ctx, c->points, items, size_of(r), &bits, 1));
         if (!bits) break;
-        BRIO_TRY(brio_sort_items(c->ctx, items, c->spare + r.begin, size_of(r), 3 * bits, 1));
-        BRIO_TRY(refine_cells(c, r, &largest));
+        BRIO_FORWARD(brio_sort_items(c->ctx, items, c->spare + r.begin, size_of(r), 3 * bits, 1));
+        BRIO_FORWARD(refine_cells(c, r, &largest));
         if (size_of(largest) == size_of(r)) break;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- with several threads --- */

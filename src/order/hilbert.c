@@ -106,16 +106,14 @@ done:
 
 brio_status brio_hilbert_items(brio_context *ctx, const double *points, uint64_t *items, size_t n, int *bits,
                                int threads) {
-    brio_status status = BRIO_OK;
     assert(0 < *bits && *bits <= 10); /* keys have 32 bits */
     numbering all = {.points = points, .keys = items, .bits = *bits};
     *bits = 0;
     if (!n) return BRIO_OK;
     compose(&all.two);
-    BRIO_TRY(brio_cube_of(ctx, points, items, n, threads, &all.cube));
-    if (!brio_cube_divide(&all.cube, all.bits)) goto done;
-    BRIO_TRY(brio_for(ctx, threads, n, number_items, &all));
+    BRIO_FORWARD(brio_cube_of(ctx, points, items, n, threads, &all.cube));
+    if (!brio_cube_divide(&all.cube, all.bits)) return BRIO_OK;
+    BRIO_FORWARD(brio_for(ctx, threads, n, number_items, &all));
     *bits = all.bits;
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -211,16 +211,14 @@ static void divide_large(void *user, size_t from, size_t to, int thread) {
 }
 
 static brio_status take_turns(brio_context *ctx, octree *o, int threads) {
-    brio_status status = BRIO_OK;
     while (o->num_next) {
         large_cell *swap = o->now;
         size_t count = o->num_next;
         o->now = o->next, o->next = swap;
         o->num_next = 0;
-        BRIO_TRY(brio_for_chunks(ctx, count < (size_t)threads ? (int)count : threads, count, 1, divide_large, o));
+        BRIO_FORWARD(brio_for_chunks(ctx, count < (size_t)threads ? (int)count : threads, count, 1, divide_large, o));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the root --- */
@@ -251,16 +249,14 @@ static void visit_octants(void *user, size_t begin, size_t end, int thread) {
 
 /* Does the work of bring_cells_together for all points, with all threads. */
 static brio_status bring_all_together(brio_context *ctx, root *r, int threads) {
-    brio_status status = BRIO_OK;
     size_t cells = cells_of(r->g), n = r->g->end;
-    BRIO_TRY(brio_for(ctx, threads, n, count_part, r));
+    BRIO_FORWARD(brio_for(ctx, threads, n, count_part, r));
     for (size_t c = 0, place = 0; c < cells; c++)
         place = brio_counts_to_places(r->place + c, cells, (size_t)threads, place);
-    BRIO_TRY(brio_for(ctx, threads, n, place_part, r));
+    BRIO_FORWARD(brio_for(ctx, threads, n, place_part, r));
     r->stop = r->place + cells * (size_t)(threads - 1);
     assert(r->stop[cells - 1] == n);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status divide_root(brio_context *ctx, octree *o, grid *g, int threads) {

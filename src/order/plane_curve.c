@@ -126,17 +126,15 @@ static brio_status refine_cells(const curve *c, size_t begin, size_t end, size_t
 /* Sorts the items [begin, end), and goes on with the largest cell. Stops at a cell with all points of its range: its
  * square is too small to be divided. */
 static brio_status sort_range(const curve *c, size_t begin, size_t end) {
-    brio_status status = BRIO_OK;
     for (size_t n = end - begin; n >= 2; n = end - begin) {
         uint64_t *items = c->items + begin;
         int bits = curve_bits(n);
         if (!number_items(c, items, n, bits)) break;
-        BRIO_TRY(brio_sort_items(c->ctx, items, c->spare + begin, n, 2 * bits, 1));
-        BRIO_TRY(refine_cells(c, begin, end, &begin, &end));
+        BRIO_FORWARD(brio_sort_items(c->ctx, items, c->spare + begin, n, 2 * bits, 1));
+        BRIO_FORWARD(refine_cells(c, begin, end, &begin, &end));
         if (end - begin == n) break;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_sort_along_plane_curve(brio_context *ctx, const brio_plane_points *points, uint64_t *items,

@@ -86,17 +86,15 @@ static brio_status answer_values(void *user, brio_plane_querent *q, size_t index
 }
 
 static brio_status check_options(brio_context *ctx, const brio_locator2 *l, const brio_interpolation *o) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, o->method >= 0 && o->method < BRIO_INTERPOLATION_END, BRIO_ERR_ARGUMENT,
-                 "there is no interpolation method %d", (int)o->method);
-    BRIO_REQUIRE(ctx, o->components > 0, BRIO_ERR_ARGUMENT, "0 components of each value; at least 1");
-    BRIO_REQUIRE(ctx, o->values || !l->num_points, BRIO_ERR_ARGUMENT, "there are no values to interpolate");
-    BRIO_REQUIRE(ctx, o->method != BRIO_INTERPOLATION_NATURAL || !l->weighted, BRIO_ERR_ARGUMENT,
-                 "natural neighbour interpolation is for triangulations without weights");
-    BRIO_REQUIRE(ctx, l->num_line != 1, BRIO_ERR_NO_ANSWER,
-                 "all points are at one position: there is nothing to interpolate between");
-done:
-    return status;
+    BRIO_EXPECT(ctx, o->method >= 0 && o->method < BRIO_INTERPOLATION_END, BRIO_ERR_ARGUMENT,
+                "there is no interpolation method %d", (int)o->method);
+    BRIO_EXPECT(ctx, o->components > 0, BRIO_ERR_ARGUMENT, "0 components of each value; at least 1");
+    BRIO_EXPECT(ctx, o->values || !l->num_points, BRIO_ERR_ARGUMENT, "there are no values to interpolate");
+    BRIO_EXPECT(ctx, o->method != BRIO_INTERPOLATION_NATURAL || !l->weighted, BRIO_ERR_ARGUMENT,
+                "natural neighbour interpolation is for triangulations without weights");
+    BRIO_EXPECT(ctx, l->num_line != 1, BRIO_ERR_NO_ANSWER,
+                "all points are at one position: there is nothing to interpolate between");
+    return BRIO_OK;
 }
 
 brio_status brio_locator2_interpolate(brio_context *ctx, const brio_locator2 *l, const double *queries,

@@ -45,20 +45,18 @@ static void fill_grid(brio_locator2 *l) {
 }
 
 static brio_status take_triangles(brio_locator2 *l, const brio_triangulation2 *t) {
-    brio_status status = BRIO_OK;
     if (!l->num_finite) return BRIO_OK;
     l->side = 1 + (size_t)sqrt((double)l->num_finite / TRIANGLES_A_SQUARE);
-    BRIO_TRY(BRIO_ALLOC(l->ctx, l->triangle, l->num_triangles));
-    BRIO_TRY(BRIO_ALLOC(l->ctx, l->corner, l->num_points));
-    BRIO_TRY(BRIO_ALLOC(l->ctx, l->start, l->side * l->side));
+    BRIO_FORWARD(BRIO_ALLOC(l->ctx, l->triangle, l->num_triangles));
+    BRIO_FORWARD(BRIO_ALLOC(l->ctx, l->corner, l->num_points));
+    BRIO_FORWARD(BRIO_ALLOC(l->ctx, l->start, l->side * l->side));
     assert(l->num_finite <= l->num_triangles);
     memcpy(l->triangle, t->triangle, l->num_triangles * sizeof *l->triangle);
     for (size_t i = l->num_finite; i-- > 0;)
         for (int k = 0; k < 3; k++) l->corner[l->triangle[i].vertex[k]] = (uint32_t)i;
     find_box(l);
     fill_grid(l);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Copies the vertices of points on a line. The only vertex of points at one place is a line, too. */

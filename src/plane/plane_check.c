@@ -31,84 +31,74 @@ static int orientation(brio_plane_judge *j, uint32_t a, uint32_t b, uint32_t c) 
 }
 
 static brio_status check_orientation(brio_plane_judge *j) {
-    brio_status status = BRIO_OK;
     for (size_t t = 0; t < j->count; t++) {
         const uint32_t *v = j->view.triangle[t].vertex;
         bool infinite = t >= j->t->stats.triangles;
-        BRIO_REQUIRE(j->ctx, is_infinite(j, t) == infinite, BRIO_ERR_CHECK,
-                     "triangle %zu of %zu finite and %zu infinite ones is out of place", t, j->t->stats.triangles,
-                     j->t->stats.hull_edges);
+        BRIO_EXPECT(j->ctx, is_infinite(j, t) == infinite, BRIO_ERR_CHECK,
+                    "triangle %zu of %zu finite and %zu infinite ones is out of place", t, j->t->stats.triangles,
+                    j->t->stats.hull_edges);
         for (int i = 0; i < 3 - infinite; i++)
-            BRIO_REQUIRE(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "triangle %zu: no point %u", t, v[i]);
-        BRIO_REQUIRE(j->ctx, infinite || orientation(j, v[0], v[1], v[2]) > 0, BRIO_ERR_CHECK,
-                     "triangle %zu (%u %u %u) is not counterclockwise", t, v[0], v[1], v[2]);
+            BRIO_EXPECT(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "triangle %zu: no point %u", t, v[i]);
+        BRIO_EXPECT(j->ctx, infinite || orientation(j, v[0], v[1], v[2]) > 0, BRIO_ERR_CHECK,
+                    "triangle %zu (%u %u %u) is not counterclockwise", t, v[0], v[1], v[2]);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Runs tests 2 and 3. */
 static brio_status check_mates(brio_plane_judge *j) {
-    brio_status status = BRIO_OK;
     for (uint32_t t = 0; t < j->count; t++)
         for (uint32_t i = 0; i < 3; i++) {
             const brio_triangle *own = &j->view.triangle[t];
             uint32_t g = own->mate[i], u = brio_triangle_of(g), k = g & 3; /* may be no edge handle */
-            BRIO_REQUIRE(j->ctx, u < j->count && k < 3, BRIO_ERR_CHECK, "edge %u of triangle %u has no mate", i, t);
+            BRIO_EXPECT(j->ctx, u < j->count && k < 3, BRIO_ERR_CHECK, "edge %u of triangle %u has no mate", i, t);
             const brio_triangle *other = &j->view.triangle[u];
-            BRIO_REQUIRE(j->ctx,
-                         other->mate[k] == brio_edge_of(t, i) &&
-                             own->vertex[brio_slot_after(i)] == other->vertex[brio_slot_before(k)] &&
-                             own->vertex[brio_slot_before(i)] == other->vertex[brio_slot_after(k)],
-                         BRIO_ERR_CHECK, "edge %u of triangle %u and its mate do not match", i, t);
+            BRIO_EXPECT(j->ctx,
+                        other->mate[k] == brio_edge_of(t, i) &&
+                            own->vertex[brio_slot_after(i)] == other->vertex[brio_slot_before(k)] &&
+                            own->vertex[brio_slot_before(i)] == other->vertex[brio_slot_after(k)],
+                        BRIO_ERR_CHECK, "edge %u of triangle %u and its mate do not match", i, t);
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Runs test 5 at the second vertex of the hull edge of infinite triangle t. By tests 1 and 2 the mate across the edge
  * opposite to vertex 0 has the next hull edge. */
 static brio_status check_corner(brio_plane_judge *j, uint32_t t) {
-    brio_status status = BRIO_OK;
     const brio_triangle *own = &j->view.triangle[t];
     const brio_triangle *next = &j->view.triangle[brio_triangle_of(own->mate[0])];
-    BRIO_REQUIRE(j->ctx, orientation(j, own->vertex[0], own->vertex[1], next->vertex[1]) <= 0, BRIO_ERR_CHECK,
-                 "the hull is not convex at vertex %u", own->vertex[1]);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, orientation(j, own->vertex[0], own->vertex[1], next->vertex[1]) <= 0, BRIO_ERR_CHECK,
+                "the hull is not convex at vertex %u", own->vertex[1]);
+    return BRIO_OK;
 }
 
 brio_status brio_plane_check_circle(brio_plane_judge *j, uint32_t t, uint32_t p) {
-    brio_status status = BRIO_OK;
     const uint32_t *v = j->view.triangle[t].vertex;
     const double *a = j->view.record[v[0]], *b = j->view.record[v[1]], *c = j->view.record[v[2]];
     const double *x = j->view.record[p];
     int sign = brio_incircle_sign(&j->filter, a, b, c, x, j->filter.general);
-    BRIO_REQUIRE(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the circle of triangle %u (%u %u %u)", p, t,
-                 v[0], v[1], v[2]);
-    BRIO_REQUIRE(j->ctx, sign < 0 || brio_incircle_tie(&j->filter, a, b, c, x) < 0, BRIO_ERR_CHECK,
-                 "point %u is on the circle of triangle %u (%u %u %u), and the tie is not broken by the perturbation",
-                 p, t, v[0], v[1], v[2]);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the circle of triangle %u (%u %u %u)", p, t,
+                v[0], v[1], v[2]);
+    BRIO_EXPECT(j->ctx, sign < 0 || brio_incircle_tie(&j->filter, a, b, c, x) < 0, BRIO_ERR_CHECK,
+                "point %u is on the circle of triangle %u (%u %u %u), and the tie is not broken by the perturbation", p,
+                t, v[0], v[1], v[2]);
+    return BRIO_OK;
 }
 
 /* Runs tests 5 and 6. */
 static brio_status check_edges(brio_plane_judge *j) {
-    brio_status status = BRIO_OK;
     for (uint32_t t = 0; t < j->count; t++) {
         if (is_infinite(j, t)) {
-            BRIO_TRY(check_corner(j, t));
+            BRIO_FORWARD(check_corner(j, t));
             continue;
         }
         for (int i = 0; i < 3; i++) {
             uint32_t g = j->view.triangle[t].mate[i], u = brio_triangle_of(g);
             if (u < t || is_infinite(j, u)) continue; /* one side suffices: the test is symmetric, ties included */
-            BRIO_TRY(brio_plane_check_circle(j, t, j->view.triangle[u].vertex[brio_edge_slot(g)]));
+            BRIO_FORWARD(brio_plane_check_circle(j, t, j->view.triangle[u].vertex[brio_edge_slot(g)]));
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the side of the line ab on which o lies. The first of the seed's vertices off the line decides: o is infinitely
@@ -122,21 +112,19 @@ static int side_of_seed(brio_plane_judge *j, uint32_t a, uint32_t b) {
 
 /* Runs test 4. */
 static brio_status check_cover(brio_plane_judge *j) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(j->ctx, j->t->stats.triangles > 0, BRIO_ERR_CHECK, "no finite triangle");
+    BRIO_EXPECT(j->ctx, j->t->stats.triangles > 0, BRIO_ERR_CHECK, "no finite triangle");
     for (size_t t = 1; t < j->count; t++) {
         const uint32_t *v = j->view.triangle[t].vertex;
         if (is_infinite(j, t))
-            BRIO_REQUIRE(j->ctx, side_of_seed(j, v[0], v[1]) < 0, BRIO_ERR_CHECK,
-                         "triangle 0 is outside of hull edge (%u %u)", v[0], v[1]);
+            BRIO_EXPECT(j->ctx, side_of_seed(j, v[0], v[1]) < 0, BRIO_ERR_CHECK,
+                        "triangle 0 is outside of hull edge (%u %u)", v[0], v[1]);
         else
-            BRIO_REQUIRE(j->ctx,
-                         side_of_seed(j, v[0], v[1]) < 0 || side_of_seed(j, v[1], v[2]) < 0 ||
-                             side_of_seed(j, v[2], v[0]) < 0,
-                         BRIO_ERR_CHECK, "triangles 0 and %zu overlap", t);
+            BRIO_EXPECT(j->ctx,
+                        side_of_seed(j, v[0], v[1]) < 0 || side_of_seed(j, v[1], v[2]) < 0 ||
+                            side_of_seed(j, v[2], v[0]) < 0,
+                        BRIO_ERR_CHECK, "triangles 0 and %zu overlap", t);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status check_triangles(brio_plane_judge *j) {

@@ -40,19 +40,17 @@ static bool in_conflict(const workspace *w, size_t i, uint32_t x) {
 
 /* Runs tests 1 and 2. */
 static brio_status check_vertices(const workspace *w) {
-    brio_status status = BRIO_OK;
     const brio_plane_judge *j = w->j;
     for (size_t i = 0; i < w->count; i++) {
         uint32_t v = w->line[i];
-        BRIO_REQUIRE(j->ctx, v < j->num_points && j->t->representative[v] == v, BRIO_ERR_CHECK,
-                     "vertex %u of the line does not represent itself", v);
-        BRIO_REQUIRE(j->ctx, i == 0 || compare(w, w->line[i - 1], v) < 0, BRIO_ERR_CHECK,
-                     "vertices %u and %u of the line are out of order", w->line[i - 1], v);
-        BRIO_REQUIRE(j->ctx, i < 2 || !in_conflict(w, i - 2, v), BRIO_ERR_CHECK,
-                     "vertex %u is inside the circle of vertices %u and %u", v, w->line[i - 2], w->line[i - 1]);
+        BRIO_EXPECT(j->ctx, v < j->num_points && j->t->representative[v] == v, BRIO_ERR_CHECK,
+                    "vertex %u of the line does not represent itself", v);
+        BRIO_EXPECT(j->ctx, i == 0 || compare(w, w->line[i - 1], v) < 0, BRIO_ERR_CHECK,
+                    "vertices %u and %u of the line are out of order", w->line[i - 1], v);
+        BRIO_EXPECT(j->ctx, i < 2 || !in_conflict(w, i - 2, v), BRIO_ERR_CHECK,
+                    "vertex %u is inside the circle of vertices %u and %u", v, w->line[i - 2], w->line[i - 1]);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the first vertex of the line that is not before p, or the number of vertices. */
@@ -83,25 +81,23 @@ static uint32_t nearest_vertex(const workspace *w, uint32_t p, size_t i) {
 
 /* Runs test 3 on point p, whose place is at or before the i-th vertex. */
 static brio_status check_point(workspace *w, uint32_t p, size_t i) {
-    brio_status status = BRIO_OK;
     const brio_plane_judge *j = w->j;
-    BRIO_REQUIRE(j->ctx, i < w->count, BRIO_ERR_CHECK, "point %u is outside the hull", p);
+    BRIO_EXPECT(j->ctx, i < w->count, BRIO_ERR_CHECK, "point %u is outside the hull", p);
     uint32_t v = w->line[i], right = v;
     if (compare(w, v, p) == 0) {
         double more = w->record[p][3] - w->record[v][3];
-        BRIO_REQUIRE(j->ctx, more < 0 || (more == 0 && v <= p), BRIO_ERR_CHECK,
-                     "point %u should represent its duplicate %u", p, v);
+        BRIO_EXPECT(j->ctx, more < 0 || (more == 0 && v <= p), BRIO_ERR_CHECK,
+                    "point %u should represent its duplicate %u", p, v);
     } else {
-        BRIO_REQUIRE(j->ctx, i > 0, BRIO_ERR_CHECK, "point %u is outside the hull", p);
-        BRIO_REQUIRE(j->ctx, !in_conflict(w, i - 1, p), BRIO_ERR_CHECK,
-                     "point %u is inside the circle of vertices %u and %u", p, w->line[i - 1], v);
+        BRIO_EXPECT(j->ctx, i > 0, BRIO_ERR_CHECK, "point %u is outside the hull", p);
+        BRIO_EXPECT(j->ctx, !in_conflict(w, i - 1, p), BRIO_ERR_CHECK,
+                    "point %u is inside the circle of vertices %u and %u", p, w->line[i - 1], v);
         w->hidden[w->num_hidden++] = p;
         right = nearest_vertex(w, p, i);
     }
-    BRIO_REQUIRE(j->ctx, j->t->representative[p] == right, BRIO_ERR_CHECK,
-                 "point %u is represented by %u instead of %u", p, j->t->representative[p], right);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, j->t->representative[p] == right, BRIO_ERR_CHECK, "point %u is represented by %u instead of %u",
+                p, j->t->representative[p], right);
+    return BRIO_OK;
 }
 
 static int compare_places(uint32_t p, uint32_t q, const void *user) {
@@ -109,19 +105,17 @@ static int compare_places(uint32_t p, uint32_t q, const void *user) {
 }
 
 static brio_status check_counts(workspace *w, size_t vertices) {
-    brio_status status = BRIO_OK;
     const brio_delaunay2_stats *s = &w->j->t->stats;
     size_t hidden = 0;
-    BRIO_TRY(brio_sort_many_indices(w->j->ctx, w->hidden, w->num_hidden, compare_places, w));
+    BRIO_FORWARD(brio_sort_many_indices(w->j->ctx, w->hidden, w->num_hidden, compare_places, w));
     for (size_t i = 0; i < w->num_hidden; i++) hidden += i == 0 || compare(w, w->hidden[i - 1], w->hidden[i]) != 0;
     size_t duplicates = s->points - vertices - hidden;
-    BRIO_REQUIRE(w->j->ctx,
-                 s->vertices == vertices && s->duplicates == duplicates && s->hidden == hidden && s->triangles == 0 &&
-                     s->hull_edges == 0,
-                 BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
-                 vertices, duplicates, hidden, s->vertices, s->duplicates, s->hidden);
-done:
-    return status;
+    BRIO_EXPECT(w->j->ctx,
+                s->vertices == vertices && s->duplicates == duplicates && s->hidden == hidden && s->triangles == 0 &&
+                    s->hull_edges == 0,
+                BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
+                vertices, duplicates, hidden, s->vertices, s->duplicates, s->hidden);
+    return BRIO_OK;
 }
 
 /* Checks that the heaviest point represents the others; among equal weights, the one with the lowest index. */

@@ -16,8 +16,7 @@ typedef struct {
 
 static brio_status find_vertices(workspace *w) {
     const brio_plane_judge *j = w->j;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(j->ctx, w->corner, j->num_points));
+    BRIO_FORWARD(BRIO_ALLOC(j->ctx, w->corner, j->num_points));
     for (size_t p = 0; p < j->num_points; p++) w->corner[p] = BRIO_NO_TRIANGLE;
     for (size_t t = 0; t < j->count; t++)
         for (int i = 0; i < 3; i++) {
@@ -25,51 +24,44 @@ static brio_status find_vertices(workspace *w) {
             if (v != BRIO_INFINITE) w->corner[v] = (uint32_t)t;
         }
     for (size_t p = 0; p < j->num_points; p++) w->num_vertices += w->corner[p] != BRIO_NO_TRIANGLE;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Checks that every representative is a vertex and that every vertex represents itself. */
 static brio_status check_vertices(workspace *w) {
-    brio_status status = BRIO_OK;
     const brio_plane_judge *j = w->j;
     for (size_t p = 0; p < j->num_points; p++) {
         uint32_t v = j->t->representative[p];
         bool vertex = w->corner[p] != BRIO_NO_TRIANGLE;
-        BRIO_REQUIRE(j->ctx, v < j->num_points && w->corner[v] != BRIO_NO_TRIANGLE, BRIO_ERR_CHECK,
-                     "point %zu is represented by %u, which is no vertex", p, v);
-        BRIO_REQUIRE(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
+        BRIO_EXPECT(j->ctx, v < j->num_points && w->corner[v] != BRIO_NO_TRIANGLE, BRIO_ERR_CHECK,
+                    "point %zu is represented by %u, which is no vertex", p, v);
+        BRIO_EXPECT(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Checks point p, which is at the place of vertex v. */
 static brio_status check_duplicate(workspace *w, uint32_t p, uint32_t v) {
-    brio_status status = BRIO_OK;
     const brio_plane_judge *j = w->j;
     double more = j->view.record[p][3] - j->view.record[v][3];
-    BRIO_REQUIRE(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position", p, v);
-    BRIO_REQUIRE(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u", p, v);
-    BRIO_REQUIRE(j->ctx, j->t->representative[p] == v, BRIO_ERR_CHECK,
-                 "point %u is a duplicate of vertex %u, but vertex %u represents it", p, v, j->t->representative[p]);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position", p, v);
+    BRIO_EXPECT(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u", p, v);
+    BRIO_EXPECT(j->ctx, j->t->representative[p] == v, BRIO_ERR_CHECK,
+                "point %u is a duplicate of vertex %u, but vertex %u represents it", p, v, j->t->representative[p]);
+    return BRIO_OK;
 }
 
 /* Checks point p, which is in triangle t and at the position of no vertex. Without weights p is inside the circle, so the
  * check fails. */
 static brio_status check_hidden(workspace *w, uint32_t p, uint32_t t) {
-    brio_status status = BRIO_OK;
     brio_plane_judge *j = w->j;
     brio_plane_nearest nearest = {&j->view, &j->filter, j->num_points, w->corner};
-    BRIO_TRY(brio_plane_check_circle(j, t, p));
+    BRIO_FORWARD(brio_plane_check_circle(j, t, p));
     w->hidden[w->num_hidden++] = p;
     uint32_t best = brio_plane_nearest_vertex(&nearest, t, j->view.record[p]);
-    BRIO_REQUIRE(j->ctx, j->t->representative[p] == best, BRIO_ERR_CHECK,
-                 "hidden point %u is represented by %u instead of %u", p, j->t->representative[p], best);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, j->t->representative[p] == best, BRIO_ERR_CHECK,
+                "hidden point %u is represented by %u instead of %u", p, j->t->representative[p], best);
+    return BRIO_OK;
 }
 
 static brio_status check_point(workspace *w, uint32_t p) {
@@ -94,19 +86,17 @@ static int compare_places(uint32_t p, uint32_t q, const void *user) {
 
 /* Checks the counts. Coincident hidden points count once. */
 static brio_status check_counts(workspace *w) {
-    brio_status status = BRIO_OK;
     const brio_plane_judge *j = w->j;
     const brio_delaunay2_stats *s = &j->t->stats;
     size_t hidden = 0;
-    BRIO_TRY(brio_sort_many_indices(j->ctx, w->hidden, w->num_hidden, compare_places, j));
+    BRIO_FORWARD(brio_sort_many_indices(j->ctx, w->hidden, w->num_hidden, compare_places, j));
     for (size_t i = 0; i < w->num_hidden; i++)
         hidden += i == 0 || !brio_same_place(j->view.record[w->hidden[i - 1]], j->view.record[w->hidden[i]]);
     size_t duplicates = j->num_points - w->num_vertices - hidden;
-    BRIO_REQUIRE(j->ctx, s->vertices == w->num_vertices && s->duplicates == duplicates && s->hidden == hidden,
-                 BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
-                 w->num_vertices, duplicates, hidden, s->vertices, s->duplicates, s->hidden);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, s->vertices == w->num_vertices && s->duplicates == duplicates && s->hidden == hidden,
+                BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
+                w->num_vertices, duplicates, hidden, s->vertices, s->duplicates, s->hidden);
+    return BRIO_OK;
 }
 
 brio_status brio_plane_check_points(brio_plane_judge *j) {

@@ -100,18 +100,16 @@ static bool off_hull(search *s, const double (*corner)[4], size_t i) {
 
 /* Finds up to three points in general position. */
 static brio_status find_corners(brio_context *ctx, search *s, double (*corner)[4]) {
-    brio_status status = BRIO_OK;
     const size_t *c = s->corner;
     find_filter(s);
     for (size_t i = 0; i < s->in->count; i++) {
         if (i > 0 && !off_hull(s, (const double(*)[4])corner, i)) continue;
-        BRIO_REQUIRE(ctx, s->count < 3, BRIO_ERR_NO_ANSWER, "point %zu is off the plane of points %zu, %zu and %zu", i,
-                     c[0], c[1], c[2]);
+        BRIO_EXPECT(ctx, s->count < 3, BRIO_ERR_NO_ANSWER, "point %zu is off the plane of points %zu, %zu and %zu", i,
+                    c[0], c[1], c[2]);
         load(s->in, i, corner[s->count]);
         s->corner[s->count++] = i;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the sign of component k of the normal of three points. */

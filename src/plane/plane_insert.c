@@ -94,10 +94,9 @@ ALWAYS_INLINE void dig_triangle(brio_plane_store *s, uint32_t t, uint32_t i, con
 
 /* Finds the cavity of x and its boundary, from triangle t in conflict. */
 ALWAYS_INLINE brio_status dig(brio_plane_store *s, uint32_t t, const double *x, const bool general) {
-    brio_status status = BRIO_OK;
     s->ahead.count = s->cavity.count = s->boundary.count = 0;
-    BRIO_TRY(reserve(s->ctx, &s->ahead, 3));
-    BRIO_TRY(reserve(s->ctx, &s->cavity, 1));
+    BRIO_FORWARD(reserve(s->ctx, &s->ahead, 3));
+    BRIO_FORWARD(reserve(s->ctx, &s->cavity, 1));
     push(&s->ahead, s->triangle[t].mate[0]);
     dig_triangle(s, t, 0, general);
     uint32_t first = s->ahead.item[0]; /* edge 0 comes first */
@@ -105,9 +104,9 @@ ALWAYS_INLINE brio_status dig(brio_plane_store *s, uint32_t t, const double *x, 
     while (s->ahead.count) {
         uint32_t g = s->ahead.item[--s->ahead.count], u = brio_triangle_of(g);
         if (general && s->dug && s->dug[u]) continue; /* an edge inside the cavity, around a hidden vertex */
-        BRIO_TRY(reserve(s->ctx, &s->ahead, 2));
-        BRIO_TRY(reserve(s->ctx, &s->cavity, 1));
-        BRIO_TRY(reserve(s->ctx, &s->boundary, 1));
+        BRIO_FORWARD(reserve(s->ctx, &s->ahead, 2));
+        BRIO_FORWARD(reserve(s->ctx, &s->cavity, 1));
+        BRIO_FORWARD(reserve(s->ctx, &s->boundary, 1));
         if (in_conflict(s, u, x, general))
             dig_triangle(s, u, brio_edge_slot(g), general);
         else
@@ -115,8 +114,7 @@ ALWAYS_INLINE brio_status dig(brio_plane_store *s, uint32_t t, const double *x, 
     }
     assert(s->boundary.count >= 3 && s->cavity.count > 0); /* a disk */
     assert((general && s->weighted) || s->boundary.count == s->cavity.count + 2);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Gives the vertices inside the cavity a representative: the boundary's vertices are marked by their own names, which
@@ -134,17 +132,15 @@ static void hide_inner_vertices(brio_plane_store *s, uint32_t p) {
 
 /* Lists the slots of the new triangles in the cavity's list: slots of the cavity, unused ones, then fresh ones. */
 static brio_status take_slots(brio_plane_store *s) {
-    brio_status status = BRIO_OK;
     size_t need = s->boundary.count;
-    if (s->cavity.count > need) BRIO_TRY(grow(s->ctx, &s->unused, s->cavity.count - need));
+    if (s->cavity.count > need) BRIO_FORWARD(grow(s->ctx, &s->unused, s->cavity.count - need));
     while (s->cavity.count > need) push(&s->unused, s->cavity.item[--s->cavity.count]);
-    BRIO_TRY(reserve(s->ctx, &s->cavity, need - s->cavity.count));
+    BRIO_FORWARD(reserve(s->ctx, &s->cavity, need - s->cavity.count));
     while (s->cavity.count < need)
         push(&s->cavity, s->unused.count ? s->unused.item[--s->unused.count] : (uint32_t)s->count++);
     assert(s->count <= s->capacity);
     assert(s->cavity.count == s->boundary.count);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Turns a triangle with the infinite vertex in slot 1 so that it is in slot 2. */
@@ -214,7 +210,6 @@ ALWAYS_INLINE brio_status fill(brio_plane_store *s, uint32_t p, const bool gener
 }
 
 ALWAYS_INLINE brio_status insert_all(brio_plane_store *s, size_t begin, size_t end, const bool general) {
-    brio_status status = BRIO_OK;
     brio_plane_view view = {s->triangle, (const brio_plane_record *)s->record, s->infinite};
     assert(begin <= end && end <= s->num_points && s->start < s->count);
     for (size_t p = begin; p < end; p++) {
@@ -223,11 +218,10 @@ ALWAYS_INLINE brio_status insert_all(brio_plane_store *s, size_t begin, size_t e
         uint32_t t = brio_plane_walk(&view, &s->filter, s->start, x, &s->stats.walk_steps);
         s->start = t;
         if (!becomes_vertex(s, (uint32_t)p, t, general)) continue;
-        BRIO_TRY(dig(s, t, x, general));
-        BRIO_TRY(fill(s, (uint32_t)p, general));
+        BRIO_FORWARD(dig(s, t, x, general));
+        BRIO_FORWARD(fill(s, (uint32_t)p, general));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status insert_plain(brio_plane_store *s, size_t begin, size_t end) {

@@ -58,15 +58,12 @@ static brio_status plan(brio_plane_natural *n, uint32_t edge, uint32_t centre) {
 static brio_status add_border(brio_plane_natural *n, const brio_triangle *outside, uint32_t outer) {
     uint32_t from = outside->vertex[brio_slot_before(brio_edge_slot(outer))];
     uint32_t to = outside->vertex[brio_slot_after(brio_edge_slot(outer))];
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->border, n->border_room, n->num_points + 1));
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->point, n->point_room, n->num_points + 1));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->border, n->border_room, n->num_points + 1));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->point, n->point_room, n->num_points + 1));
     assert(from != to);
     n->border[n->num_points] = (uint32_t)n->num_tour;
     n->point[n->num_points++] = to;
-    BRIO_TRY(add_centre(n, BRIO_INFINITE, from, to));
-done:
-    return status;
+    return add_centre(n, BRIO_INFINITE, from, to);
 }
 
 static brio_status cross(brio_plane_natural *n, brio_plane_querent *q, uint32_t edge, const double *x) {
@@ -75,32 +72,27 @@ static brio_status cross(brio_plane_natural *n, brio_plane_querent *q, uint32_t 
     assert(t < l->num_triangles && i < 3);
     const brio_triangle *own = &l->triangle[t];
     const uint32_t *v = own->vertex;
-    brio_status status = BRIO_OK;
     if (t >= l->num_finite ||
         !brio_circle_conflict(&q->filter, l->record[v[0]], l->record[v[1]], l->record[v[2]], x, false))
         return add_border(n, own, edge);
-    BRIO_TRY(add_centre(n, v[0], v[1], v[2]));
-    BRIO_TRY(plan(n, own->mate[brio_slot_before(i)], centre));
-    BRIO_TRY(plan(n, own->mate[brio_slot_after(i)], centre));
-done:
-    return status;
+    BRIO_FORWARD(add_centre(n, v[0], v[1], v[2]));
+    BRIO_FORWARD(plan(n, own->mate[brio_slot_before(i)], centre));
+    return plan(n, own->mate[brio_slot_after(i)], centre);
 }
 
 /* Goes round the cavity from triangle t, which holds x. */
 static brio_status go_round(brio_plane_natural *n, brio_plane_querent *q, uint32_t t, const double *x) {
     const brio_triangle *own = &q->l->triangle[t];
-    brio_status status = BRIO_OK;
     n->num_ahead = n->num_centres = n->num_tour = n->num_points = 0;
-    BRIO_TRY(add_centre(n, own->vertex[0], own->vertex[1], own->vertex[2]));
-    BRIO_TRY(plan(n, own->mate[2], BRIO_INFINITE)); /* then the tour begins again */
-    BRIO_TRY(plan(n, own->mate[1], 0));
-    BRIO_TRY(plan(n, own->mate[0], 0));
+    BRIO_FORWARD(add_centre(n, own->vertex[0], own->vertex[1], own->vertex[2]));
+    BRIO_FORWARD(plan(n, own->mate[2], BRIO_INFINITE)); /* then the tour begins again */
+    BRIO_FORWARD(plan(n, own->mate[1], 0));
+    BRIO_FORWARD(plan(n, own->mate[0], 0));
     while (n->num_ahead) {
         brio_plane_step step = n->ahead[--n->num_ahead];
-        BRIO_TRY(step.edge == BRIO_INFINITE ? visit(n, step.centre) : cross(n, q, step.edge, x));
+        BRIO_FORWARD(step.edge == BRIO_INFINITE ? visit(n, step.centre) : cross(n, q, step.edge, x));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- areas --- */
@@ -112,12 +104,11 @@ static void corner_offset(const brio_locator2 *l, uint32_t point, const double *
 
 /* Computes the centres. *found becomes false where doubles do not hold them. */
 static brio_status find_centres(brio_plane_natural *n, const brio_locator2 *l, const double *x, bool *found) {
-    brio_status status = BRIO_OK;
     brio_plane_circles batch; /* no initializer, which would clear all of it */
     double scale = brio_plane_offset_scale(l, n->point, n->num_points, x), record[3][4];
     batch.count = 0;
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->centre, n->centre_room, n->num_centres));
-    BRIO_TRY(BRIO_RESERVE(n->ctx, n->offset, n->offset_room, n->num_points));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->centre, n->centre_room, n->num_centres));
+    BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->offset, n->offset_room, n->num_points));
     for (size_t k = 0; k < n->num_points; k++) brio_plane_offset(l, n->point[k], x, scale, n->offset[k]);
     for (size_t c = 0; c < n->num_centres; c++) {
         for (int i = 0; i < 3; i++) corner_offset(l, n->corner[c][i], x, scale, record[i]);
@@ -127,8 +118,7 @@ static brio_status find_centres(brio_plane_natural *n, const brio_locator2 *l, c
     }
     *found = scale > 0;
     for (size_t c = 0; c < n->num_centres; c++) *found &= isfinite(n->centre[c][0]);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns twice the area that x takes from the point at the end of border edge k. */
@@ -193,15 +183,13 @@ static bool divide_by_sum(brio_plane_natural *n, double sum) {
 
 brio_status brio_plane_natural_coordinates(brio_plane_natural *n, brio_plane_querent *q, const brio_plane_holder *h,
                                            const double *x, bool *found) {
-    brio_status status = BRIO_OK;
     double sum;
     assert(h->triangle < q->l->num_finite && !q->l->weighted);
-    BRIO_TRY(go_round(n, q, h->triangle, x));
+    BRIO_FORWARD(go_round(n, q, h->triangle, x));
     assert(n->num_ahead == 0 && n->num_points >= 3 && n->num_tour >= n->num_centres); /* the border is a cycle */
-    BRIO_TRY(find_centres(n, q->l, x, found));
-    if (!*found) goto done;
-    BRIO_TRY(add_areas(n, &sum));
+    BRIO_FORWARD(find_centres(n, q->l, x, found));
+    if (!*found) return BRIO_OK;
+    BRIO_FORWARD(add_areas(n, &sum));
     *found = divide_by_sum(n, sum) && correct(n) && correct(n);
-done:
-    return status;
+    return BRIO_OK;
 }

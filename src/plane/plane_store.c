@@ -38,16 +38,14 @@ done:
 
 /* Allocates the arrays beside the records. Their sizes are known. */
 static brio_status allocate(brio_plane_store *s) {
-    brio_status status = BRIO_OK;
     size_t records = s->num_points + MORE_RECORDS;
     assert(s->record && s->infinite == s->num_points + 1); /* the layout of plane_store.h */
     s->capacity = 2 * records;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, s->representative, records));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, s->triangle, s->capacity));
-    if (s->weighted) BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, s->dug, s->capacity));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->representative, records));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->triangle, s->capacity));
+    if (s->weighted) BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, s->dug, s->capacity));
     for (size_t i = 0; i < records; i++) s->representative[i] = (uint32_t)i;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status make_records(brio_plane_store *s, brio_plane_input *input) {

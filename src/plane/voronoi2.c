@@ -74,14 +74,12 @@ static void write_vertices(dual *d) {
 }
 
 static brio_status find_vertices(dual *d) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->out->triangle_vertex, d->count));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->out->triangle_vertex, d->count));
     number_circles(d);
-    BRIO_TRY(brio_progress(d->ctx, "voronoi", 0.5));
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->out->vertices, 2 * d->out->num_vertices));
+    BRIO_FORWARD(brio_progress(d->ctx, "voronoi", 0.5));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->out->vertices, 2 * d->out->num_vertices));
     write_vertices(d);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- regions --- */
@@ -122,10 +120,9 @@ static size_t write_region(const dual *d, uint32_t t, uint32_t vertex, uint32_t 
 
 static brio_status find_regions(dual *d) {
     brio_diagram2 *out = d->out;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(d->ctx, d->corner, d->num_points));
-    BRIO_TRY(BRIO_ALLOC(d->ctx, out->offsets, d->num_points + 1));
-    BRIO_TRY(BRIO_ALLOC(d->ctx, out->items, 3 * d->count + d->hull));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->corner, d->num_points));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->offsets, d->num_points + 1));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->items, 3 * d->count + d->hull));
     for (size_t p = 0; p < d->num_points; p++) d->corner[p] = BRIO_NO_TRIANGLE;
     for (uint32_t t = 0; t < d->count; t++)
         for (int i = 0; i < 3; i++) d->corner[d->triangle[t].vertex[i]] = t;
@@ -136,21 +133,16 @@ static brio_status find_regions(dual *d) {
         out->offsets[p + 1] = begin + (owns ? write_region(d, d->corner[p], (uint32_t)p, out->items + begin) : 0);
     }
     assert(out->offsets[d->num_points] <= 3 * d->count + d->hull);
-    BRIO_TRY(BRIO_RESIZE(d->ctx, out->items, out->offsets[d->num_points]));
-done:
-    return status;
+    return BRIO_RESIZE(d->ctx, out->items, out->offsets[d->num_points]);
 }
 
 /* --- the object --- */
 
 static brio_status fill(dual *d) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_progress(d->ctx, "voronoi", 0));
-    BRIO_TRY(find_vertices(d));
-    BRIO_TRY(find_regions(d));
-    BRIO_TRY(brio_progress(d->ctx, "voronoi", 1));
-done:
-    return status;
+    BRIO_FORWARD(brio_progress(d->ctx, "voronoi", 0));
+    BRIO_FORWARD(find_vertices(d));
+    BRIO_FORWARD(find_regions(d));
+    return brio_progress(d->ctx, "voronoi", 1);
 }
 
 static brio_status diagram_new(brio_context *ctx, const brio_triangulation2 *t, brio_diagram2 **out) {

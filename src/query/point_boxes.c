@@ -45,7 +45,6 @@ static void box_boxes(const brio_point_boxes *b, int level) {
 }
 
 brio_status brio_point_boxes_new(brio_context *ctx, const double *points, size_t count, brio_point_boxes *out) {
-    brio_status status = BRIO_OK;
     size_t boxes = (count + RUN - 1) / RUN;
     *out = (brio_point_boxes){.count = count, .point = (const double(*)[3])points};
     for (size_t size = boxes; size > 0; size = size > 1 ? (size + FAN - 1) / FAN : 0) {
@@ -53,11 +52,10 @@ brio_status brio_point_boxes_new(brio_context *ctx, const double *points, size_t
         out->levels++;
         assert(out->levels <= BRIO_BOX_LEVELS);
     }
-    BRIO_TRY(BRIO_ALLOC(ctx, out->box, out->first[out->levels]));
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, boxes, RUNS_A_THREAD), boxes, box_runs, out));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->box, out->first[out->levels]));
+    BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, boxes, RUNS_A_THREAD), boxes, box_runs, out));
     for (int level = 1; level < out->levels; level++) box_boxes(out, level);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_point_boxes_free(brio_context *ctx, brio_point_boxes *boxes) {

@@ -95,10 +95,9 @@ typedef struct {
 
 /* Whether the segments whose ends are [begin, end) of the order make one arc. */
 static brio_status is_arc(brio_context *ctx, facet_work *w, size_t begin, size_t end, bool *arc) {
-    brio_status status = BRIO_OK;
     size_t segments = (end - begin) / 2, joints = 0, ends = 0, sets = 0;
-    BRIO_TRY(BRIO_RESERVE(ctx, w->joint, w->joint_capacity, end - begin));
-    BRIO_TRY(BRIO_RESERVE(ctx, w->segment, w->segment_capacity, segments));
+    BRIO_FORWARD(BRIO_RESERVE(ctx, w->joint, w->joint_capacity, end - begin));
+    BRIO_FORWARD(BRIO_RESERVE(ctx, w->segment, w->segment_capacity, segments));
     for (size_t i = 0; i < segments; i++) w->segment[i] = (uint32_t)i;
     for (size_t i = begin; i < end; i++) {
         const segment_end *e = &w->end[w->order[i]];
@@ -112,43 +111,38 @@ static brio_status is_arc(brio_context *ctx, facet_work *w, size_t begin, size_t
         brio_unite(w->segment, (uint32_t)w->joint[i], (uint32_t)w->joint[i + 1], true);
     for (size_t i = 0; i < segments; i++) sets += w->segment[i] == i;
     *arc = sets == 1 && ends == 2;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Every segment has two ends: the lists are of one complex. */
 static brio_status check_segments(const brio_restriction *r, const facet_work *w) {
-    brio_status status = BRIO_OK;
     bool paired = w->count % 2 == 0;
     for (size_t i = 0; i + 1 < w->count && paired; i += 2)
         paired = compare_ends(w->order[i], w->order[i + 1], w->end) == 0;
-    BRIO_REQUIRE(r->ctx, paired, BRIO_ERR_INTERNAL, "a face and a facet of the Voronoi diagram have no common segment");
-done:
-    return status;
+    BRIO_EXPECT(r->ctx, paired, BRIO_ERR_INTERNAL, "a face and a facet of the Voronoi diagram have no common segment");
+    return BRIO_OK;
 }
 
 static brio_status count_facets(const brio_restriction *r, facet_work *w, brio_ball_counts *n, uint8_t *bad) {
-    brio_status status = BRIO_OK;
     size_t most = 3 * r->num_crossings + 2 * (size_t)r->first[r->num_edges];
-    BRIO_REQUIRE(r->ctx, most < UINT32_MAX, BRIO_ERR_TOO_LARGE,
-                 "the surface and the cells have more than 2^32 segments");
-    BRIO_TRY(BRIO_ALLOC(r->ctx, w->end, most));
+    BRIO_EXPECT(r->ctx, most < UINT32_MAX, BRIO_ERR_TOO_LARGE,
+                "the surface and the cells have more than 2^32 segments");
+    BRIO_FORWARD(BRIO_ALLOC(r->ctx, w->end, most));
     w->count = list_ends(r, w->end);
-    BRIO_TRY(BRIO_ALLOC(r->ctx, w->order, w->count));
+    BRIO_FORWARD(BRIO_ALLOC(r->ctx, w->order, w->count));
     for (size_t i = 0; i < w->count; i++) w->order[i] = (uint32_t)i;
     brio_sort_indices(w->order, w->count, compare_ends, w->end);
-    BRIO_TRY(check_segments(r, w));
+    BRIO_FORWARD(check_segments(r, w));
     for (size_t i = 0, end; i < w->count; i = end) {
         const uint32_t *s = w->end[w->order[i]].sample;
         bool arc = false;
         for (end = i; end < w->count && !memcmp(w->end[w->order[end]].sample, s, sizeof(uint32_t[2]));) end += 2;
-        BRIO_TRY(is_arc(r->ctx, w, i, end, &arc));
+        BRIO_FORWARD(is_arc(r->ctx, w, i, end, &arc));
         n->facets++;
         n->bad_facets += !arc;
         if (!arc) mark(bad, s, 2);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- cells --- */

@@ -80,17 +80,15 @@ static uint32_t nearest_sample(brio_restriction *r, uint32_t from, const double 
 
 static brio_status locate_vertices(brio_restriction *r) {
     const brio_mesh *m = r->surface;
-    brio_status status = BRIO_OK;
     uint32_t near = r->first_sample;
-    BRIO_TRY(BRIO_ALLOC(r->ctx, r->cell, m->num_vertices));
+    BRIO_FORWARD(BRIO_ALLOC(r->ctx, r->cell, m->num_vertices));
     for (size_t v = 0; v < m->num_vertices; v++) r->cell[v] = BRIO_INFINITE;
     for (size_t i = 0; i < 3 * m->num_faces; i++) { /* in the order of the faces, which is often one through space */
         uint32_t v = m->face_vertices[i];
         if (r->cell[v] == BRIO_INFINITE) r->cell[v] = nearest_sample(r, near, corner(r, v));
         near = r->cell[v];
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- along edges --- */
@@ -111,23 +109,21 @@ static uint32_t next_cell(brio_restriction *r, uint32_t a, const double *p, cons
 }
 
 static brio_status follow_edges(brio_restriction *r) {
-    brio_status status = BRIO_OK;
     size_t count = 0;
-    BRIO_TRY(BRIO_ALLOC(r->ctx, r->first, r->num_edges + 1));
+    BRIO_FORWARD(BRIO_ALLOC(r->ctx, r->first, r->num_edges + 1));
     for (size_t e = 0; e < r->num_edges; e++) {
         const double *p = corner(r, r->end[e][0]), *q = corner(r, r->end[e][1]);
         r->first[e] = count;
         for (uint32_t a = r->cell[r->end[e][0]]; a != BRIO_INFINITE; a = next_cell(r, a, p, q)) {
-            BRIO_TRY(BRIO_RESERVE(r->ctx, r->met, r->met_capacity, count + 1));
+            BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->met, r->met_capacity, count + 1));
             r->met[count++] = a;
         }
-        BRIO_REQUIRE(r->ctx, r->met[count - 1] == r->cell[r->end[e][1]], BRIO_ERR_INTERNAL,
-                     "edge %zu of the surface ends in another cell than its corner", e);
-        if (e % 65536 == 0) BRIO_TRY(brio_progress(r->ctx, "edges", (double)e / (double)r->num_edges));
+        BRIO_EXPECT(r->ctx, r->met[count - 1] == r->cell[r->end[e][1]], BRIO_ERR_INTERNAL,
+                    "edge %zu of the surface ends in another cell than its corner", e);
+        if (e % 65536 == 0) BRIO_FORWARD(brio_progress(r->ctx, "edges", (double)e / (double)r->num_edges));
     }
     r->first[r->num_edges] = count;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- faces --- */
@@ -176,7 +172,6 @@ static void sort_three(uint32_t s[3]) {
 
 /* Tries the Voronoi edges of one tetrahedron at the cell of sample a. Each is tried from one of its two tetrahedra. */
 static brio_status try_tetrahedron(brio_restriction *r, face_cells *c, uint32_t f, uint32_t a, uint32_t t) {
-    brio_status status = BRIO_OK;
     for (int i = 0; i < 4; i++) {
         uint32_t other = r->tet[t].mate[i] / 4, s[3];
         bool infinite = r->tet[other].vertex[3] == BRIO_INFINITE;
@@ -186,34 +181,31 @@ static brio_status try_tetrahedron(brio_restriction *r, face_cells *c, uint32_t 
         sort_three(s);
         int sign = crosses(r, f, t, i, s);
         if (!sign) continue;
-        for (int k = 0; k < 3; k++) BRIO_TRY(meet(r, c, f, s[k]));
+        for (int k = 0; k < 3; k++) BRIO_FORWARD(meet(r, c, f, s[k]));
         if (a != s[0]) continue; /* the face meets all three cells: one of them lists the crossing */
-        BRIO_TRY(BRIO_RESERVE(r->ctx, r->crossing, r->crossing_capacity, r->num_crossings + 1));
+        BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->crossing, r->crossing_capacity, r->num_crossings + 1));
         r->crossing[r->num_crossings++] = (brio_crossing){f, {s[0], s[1], s[2]}, sign};
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status cut_face(brio_restriction *r, face_cells *c, uint32_t f) {
-    brio_status status = BRIO_OK;
     size_t before = r->num_pieces;
     c->count = 0;
     for (int i = 0; i < 3; i++) {
         uint32_t e = r->edge_of[f][i];
-        for (uint64_t k = r->first[e]; k < r->first[e + 1]; k++) BRIO_TRY(meet(r, c, f, r->met[k]));
+        for (uint64_t k = r->first[e]; k < r->first[e + 1]; k++) BRIO_FORWARD(meet(r, c, f, r->met[k]));
     }
     bool one = c->count == 1; /* it meets no bisector */
     for (size_t k = 0; k < c->count; k++) {
         uint32_t a = c->list[k];
         for (uint64_t i = r->tets.offsets[a]; i < r->tets.offsets[a + 1] && !one; i++)
-            BRIO_TRY(try_tetrahedron(r, c, f, a, r->tets.items[i]));
-        BRIO_TRY(BRIO_RESERVE(r->ctx, r->piece, r->piece_capacity, r->num_pieces + 1));
+            BRIO_FORWARD(try_tetrahedron(r, c, f, a, r->tets.items[i]));
+        BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->piece, r->piece_capacity, r->num_pieces + 1));
         r->piece[r->num_pieces++] = (uint64_t)a << 32 | f;
     }
     brio_sort_keys(r->piece + before, r->num_pieces - before);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status cut_faces(brio_restriction *r) {

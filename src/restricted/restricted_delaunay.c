@@ -38,18 +38,15 @@ done:
 }
 
 static brio_status begin(brio_restriction *r, const brio_triangulation *t) {
-    brio_status status = BRIO_OK;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
-    BRIO_REQUIRE(
+    BRIO_EXPECT(
         r->ctx, s->dimension == 3, BRIO_ERR_NO_ANSWER,
         "the samples have dimension %d: they have no tetrahedra, whose spheres the surface could be held against",
         s->dimension);
     r->tet = brio_triangulation_tetrahedra(t);
     r->first_sample = r->tet[0].vertex[0];
-    BRIO_TRY(brio_triangulation_incident_tetrahedra(r->ctx, t, &r->tets));
-    BRIO_TRY(brio_triangulation_neighbours(r->ctx, t, &r->neighbours));
-done:
-    return status;
+    BRIO_FORWARD(brio_triangulation_incident_tetrahedra(r->ctx, t, &r->tets));
+    return brio_triangulation_neighbours(r->ctx, t, &r->neighbours);
 }
 
 static void end(brio_restriction *r) {

@@ -131,14 +131,12 @@ static void look_at_points(void *user, size_t begin, size_t end, int thread) {
 
 /* Runs over all items in threads, and reports. */
 static brio_status run(coverage *c, size_t count, double from, double to, void (*body)(void *, size_t, size_t, int)) {
-    brio_status status = BRIO_OK;
     for (c->first = 0; c->first < count; c->first += BATCH) {
         size_t part = count - c->first < BATCH ? count - c->first : BATCH;
-        BRIO_TRY(brio_progress(c->ctx, "coverage", from + (to - from) * (double)c->first / (double)count));
-        BRIO_TRY(brio_for_chunks(c->ctx, brio_threads(c->ctx, part, ITEMS_A_CHUNK), part, ITEMS_A_CHUNK, body, c));
+        BRIO_FORWARD(brio_progress(c->ctx, "coverage", from + (to - from) * (double)c->first / (double)count));
+        BRIO_FORWARD(brio_for_chunks(c->ctx, brio_threads(c->ctx, part, ITEMS_A_CHUNK), part, ITEMS_A_CHUNK, body, c));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- bridges --- */
@@ -206,34 +204,26 @@ done:
 /* --- the whole --- */
 
 static brio_status measure_points(coverage *c, size_t num_points) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_point_tree_new(c->ctx, c->points, num_points, &c->tree));
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->spacing, num_points));
-    BRIO_TRY(run(c, num_points, 0, 0.3, measure_spacings));
-done:
-    return status;
+    BRIO_FORWARD(brio_point_tree_new(c->ctx, c->points, num_points, &c->tree));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->spacing, num_points));
+    return run(c, num_points, 0, 0.3, measure_spacings);
 }
 
 static brio_status judge_faces(coverage *c, uint8_t *bridge, brio_coverage *out) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->of, c->mesh->num_faces));
-    BRIO_TRY(run(c, c->mesh->num_faces, 0.3, 0.7, look_at_faces));
-    BRIO_TRY(sum_up(c, bridge, out));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->of, c->mesh->num_faces));
+    BRIO_FORWARD(run(c, c->mesh->num_faces, 0.3, 0.7, look_at_faces));
+    return sum_up(c, bridge, out);
 }
 
 /* Counts the points that the surface leaves.   left_out  NULL, or receives them. */
 static brio_status judge_points(coverage *c, size_t num_points, uint8_t *left_out, size_t *count) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_triangle_tree_new(c->ctx, c->mesh, &c->faces));
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->left_out, num_points));
-    BRIO_TRY(run(c, num_points, 0.7, 1, look_at_points));
+    BRIO_FORWARD(brio_triangle_tree_new(c->ctx, c->mesh, &c->faces));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->left_out, num_points));
+    BRIO_FORWARD(run(c, num_points, 0.7, 1, look_at_points));
     *count = 0;
     for (size_t i = 0; i < num_points; i++) *count += c->left_out[i];
     if (left_out) memcpy(left_out, c->left_out, num_points);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* A surface and points, of any size, in a unit in which squares neither overflow nor vanish. */
@@ -246,28 +236,25 @@ typedef struct {
 
 static brio_status begin(comparison *x, brio_context *ctx, const brio_mesh *mesh, const double *points,
                          size_t num_points) {
-    brio_status status = BRIO_OK;
     *x = (comparison){.c = {.ctx = ctx, .mesh = mesh, .points = points}, .scaled = *mesh};
-    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
-    BRIO_TRY(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the surface"));
-    BRIO_TRY(brio_refuse_vertices(ctx, points, num_points, "the points"));
-    BRIO_REQUIRE(ctx, mesh->num_faces && num_points, BRIO_ERR_ARGUMENT,
-                 "a surface and points are needed: %zu faces, %zu points", mesh->num_faces, num_points);
+    BRIO_FORWARD(brio_mesh_check_faces(ctx, mesh));
+    BRIO_FORWARD(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the surface"));
+    BRIO_FORWARD(brio_refuse_vertices(ctx, points, num_points, "the points"));
+    BRIO_EXPECT(ctx, mesh->num_faces && num_points, BRIO_ERR_ARGUMENT,
+                "a surface and points are needed: %zu faces, %zu points", mesh->num_faces, num_points);
     int exponent = brio_exponent(
         fmax(brio_greatest(mesh->vertices, 3 * mesh->num_vertices), brio_greatest(points, 3 * num_points)));
     if (abs(exponent) > HUGE_EXPONENT) {
         x->exponent = exponent;
-        BRIO_TRY(BRIO_ALLOC(ctx, x->vertices, 3 * mesh->num_vertices));
-        BRIO_TRY(BRIO_ALLOC(ctx, x->places, 3 * num_points));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, x->vertices, 3 * mesh->num_vertices));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, x->places, 3 * num_points));
         brio_scale(ctx, mesh->vertices, 3 * mesh->num_vertices, -exponent, x->vertices);
         brio_scale(ctx, points, 3 * num_points, -exponent, x->places);
         x->scaled.vertices = x->vertices;
         x->c.mesh = &x->scaled;
         x->c.points = x->places;
     }
-    BRIO_TRY(measure_points(&x->c, num_points));
-done:
-    return status;
+    return measure_points(&x->c, num_points);
 }
 
 static void end(comparison *x) {

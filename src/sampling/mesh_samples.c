@@ -28,48 +28,42 @@ typedef struct {
 } sampler;
 
 static brio_status add_point(sampler *s, const double *p) {
-    brio_status status = BRIO_OK;
     double near = APART * s->spacing;
     if (brio_nearest_square(&s->vertices, p, near * near) < near * near) return BRIO_OK;
-    BRIO_REQUIRE(s->ctx, s->count < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "samples of %g are more than 2^31 on this mesh",
-                 s->spacing);
-    BRIO_TRY(BRIO_RESERVE(s->ctx, s->points, s->capacity, 3 * s->count + 3));
+    BRIO_EXPECT(s->ctx, s->count < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "samples of %g are more than 2^31 on this mesh",
+                s->spacing);
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, s->points, s->capacity, 3 * s->count + 3));
     memcpy(s->points + 3 * s->count++, p, 3 * sizeof *p);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns into how many parts a length is cut. */
 static brio_status parts_of(sampler *s, double length, uint32_t *parts) {
-    brio_status status = BRIO_OK;
     double n = fmax(ceil(length / (SHARE * s->spacing)), 1);
-    BRIO_REQUIRE(s->ctx, n < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "a side of %g spacings", length / s->spacing);
+    BRIO_EXPECT(s->ctx, n < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "a side of %g spacings", length / s->spacing);
     *parts = (uint32_t)n;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds rows of points parallel to side ab, which is the longest. */
 static brio_status add_rows(sampler *s, const double *a, const double *b, const double *c) {
-    brio_status status = BRIO_OK;
     double u[3], v[3], n[3];
     uint32_t rows, columns;
     for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k];
     double length = brio_length(u);
     if (!(length > 0)) return BRIO_OK;
     brio_cross(u, v, n);
-    BRIO_TRY(parts_of(s, brio_length(n) / length, &rows));
+    BRIO_FORWARD(parts_of(s, brio_length(n) / length, &rows));
     for (uint32_t row = 0; row <= rows; row++) {
         double up = (double)row / rows;
-        BRIO_TRY(parts_of(s, (1 - up) * length, &columns));
+        BRIO_FORWARD(parts_of(s, (1 - up) * length, &columns));
         for (uint32_t column = 0; column <= columns; column++) {
             double p[3], along = (1 - up) * column / columns;
             for (int k = 0; k < 3; k++) p[k] = a[k] + along * u[k] + up * v[k];
-            BRIO_TRY(add_point(s, p));
+            BRIO_FORWARD(add_point(s, p));
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status add_triangle(sampler *s, const double *const p[3]) {

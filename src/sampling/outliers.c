@@ -155,25 +155,21 @@ done:
 
 /* Does all points, a group at a time. */
 static brio_status for_all(brio_context *ctx, search *s, brio_part_fn part) {
-    brio_status status = BRIO_OK;
     size_t n = s->tree.count;
     for (s->first = 0; s->first < n; s->first += GROUP) {
         size_t count = n - s->first < GROUP ? n - s->first : GROUP;
-        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, CHUNK, part, s));
-        BRIO_TRY(brio_progress(ctx, "outliers", (double)(s->first + count) / (double)n));
+        BRIO_FORWARD(brio_for_chunks(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, CHUNK, part, s));
+        BRIO_FORWARD(brio_progress(ctx, "outliers", (double)(s->first + count) / (double)n));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status check(brio_context *ctx, int neighbours, double factor) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, neighbours >= 1 && neighbours < BRIO_MOST_NEAR, BRIO_ERR_ARGUMENT,
-                 "outliers by %d neighbours, expected 1 to %d", neighbours, BRIO_MOST_NEAR - 1);
-    BRIO_REQUIRE(ctx, factor >= 1 && isfinite(factor), BRIO_ERR_ARGUMENT,
-                 "a factor of %g, expected a finite number, 1 or more", factor);
-done:
-    return status;
+    BRIO_EXPECT(ctx, neighbours >= 1 && neighbours < BRIO_MOST_NEAR, BRIO_ERR_ARGUMENT,
+                "outliers by %d neighbours, expected 1 to %d", neighbours, BRIO_MOST_NEAR - 1);
+    BRIO_EXPECT(ctx, factor >= 1 && isfinite(factor), BRIO_ERR_ARGUMENT,
+                "a factor of %g, expected a finite number, 1 or more", factor);
+    return BRIO_OK;
 }
 
 brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_points, int neighbours,

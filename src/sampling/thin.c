@@ -136,17 +136,15 @@ static void find_keys(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status find_slabs(thinning *t) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < t->num_points; i++) {
         uint64_t place = t->keys[i] >> t->shift[0];
         if (i == 0 || place != t->slabs[t->num_slabs - 1].place) {
-            BRIO_TRY(BRIO_RESERVE(t->ctx, t->slabs, t->slab_capacity, t->num_slabs + 1));
+            BRIO_FORWARD(BRIO_RESERVE(t->ctx, t->slabs, t->slab_capacity, t->num_slabs + 1));
             t->slabs[t->num_slabs++] = (slab){place, i, i, 0};
         }
         t->slabs[t->num_slabs - 1].end = i + 1;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- one slab --- */
@@ -277,33 +275,28 @@ static void thin_slabs(void *user, size_t begin, size_t end, int thread) {
 /* --- all slabs --- */
 
 static brio_status thin_all(thinning *t, brio_bar bar) {
-    brio_status status = BRIO_OK;
     brio_progress_part(t->ctx, bar, 0.5, 1);
     for (t->parity = 0; t->parity < 2; t->parity++)
         for (size_t first = 0, last; first < t->num_slabs; first = last) {
             for (last = first + 1; last < t->num_slabs && t->slabs[last].end - t->slabs[first].begin < GROUP;) last++;
             t->first_slab = first;
             size_t points = t->slabs[last - 1].end - t->slabs[first].begin;
-            BRIO_TRY(
+            BRIO_FORWARD(
                 brio_for_chunks(t->ctx, brio_threads(t->ctx, points, POINTS_A_THREAD), last - first, 1, thin_slabs, t));
-            BRIO_TRY(brio_progress(t->ctx, "thin", (t->parity + (double)last / (double)t->num_slabs) / 2));
+            BRIO_FORWARD(brio_progress(t->ctx, "thin", (t->parity + (double)last / (double)t->num_slabs) / 2));
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status sort_points(thinning *t) {
-    brio_status status = BRIO_OK;
     size_t n = t->num_points;
-    BRIO_TRY(BRIO_ALLOC(t->ctx, t->keys, n));
-    BRIO_TRY(BRIO_ALLOC(t->ctx, t->order, n));
-    BRIO_TRY(brio_for(t->ctx, brio_threads(t->ctx, n, POINTS_A_THREAD), n, find_keys, t));
-    BRIO_TRY(brio_progress(t->ctx, "sort", 0.1));
-    BRIO_TRY(brio_radix_sort(t->ctx, t->keys, t->order, n, t->bits[0] + t->bits[1] + t->bits[2]));
-    BRIO_TRY(brio_progress(t->ctx, "sort", 1));
-    BRIO_TRY(find_slabs(t));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->keys, n));
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->order, n));
+    BRIO_FORWARD(brio_for(t->ctx, brio_threads(t->ctx, n, POINTS_A_THREAD), n, find_keys, t));
+    BRIO_FORWARD(brio_progress(t->ctx, "sort", 0.1));
+    BRIO_FORWARD(brio_radix_sort(t->ctx, t->keys, t->order, n, t->bits[0] + t->bits[1] + t->bits[2]));
+    BRIO_FORWARD(brio_progress(t->ctx, "sort", 1));
+    return find_slabs(t);
 }
 
 static size_t count_chosen(const uint8_t *chosen, size_t count) {

@@ -52,20 +52,17 @@ static void number_near_blocks(brio_csg_blocks *b) {
 
 /* Calls body for all blocks, batch by batch, and reports progress. */
 static brio_status in_batches(brio_context *ctx, brio_csg_blocks *b, brio_part_fn body, double from) {
-    brio_status status = BRIO_OK;
     size_t n = num_blocks(b);
     for (b->first = 0; b->first < n; b->first += BATCH) {
         size_t count = n - b->first < BATCH ? n - b->first : BATCH;
-        BRIO_TRY(brio_progress(ctx, "blocks", from + 0.5 * (double)b->first / (double)n));
-        BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, count, BLOCKS_A_CHUNK), count, BLOCKS_A_CHUNK, body, b));
+        BRIO_FORWARD(brio_progress(ctx, "blocks", from + 0.5 * (double)b->first / (double)n));
+        BRIO_FORWARD(brio_for_chunks(ctx, brio_threads(ctx, count, BLOCKS_A_CHUNK), count, BLOCKS_A_CHUNK, body, b));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_csg_blocks_find(brio_context *ctx, const brio_csg *tree, const brio_implicit_grid *grid,
                                  brio_csg_blocks *out) {
-    brio_status status = BRIO_OK;
     *out = (brio_csg_blocks){.tree = tree, .side = CELLS_A_BLOCK * grid->cell, .words = (tree->num_nodes + 63) / 64};
     for (int k = 0; k < 3; k++) {
         out->low[k] = grid->low[k];
@@ -73,22 +70,18 @@ brio_status brio_csg_blocks_find(brio_context *ctx, const brio_csg *tree, const 
         out->inner[1][k] = grid->low[k] + (grid->cells[k] - 0.5) * grid->cell;
         out->count[k] = grid->cells[k] / CELLS_A_BLOCK + 1;
     }
-    BRIO_TRY(BRIO_ALLOC(ctx, out->centre, num_blocks(out)));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->slot, num_blocks(out)));
-    BRIO_TRY(in_batches(ctx, out, fill_centres, 0));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->centre, num_blocks(out)));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->slot, num_blocks(out)));
+    BRIO_FORWARD(in_batches(ctx, out, fill_centres, 0));
     number_near_blocks(out);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_csg_blocks_make(brio_context *ctx, const brio_csg *tree, const brio_implicit_grid *grid,
                                  brio_csg_blocks *out) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_csg_blocks_find(ctx, tree, grid, out));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, out->need, (size_t)out->num_near * out->words));
-    BRIO_TRY(in_batches(ctx, out, mark_blocks, 0.5));
-done:
-    return status;
+    BRIO_FORWARD(brio_csg_blocks_find(ctx, tree, grid, out));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, out->need, (size_t)out->num_near * out->words));
+    return in_batches(ctx, out, mark_blocks, 0.5);
 }
 
 double brio_csg_blocks_value(const double *p, const void *blocks) {

@@ -192,29 +192,24 @@ static void make_points(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status fill(brio_context *ctx, brio_kind kind, uint64_t seed, brio_mesh *mesh) {
-    brio_status status = BRIO_OK;
     size_t n = mesh->num_vertices;
     generator g = {.kind = kind, .seed = seed, .points = mesh->vertices};
     if (kind == BRIO_KIND_GRID) g.side = grid_side(n);
     if (kind == BRIO_KIND_DEPTH) g.frame = brio_depth_frame_of(n, seed);
     for (; g.start < n; g.start += BATCH) {
         size_t count = n - g.start < BATCH ? n - g.start : BATCH;
-        BRIO_TRY(brio_progress(ctx, "generate", (double)g.start / (double)n));
-        BRIO_TRY(brio_for(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, make_points, &g));
+        BRIO_FORWARD(brio_progress(ctx, "generate", (double)g.start / (double)n));
+        BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, count, POINTS_A_THREAD), count, make_points, &g));
     }
-    BRIO_TRY(brio_progress(ctx, "generate", 1));
-done:
-    return status;
+    return brio_progress(ctx, "generate", 1);
 }
 
 static brio_status check_options(brio_context *ctx, const brio_generate_options *options) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, isfinite(options->noise) && options->noise >= 0, BRIO_ERR_ARGUMENT,
-                 "noise %g: expected a finite number, 0 or more", options->noise);
-    BRIO_REQUIRE(ctx, options->views >= 1 && options->views <= UINT16_MAX, BRIO_ERR_ARGUMENT,
-                 "%d views: expected 1 to %d", options->views, UINT16_MAX);
-done:
-    return status;
+    BRIO_EXPECT(ctx, isfinite(options->noise) && options->noise >= 0, BRIO_ERR_ARGUMENT,
+                "noise %g: expected a finite number, 0 or more", options->noise);
+    BRIO_EXPECT(ctx, options->views >= 1 && options->views <= UINT16_MAX, BRIO_ERR_ARGUMENT,
+                "%d views: expected 1 to %d", options->views, UINT16_MAX);
+    return BRIO_OK;
 }
 
 brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
@@ -241,21 +236,18 @@ done:
 
 brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
     brio_implicit_grid grid = {.value = brio_sculpture};
     double low[3], high[3], side = 0;
     *out = NULL;
-    BRIO_REQUIRE(ctx, !resolution || (resolution >= LEAST_RESOLUTION && resolution <= MOST_RESOLUTION),
-                 BRIO_ERR_ARGUMENT, "resolution %zu: expected %d to %d, or 0 for %d", resolution, LEAST_RESOLUTION,
-                 MOST_RESOLUTION, DEFAULT_RESOLUTION);
+    BRIO_EXPECT(ctx, !resolution || (resolution >= LEAST_RESOLUTION && resolution <= MOST_RESOLUTION),
+                BRIO_ERR_ARGUMENT, "resolution %zu: expected %d to %d, or 0 for %d", resolution, LEAST_RESOLUTION,
+                MOST_RESOLUTION, DEFAULT_RESOLUTION);
     brio_sculpture_box(low, high);
     for (int k = 0; k < 3; k++) side = fmax(side, high[k] - low[k]);
     grid.cell = side / (double)(resolution ? resolution : DEFAULT_RESOLUTION);
     for (int k = 0; k < 3; k++) { /* whole cells, with equal excess on both sides */
-        BRIO_TRY(brio_implicit_cells(ctx, ceil((high[k] - low[k]) / grid.cell), &grid.cells[k]));
+        BRIO_FORWARD(brio_implicit_cells(ctx, ceil((high[k] - low[k]) / grid.cell), &grid.cells[k]));
         grid.low[k] = 0.5 * (low[k] + high[k] - grid.cells[k] * grid.cell);
     }
-    BRIO_TRY(brio_marched_surface(ctx, &grid, out));
-done:
-    return status;
+    return brio_marched_surface(ctx, &grid, out);
 }

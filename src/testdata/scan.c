@@ -221,35 +221,31 @@ static void measure_pixels(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status scan_block(scan *c, const sensor *e, int view, uint64_t first, uint64_t end) {
-    brio_status status = BRIO_OK;
     size_t pixels = (size_t)(end - first);
-    BRIO_TRY(brio_for_chunks(c->ctx, brio_threads(c->ctx, pixels, RAYS_A_CHUNK), pixels, RAYS_A_CHUNK, measure_pixels,
-                             &(block){c, e, view, first}));
+    BRIO_FORWARD(brio_for_chunks(c->ctx, brio_threads(c->ctx, pixels, RAYS_A_CHUNK), pixels, RAYS_A_CHUNK,
+                                 measure_pixels, &(block){c, e, view, first}));
     for (uint64_t i = 0; i < end - first; i++) {
         const double *p = c->measured + 3 * i;
         if (!c->seen[i]) continue;
-        BRIO_REQUIRE(c->ctx, brio_all_finite(p, 3), BRIO_ERR_ARGUMENT,
-                     "noise %g moves a point farther than doubles can hold", c->scanner->noise);
-        BRIO_TRY(BRIO_RESERVE(c->ctx, c->points, c->point_capacity, 3 * c->count + 3));
-        BRIO_TRY(BRIO_RESERVE(c->ctx, c->views, c->view_capacity, c->count + 1));
+        BRIO_EXPECT(c->ctx, brio_all_finite(p, 3), BRIO_ERR_ARGUMENT,
+                    "noise %g moves a point farther than doubles can hold", c->scanner->noise);
+        BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->points, c->point_capacity, 3 * c->count + 3));
+        BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->views, c->view_capacity, c->count + 1));
         for (int k = 0; k < 3; k++) c->points[3 * c->count + k] = p[k];
         c->views[c->count++] = (uint16_t)view;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status scan_view(scan *c, int view) {
-    brio_status status = BRIO_OK;
     sensor e = sensor_of_view(c->scanner, view);
     uint64_t side = (uint64_t)ceil(c->raster), pixels = side * side;
     for (uint64_t first = 0; first < pixels; first += BLOCK) {
         double done_pixels = (double)first / (double)pixels;
-        BRIO_TRY(brio_progress(c->ctx, "scan", (view + done_pixels) / c->scanner->views));
-        BRIO_TRY(scan_block(c, &e, view, first, pixels - first < BLOCK ? pixels : first + BLOCK));
+        BRIO_FORWARD(brio_progress(c->ctx, "scan", (view + done_pixels) / c->scanner->views));
+        BRIO_FORWARD(scan_block(c, &e, view, first, pixels - first < BLOCK ? pixels : first + BLOCK));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status make_mesh(scan *c, brio_mesh **out) {

@@ -70,17 +70,15 @@ static void next_step(solid *s) {
 /* --- meshes --- */
 
 static brio_status make_grid(const solid *s, size_t resolution, brio_implicit_grid *grid) {
-    brio_status status = BRIO_OK;
     double side = 0;
     *grid = (brio_implicit_grid){0};
     for (int k = 0; k < 3; k++) side = fmax(side, s->high[k] - s->low[k]);
     grid->cell = side / (double)resolution;
     for (int k = 0; k < 3; k++) { /* two cells of room on either side */
-        BRIO_TRY(brio_implicit_cells(s->ctx, ceil((s->high[k] - s->low[k]) / grid->cell) + 4, &grid->cells[k]));
+        BRIO_FORWARD(brio_implicit_cells(s->ctx, ceil((s->high[k] - s->low[k]) / grid->cell) + 4, &grid->cells[k]));
         grid->low[k] = 0.5 * (s->low[k] + s->high[k] - grid->cells[k] * grid->cell);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status make_blocks(const solid *s, brio_implicit_grid *grid, brio_csg_blocks *blocks) {
@@ -92,14 +90,11 @@ static brio_status make_blocks(const solid *s, brio_implicit_grid *grid, brio_cs
 /* Makes a mesh of the solid. `blocks` receives the values that the grid refers to. */
 static brio_status make_mesh(solid *s, size_t resolution, brio_implicit_grid *grid, brio_csg_blocks *blocks,
                              brio_mesh **out) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(make_grid(s, resolution, grid));
+    BRIO_FORWARD(make_grid(s, resolution, grid));
     next_step(s);
-    BRIO_TRY(make_blocks(s, grid, blocks));
+    BRIO_FORWARD(make_blocks(s, grid, blocks));
     next_step(s);
-    BRIO_TRY(brio_marched_surface(s->ctx, grid, out));
-done:
-    return status;
+    return brio_marched_surface(s->ctx, grid, out);
 }
 
 /* --- choice of a solid --- */
@@ -188,34 +183,29 @@ done:
 
 /* Builds the solid of one attempt. Its sizes are in spacings of its own samples. *good tells whether to keep it. */
 static brio_status try_solid(solid *s, bool *good) {
-    brio_status status = BRIO_OK;
     double spacing = FIRST_SPACING, thin = 0;
     *good = false;
     for (int i = 0; i < MOST_BUILDS && fabs(spacing / s->spacing - 1) > SAME_SPACING; i++) {
         s->spacing = spacing;
         build(s);
         if (s->tree->full) return BRIO_OK;
-        BRIO_TRY(measure(s, &spacing, &thin));
+        BRIO_FORWARD(measure(s, &spacing, &thin));
         if (spacing < LEAST_SPACING) return BRIO_OK;
     }
     if (fabs(spacing / s->spacing - 1) > 2 * SAME_SPACING || thin > MOST_THIN) return BRIO_OK;
-    BRIO_TRY(check_topology(s, good));
-done:
-    return status;
+    return check_topology(s, good);
 }
 
 /* Draws solids until one is good. The last one is taken as it is. */
 static brio_status choose_solid(solid *s, uint64_t seed) {
-    brio_status status = BRIO_OK;
     bool good = false;
     for (uint64_t attempt = 0; attempt < MOST_ATTEMPTS && !good; attempt++) {
         s->seed = brio_hash(brio_mix(seed) + (uint64_t)s->kind, attempt);
         s->family = brio_mix(~seed) + attempt / ATTEMPTS_A_FAMILY;
         s->spacing = INFINITY;
-        BRIO_TRY(try_solid(s, &good));
+        BRIO_FORWARD(try_solid(s, &good));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the result --- */

@@ -65,46 +65,42 @@ done:
 
 /* Makes equal neighbours in a sorted list mates; those without one go to the front of the list, *alone of them. */
 static brio_status match(brio_context *ctx, brio_tetrahedra *t, uint32_t *sorted, size_t n, size_t *alone) {
-    brio_status status = BRIO_OK;
     *alone = 0;
     for (size_t i = 0; i < n; i++) {
         bool pair = i + 1 < n && same_vertices(t, sorted[i], sorted[i + 1]);
-        BRIO_TRY(brio_look(ctx, 1));
+        BRIO_FORWARD(brio_look(ctx, 1));
         if (!pair) {
             sorted[(*alone)++] = sorted[i];
             continue;
         }
-        BRIO_REQUIRE(ctx, i + 2 >= n || !same_vertices(t, sorted[i], sorted[i + 2]), BRIO_ERR_CHECK,
-                     "tetrahedra %u, %u and %u share a facet", brio_tet_of(sorted[i]), brio_tet_of(sorted[i + 1]),
-                     brio_tet_of(sorted[i + 2]));
+        BRIO_EXPECT(ctx, i + 2 >= n || !same_vertices(t, sorted[i], sorted[i + 2]), BRIO_ERR_CHECK,
+                    "tetrahedra %u, %u and %u share a facet", brio_tet_of(sorted[i]), brio_tet_of(sorted[i + 1]),
+                    brio_tet_of(sorted[i + 2]));
         assert(*alone <= i); /* handles left alone are written behind those that are read */
         *brio_mate(t, sorted[i]) = sorted[i + 1];
         *brio_mate(t, sorted[i + 1]) = sorted[i];
         i++;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Copies the vertices, each tetrahedron made positive. */
 static brio_status copy_positive(brio_context *ctx, const brio_record *r, size_t num_points,
                                  const brio_tetrahedron_list *from, brio_tetrahedron *to) {
-    brio_status status = BRIO_OK;
     for (size_t tet = 0; tet < from->count; tet++) {
         uint32_t *v = to[tet].vertex;
         memcpy(v, from->vertices + from->stride * tet, 4 * sizeof *v);
         for (int i = 0; i < 4; i++)
-            BRIO_REQUIRE(ctx, v[i] < num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
+            BRIO_EXPECT(ctx, v[i] < num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
         int sign = brio_orient3d(r[v[0]], r[v[1]], r[v[2]], r[v[3]]);
-        BRIO_REQUIRE(ctx, sign != 0, BRIO_ERR_CHECK, "tetrahedron %zu (%u %u %u %u) is flat", tet, v[0], v[1], v[2],
-                     v[3]);
+        BRIO_EXPECT(ctx, sign != 0, BRIO_ERR_CHECK, "tetrahedron %zu (%u %u %u %u) is flat", tet, v[0], v[1], v[2],
+                    v[3]);
         if (sign < 0) {
             uint32_t swap = v[2];
             v[2] = v[3], v[3] = swap;
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes an infinite tetrahedron behind each hull facet.   edges  receives the handles of its three facets through the

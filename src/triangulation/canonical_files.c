@@ -117,16 +117,14 @@ static brio_status append(distribution *d, const brio_tetrahedron *t, uint32_t s
 
 /* Writes the chunks that are not full, and tells where partitions begin. */
 static brio_status flush_all(distribution *d) {
-    brio_status status = BRIO_OK;
     for (size_t p = 0, begin = 0; p < 2 * d->ranges; begin += d->part[p++].count) {
         partition *part = &d->part[p];
         size_t rest = part->count % d->chunk, whole = part->count - rest + (rest ? d->chunk : 0);
-        if (rest) BRIO_TRY(flush_chunk(d, p));
+        if (rest) BRIO_FORWARD(flush_chunk(d, p));
         part->begin = begin;
         if (whole > d->most) d->most = whole;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status distribute(distribution *d) {
@@ -169,16 +167,13 @@ static brio_status reserve_entries(distribution *d) {
     size_t n = d->most;
     d->in_memory = n * (sizeof *d->entries + sizeof *d->sorted) <= 2 * budget(ctx);
     brio_status (*room)(brio_context *, void *, size_t, size_t) = d->in_memory ? brio_in_memory : brio_resize_to;
-    brio_status status = BRIO_OK;
     if (d->chunks) brio_block_direct(d->chunks, d->in_memory);
-    BRIO_TRY(room(ctx, &d->entries, n, sizeof *d->entries));
-    BRIO_TRY(room(ctx, &d->sorted, n + ALIGNED, sizeof *d->sorted));
-    BRIO_TRY(room(ctx, &d->order, n, sizeof *d->order));
-    BRIO_TRY(room(ctx, &d->name, n, sizeof *d->name));
-    BRIO_TRY(room(ctx, &d->key, n, sizeof *d->key));
-    BRIO_TRY(room(ctx, &d->end, d->range, sizeof *d->end));
-done:
-    return status;
+    BRIO_FORWARD(room(ctx, &d->entries, n, sizeof *d->entries));
+    BRIO_FORWARD(room(ctx, &d->sorted, n + ALIGNED, sizeof *d->sorted));
+    BRIO_FORWARD(room(ctx, &d->order, n, sizeof *d->order));
+    BRIO_FORWARD(room(ctx, &d->name, n, sizeof *d->name));
+    BRIO_FORWARD(room(ctx, &d->key, n, sizeof *d->key));
+    return room(ctx, &d->end, d->range, sizeof *d->end);
 }
 
 /* Finds the next run of chunks of a partition from *begin on. Sets *begin to its beginning. Returns its length, or 0. */
@@ -191,12 +186,10 @@ static size_t next_run(const distribution *d, size_t p, size_t *begin) {
 }
 
 static brio_status read_partition(distribution *d, size_t p) {
-    brio_status status = BRIO_OK;
     size_t n = 0, bytes = d->chunk * sizeof(entry);
     for (size_t c = 0, run; (run = next_run(d, p, &c)) > 0; c += run, n += run * d->chunk)
-        BRIO_TRY(brio_block_read(d->store->ctx, d->chunks, c * bytes, &d->entries[n], run * bytes));
-done:
-    return status;
+        BRIO_FORWARD(brio_block_read(d->store->ctx, d->chunks, c * bytes, &d->entries[n], run * bytes));
+    return BRIO_OK;
 }
 
 /* Lists the entries at hand by their latest vertices; bucket b ends at end[b]. */

@@ -97,20 +97,17 @@ static void list_buckets(void *user, size_t from, size_t to, int thread) {
 }
 
 static brio_status fill_buckets(sorter *s) {
-    brio_status status = BRIO_OK;
     size_t count = s->store->t.count;
     uint32_t sum = 0;
-    BRIO_TRY(brio_for(s->store->ctx, s->threads, count, count_buckets, s));
+    BRIO_FORWARD(brio_for(s->store->ctx, s->threads, count, count_buckets, s));
     for (size_t b = 0; b < s->buckets; b++) {
         uint32_t c = s->end[b];
         s->end[b] = sum;
         sum += c;
     }
-    BRIO_REQUIRE(s->store->ctx, sum == s->live, BRIO_ERR_INTERNAL, "%u slots are in use instead of %zu", (unsigned)sum,
-                 s->live);
-    BRIO_TRY(brio_for(s->store->ctx, s->threads, count, list_buckets, s));
-done:
-    return status;
+    BRIO_EXPECT(s->store->ctx, sum == s->live, BRIO_ERR_INTERNAL, "%u slots are in use instead of %zu", (unsigned)sum,
+                s->live);
+    return brio_for(s->store->ctx, s->threads, count, list_buckets, s);
 }
 
 /* Sorts the tetrahedra of the places [begin, end) and notes the place and the turn of each. */

@@ -51,14 +51,12 @@ brio_status brio_cavity_new(brio_context *ctx, brio_cavity *out) {
 
 brio_status brio_cavity_pause(brio_inserter *ins) {
     brio_cavity *c = &ins->cavity;
-    brio_status status = BRIO_OK;
     assert(c->num_tets <= c->capacity && c->pause <= c->capacity);
-    if (c->pause == c->capacity) BRIO_TRY(reserve_lists(ins->store->ctx, c, 2 * c->capacity));
-    if (c->num_tets >= BRIO_INSERT_WORK / 2) BRIO_TRY(brio_inserter_report(ins, ins->done));
+    if (c->pause == c->capacity) BRIO_FORWARD(reserve_lists(ins->store->ctx, c, 2 * c->capacity));
+    if (c->num_tets >= BRIO_INSERT_WORK / 2) BRIO_FORWARD(brio_inserter_report(ins, ins->done));
     c->pause = c->capacity - c->num_tets < BRIO_INSERT_WORK ? c->capacity : c->num_tets + BRIO_INSERT_WORK;
     assert(c->num_tets + 2 * BRIO_BATCH <= c->pause); /* else the dig would pause again at once */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_cavity_undo(brio_inserter *ins) {
@@ -223,21 +221,19 @@ static inline void meet(brio_cavity *c, int bits, brio_tetrahedron *tets, uint32
 static brio_status join_by_hash(brio_inserter *ins, uint32_t p) {
     brio_cavity *c = &ins->cavity;
     brio_tetrahedron *tets = ins->store->t.tet;
-    brio_status status = BRIO_OK;
     int bits = 6; /* of the number of places, at least twice that of the edges */
     while ((size_t)1 << bits < 3 * c->num_border) bits++;
-    BRIO_TRY(BRIO_RESERVE(ins->store->ctx, c->edge, c->edge_capacity, (size_t)1 << bits));
+    BRIO_FORWARD(BRIO_RESERVE(ins->store->ctx, c->edge, c->edge_capacity, (size_t)1 << bits));
     memset(c->edge, 0, sizeof *c->edge << bits);
     for (size_t b = 0; b < c->num_border; b++) {
         uint32_t v[3];
-        BRIO_TRY(report_between(ins, b));
+        BRIO_FORWARD(report_between(ins, b));
         create(tets, c->created[b], c->border[b], p, v);
         tets[c->created[b]].mate[0] = c->border[b];
         for (int i = 0; i < 3; i++)
             meet(c, bits, tets, brio_facet_of(c->created[b], i + 1), v[(i + 1) % 3], v[(i + 2) % 3]);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Lists the vertices of the cavity before it is overwritten; only needed where points can be hidden. */
@@ -311,30 +307,28 @@ static bool star_is_valid(const brio_inserter *ins, uint32_t p) {
 brio_status brio_cavity_fill(brio_inserter *ins, uint32_t p, bool *deferred) {
     brio_cavity *c = &ins->cavity;
     const bool weighted = ins->store->weighted;
-    brio_status status = BRIO_OK;
     size_t slots = c->num_tets + ins->num_unused;
     assert(c->num_tets > 0 && c->num_border >= 4 && c->num_border % 2 == 0); /* a sphere of triangles */
     assert(c->num_border <= 4 * c->capacity);
-    if (c->num_border > slots) BRIO_TRY(brio_inserter_reserve(ins, c->num_border - slots, deferred));
+    if (c->num_border > slots) BRIO_FORWARD(brio_inserter_reserve(ins, c->num_border - slots, deferred));
     if (*deferred) {
         brio_cavity_undo(ins);
         return BRIO_OK;
     }
-    if (weighted) BRIO_TRY(list_vertices(ins));
+    if (weighted) BRIO_FORWARD(list_vertices(ins));
     if (c->num_tets <= BYTES_MOST) number_vertices(ins);
-    BRIO_TRY(take_slots(ins));
+    BRIO_FORWARD(take_slots(ins));
     if (c->num_tets <= SMALL_MOST)
         join_by_table(ins, p, 6);
     else if (c->num_tets <= BYTES_MOST)
         join_by_table(ins, p, 8);
     else
-        BRIO_TRY(join_by_hash(ins, p));
+        BRIO_FORWARD(join_by_hash(ins, p));
     if (weighted) hide_interior(ins, p);
     ins->stats.created += c->num_border;
     ins->stats.destroyed += c->num_tets;
     c->num_created = c->num_border;
     ins->walk.start = c->created[0];
     assert(star_is_valid(ins, p));
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -80,19 +80,17 @@ static brio_status report(const brio_judge *j, size_t tet, double from, double s
 }
 
 static brio_status check_orientation(brio_judge *j) {
-    brio_status status = BRIO_OK;
     const brio_record *r = j->t.record;
     for (size_t tet = 0; tet < j->t.count; tet++) {
-        BRIO_TRY(report(j, tet, 0, 0.2));
+        BRIO_FORWARD(report(j, tet, 0, 0.2));
         const uint32_t *v = vertices_of(j, tet);
         bool infinite = v[3] == BRIO_INFINITE;
         for (int i = 0; i < 4 - infinite; i++)
-            BRIO_REQUIRE(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
-        BRIO_REQUIRE(j->ctx, infinite || brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]]) > 0,
-                     BRIO_ERR_CHECK, "tetrahedron %zu (%u %u %u %u) is not positive", tet, v[0], v[1], v[2], v[3]);
+            BRIO_EXPECT(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
+        BRIO_EXPECT(j->ctx, infinite || brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]]) > 0,
+                    BRIO_ERR_CHECK, "tetrahedron %zu (%u %u %u %u) is not positive", tet, v[0], v[1], v[2], v[3]);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the slot of vertex v among the slots of a facet: 0 to 2, or 3 when v is no vertex of the facet. */
@@ -104,76 +102,66 @@ static int place_in_facet(const uint32_t *vertex, const uint8_t *facet, uint32_t
 
 /* Runs tests 2 and 3 on one facet whose mate's handle is in range. */
 static brio_status check_mate(brio_judge *j, uint32_t f, uint32_t g) {
-    brio_status status = BRIO_OK;
     assert(f < 4 * j->t.count && g < 4 * j->t.count);
     size_t tet = brio_tet_of(f), other = brio_tet_of(g);
     const uint32_t *v = vertices_of(j, tet), *w = vertices_of(j, other);
     const uint8_t *p = BRIO_FACET[brio_slot_of(f)], *q = BRIO_FACET[brio_slot_of(g)];
     int at[3];
     for (int i = 0; i < 3; i++) at[i] = place_in_facet(w, q, v[p[i]]);
-    BRIO_REQUIRE(j->ctx, *brio_mate(&j->t, g) == f && at[0] < 3 && at[1] < 3 && at[2] < 3, BRIO_ERR_CHECK,
-                 "facet %d of tetrahedron %zu and its mate do not match", brio_slot_of(f), tet);
-    BRIO_REQUIRE(j->ctx, at[1] == (at[0] + 2) % 3 && at[2] == (at[0] + 1) % 3, BRIO_ERR_CHECK,
-                 "tetrahedra %zu and %zu overlap: they lie on one side of the facet that they share", tet, other);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, *brio_mate(&j->t, g) == f && at[0] < 3 && at[1] < 3 && at[2] < 3, BRIO_ERR_CHECK,
+                "facet %d of tetrahedron %zu and its mate do not match", brio_slot_of(f), tet);
+    BRIO_EXPECT(j->ctx, at[1] == (at[0] + 2) % 3 && at[2] == (at[0] + 1) % 3, BRIO_ERR_CHECK,
+                "tetrahedra %zu and %zu overlap: they lie on one side of the facet that they share", tet, other);
+    return BRIO_OK;
 }
 
 static brio_status check_mates(brio_judge *j) {
-    brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
-        if (f % 4 == 0) BRIO_TRY(report(j, f / 4, 0.2, 0.1));
+        if (f % 4 == 0) BRIO_FORWARD(report(j, f / 4, 0.2, 0.1));
         uint32_t g = *brio_mate(&j->t, (uint32_t)f);
-        BRIO_REQUIRE(j->ctx, g < 4 * j->t.count, BRIO_ERR_CHECK, "facet %zu of tetrahedron %zu has no mate", f % 4,
-                     f / 4);
-        BRIO_TRY(check_mate(j, (uint32_t)f, g));
+        BRIO_EXPECT(j->ctx, g < 4 * j->t.count, BRIO_ERR_CHECK, "facet %zu of tetrahedron %zu has no mate", f % 4,
+                    f / 4);
+        BRIO_FORWARD(check_mate(j, (uint32_t)f, g));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- geometry --- */
 
 static brio_status check_hull_edge(brio_judge *j, size_t tet, uint32_t far) {
-    brio_status status = BRIO_OK;
     const uint32_t *v = vertices_of(j, tet);
     const brio_record *r = j->t.record;
-    BRIO_REQUIRE(j->ctx, brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[far]) <= 0, BRIO_ERR_CHECK,
-                 "the hull is not convex: point %u is outside of facet (%u %u %u)", far, v[0], v[1], v[2]);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[far]) <= 0, BRIO_ERR_CHECK,
+                "the hull is not convex: point %u is outside of facet (%u %u %u)", far, v[0], v[1], v[2]);
+    return BRIO_OK;
 }
 
 brio_status brio_check_sphere(brio_judge *j, size_t tet, uint32_t p) {
-    brio_status status = BRIO_OK;
     const uint32_t *v = vertices_of(j, tet);
     const double *a = j->t.record[v[0]], *b = j->t.record[v[1]], *c = j->t.record[v[2]], *d = j->t.record[v[3]],
                  *e = j->t.record[p];
     int sign = brio_insphere_sign(&j->filter, a, b, c, d, e, j->weighted);
-    BRIO_REQUIRE(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the sphere of tetrahedron %zu (%u %u %u %u)", p,
-                 tet, v[0], v[1], v[2], v[3]);
+    BRIO_EXPECT(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the sphere of tetrahedron %zu (%u %u %u %u)", p,
+                tet, v[0], v[1], v[2], v[3]);
     if (sign == 0 && brio_insphere_tie(&j->filter, a, b, c, d, e) > 0) j->canonical = false;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Runs tests 5 and 6 on each pair of mates once. Skips pairs of a finite and an infinite tetrahedron, which need no
  * test. */
 static brio_status check_facets(brio_judge *j) {
-    brio_status status = BRIO_OK;
     for (size_t f = 0; f < 4 * j->t.count; f++) {
-        if (f % 4 == 0) BRIO_TRY(report(j, f / 4, 0.3, 0.5));
+        if (f % 4 == 0) BRIO_FORWARD(report(j, f / 4, 0.3, 0.5));
         uint32_t g = *brio_mate(&j->t, (uint32_t)f);
         if (g < f) continue;
         bool infinite = brio_is_infinite(&j->t, (uint32_t)(f / 4)), other = brio_is_infinite(&j->t, brio_tet_of(g));
         uint32_t far = vertices_of(j, brio_tet_of(g))[brio_slot_of(g)];
         if (infinite && other)
-            BRIO_TRY(check_hull_edge(j, f / 4, far));
+            BRIO_FORWARD(check_hull_edge(j, f / 4, far));
         else if (!infinite && !other)
-            BRIO_TRY(brio_check_sphere(j, f / 4, far));
+            BRIO_FORWARD(brio_check_sphere(j, f / 4, far));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the side of the plane (a, b, c) on which o lies. An orientation is affine in its last point. So the first of
@@ -195,33 +183,28 @@ static bool holds_seed(brio_judge *j, const uint32_t *seed, const uint32_t *v) {
 
 /* Runs test 4. */
 static brio_status check_cover(brio_judge *j) {
-    brio_status status = BRIO_OK;
     size_t first = 0;
     while (first < j->t.count && brio_is_infinite(&j->t, (uint32_t)first)) first++;
-    BRIO_REQUIRE(j->ctx, first < j->t.count, BRIO_ERR_CHECK, "no finite tetrahedron");
+    BRIO_EXPECT(j->ctx, first < j->t.count, BRIO_ERR_CHECK, "no finite tetrahedron");
     const uint32_t *seed = vertices_of(j, first);
     for (size_t tet = 0; tet < j->t.count; tet++) {
-        BRIO_TRY(report(j, tet, 0.8, 0.2));
+        BRIO_FORWARD(report(j, tet, 0.8, 0.2));
         const uint32_t *v = vertices_of(j, tet);
         if (v[3] == BRIO_INFINITE)
-            BRIO_REQUIRE(j->ctx, side_of_seed(j, seed, v[0], v[1], v[2]) < 0, BRIO_ERR_CHECK,
-                         "tetrahedron %zu is outside of hull facet (%u %u %u)", first, v[0], v[1], v[2]);
+            BRIO_EXPECT(j->ctx, side_of_seed(j, seed, v[0], v[1], v[2]) < 0, BRIO_ERR_CHECK,
+                        "tetrahedron %zu is outside of hull facet (%u %u %u)", first, v[0], v[1], v[2]);
         else
-            BRIO_REQUIRE(j->ctx, tet == first || !holds_seed(j, seed, v), BRIO_ERR_CHECK,
-                         "tetrahedra %zu and %zu overlap", first, tet);
+            BRIO_EXPECT(j->ctx, tet == first || !holds_seed(j, seed, v), BRIO_ERR_CHECK,
+                        "tetrahedra %zu and %zu overlap", first, tet);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_check_tetrahedra(brio_judge *j) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(check_orientation(j));
-    BRIO_TRY(check_mates(j));
-    BRIO_TRY(check_facets(j));
-    BRIO_TRY(check_cover(j));
-done:
-    return status;
+    BRIO_FORWARD(check_orientation(j));
+    BRIO_FORWARD(check_mates(j));
+    BRIO_FORWARD(check_facets(j));
+    return check_cover(j);
 }
 
 /* --- the two public checks --- */
@@ -256,26 +239,22 @@ done:
 
 /* Checks that the finite tetrahedra come first. */
 static brio_status check_sequence(brio_context *ctx, const brio_triangulation *t) {
-    brio_status status = BRIO_OK;
     for (size_t tet = 0; tet < t->stats.tetrahedra + t->stats.hull_facets; tet++)
-        BRIO_REQUIRE(ctx, (t->tet[tet].vertex[3] == BRIO_INFINITE) == (tet >= t->stats.tetrahedra), BRIO_ERR_CHECK,
-                     "tetrahedron %zu of %zu finite and %zu infinite ones is out of place", tet, t->stats.tetrahedra,
-                     t->stats.hull_facets);
-done:
-    return status;
+        BRIO_EXPECT(ctx, (t->tet[tet].vertex[3] == BRIO_INFINITE) == (tet >= t->stats.tetrahedra), BRIO_ERR_CHECK,
+                    "tetrahedron %zu of %zu finite and %zu infinite ones is out of place", tet, t->stats.tetrahedra,
+                    t->stats.hull_facets);
+    return BRIO_OK;
 }
 
 static brio_status check_solid(brio_context *ctx, const brio_triangulation *t, const brio_record *record,
                                bool weighted) {
-    brio_status status = BRIO_OK;
     brio_tetrahedra view = {t->tet, t->stats.tetrahedra + t->stats.hull_facets, BRIO_INFINITE, record};
     brio_judge j = brio_judge_of(ctx, &view, t->stats.points, weighted);
-    BRIO_TRY(check_sequence(ctx, t));
-    BRIO_TRY(brio_check_tetrahedra(&j));
-    BRIO_TRY(brio_check_points(&j, t));
-    BRIO_REQUIRE(ctx, j.canonical, BRIO_ERR_CHECK, "ties are not broken by the symbolic perturbation");
-done:
-    return status;
+    BRIO_FORWARD(check_sequence(ctx, t));
+    BRIO_FORWARD(brio_check_tetrahedra(&j));
+    BRIO_FORWARD(brio_check_points(&j, t));
+    BRIO_EXPECT(ctx, j.canonical, BRIO_ERR_CHECK, "ties are not broken by the symbolic perturbation");
+    return BRIO_OK;
 }
 
 brio_status brio_triangulation_check(brio_context *ctx, const brio_triangulation *t, const double *points,

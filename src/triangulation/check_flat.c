@@ -64,35 +64,31 @@ static double reach_of(const double *points, size_t n) {
 /* Checks an input without points or at one position. The heaviest point represents the others; among equal weights,
  * the one with the lowest index. */
 static brio_status check_one_position(brio_context *ctx, const brio_triangulation *t, const double *weights) {
-    brio_status status = BRIO_OK;
     size_t n = t->stats.points, best = 0;
     for (size_t p = 1; p < n; p++)
         if (weights && weights[p] > weights[best]) best = p;
     for (size_t p = 0; p < n; p++)
-        BRIO_REQUIRE(ctx, t->representative[p] == best, BRIO_ERR_CHECK, "point %zu is represented by %u instead of %zu",
-                     p, t->representative[p], best);
-    BRIO_REQUIRE(ctx, t->stats.vertices == (n > 0) && t->stats.duplicates == n - (n > 0) && t->stats.hidden == 0,
-                 BRIO_ERR_CHECK, "%zu points at one position are counted as %zu vertices, %zu duplicates, %zu hidden",
-                 n, t->stats.vertices, t->stats.duplicates, t->stats.hidden);
-done:
-    return status;
+        BRIO_EXPECT(ctx, t->representative[p] == best, BRIO_ERR_CHECK, "point %zu is represented by %u instead of %zu",
+                    p, t->representative[p], best);
+    BRIO_EXPECT(ctx, t->stats.vertices == (n > 0) && t->stats.duplicates == n - (n > 0) && t->stats.hidden == 0,
+                BRIO_ERR_CHECK, "%zu points at one position are counted as %zu vertices, %zu duplicates, %zu hidden", n,
+                t->stats.vertices, t->stats.duplicates, t->stats.hidden);
+    return BRIO_OK;
 }
 
 /* Compares a result with the checked triangulation of its points and the apexes after them. */
 static brio_status compare_with_solid(brio_context *ctx, const brio_triangulation *t, const brio_triangulation *solid) {
-    brio_status status = BRIO_OK;
     size_t n = t->stats.points, vertices = solid->stats.vertices - (solid->stats.points - n);
     for (size_t p = 0; p < n; p++)
-        BRIO_REQUIRE(ctx, t->representative[p] == solid->representative[p], BRIO_ERR_CHECK,
-                     "point %zu is represented by %u instead of %u", p, t->representative[p], solid->representative[p]);
-    BRIO_REQUIRE(ctx,
-                 t->stats.vertices == vertices && t->stats.duplicates == solid->stats.duplicates &&
-                     t->stats.hidden == solid->stats.hidden,
-                 BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
-                 vertices, solid->stats.duplicates, solid->stats.hidden, t->stats.vertices, t->stats.duplicates,
-                 t->stats.hidden);
-done:
-    return status;
+        BRIO_EXPECT(ctx, t->representative[p] == solid->representative[p], BRIO_ERR_CHECK,
+                    "point %zu is represented by %u instead of %u", p, t->representative[p], solid->representative[p]);
+    BRIO_EXPECT(ctx,
+                t->stats.vertices == vertices && t->stats.duplicates == solid->stats.duplicates &&
+                    t->stats.hidden == solid->stats.hidden,
+                BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
+                vertices, solid->stats.duplicates, solid->stats.hidden, t->stats.vertices, t->stats.duplicates,
+                t->stats.hidden);
+    return BRIO_OK;
 }
 
 /* Copies the weights, and gives each apex the least weight of all. */

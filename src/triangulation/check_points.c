@@ -26,8 +26,7 @@ typedef struct {
 
 static brio_status find_vertices(workspace *w) {
     const brio_judge *j = w->j;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(j->ctx, w->vertex_tet, j->num_points));
+    BRIO_FORWARD(BRIO_ALLOC(j->ctx, w->vertex_tet, j->num_points));
     for (size_t p = 0; p < j->num_points; p++) w->vertex_tet[p] = BRIO_NO_TET;
     for (size_t tet = 0; tet < j->t.count; tet++)
         for (int i = 0; i < 4; i++) {
@@ -35,23 +34,20 @@ static brio_status find_vertices(workspace *w) {
             if (v != BRIO_INFINITE) w->vertex_tet[v] = (uint32_t)tet;
         }
     for (size_t p = 0; p < j->num_points; p++) w->num_vertices += w->vertex_tet[p] != BRIO_NO_TET;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Checks that every representative is a vertex, or left open, and that every vertex represents itself. */
 static brio_status check_vertices(workspace *w) {
-    brio_status status = BRIO_OK;
     const brio_judge *j = w->j;
     for (size_t p = 0; p < j->num_points; p++) {
         uint32_t v = w->result->representative[p];
         bool vertex = w->vertex_tet[p] != BRIO_NO_TET, open = v == BRIO_INFINITE && w->result->leaves_hidden;
-        BRIO_REQUIRE(j->ctx, open || (v < j->num_points && w->vertex_tet[v] != BRIO_NO_TET), BRIO_ERR_CHECK,
-                     "point %zu is represented by %u, which is no vertex", p, v);
-        BRIO_REQUIRE(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
+        BRIO_EXPECT(j->ctx, open || (v < j->num_points && w->vertex_tet[v] != BRIO_NO_TET), BRIO_ERR_CHECK,
+                    "point %zu is represented by %u, which is no vertex", p, v);
+        BRIO_EXPECT(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the vertex of a tetrahedron at position x, or BRIO_INFINITE. */
@@ -64,34 +60,30 @@ static uint32_t vertex_at(const brio_judge *j, uint32_t tet, const double *x) {
 
 /* Checks point p, which is at the position of vertex v. */
 static brio_status check_duplicate(workspace *w, uint32_t p, uint32_t v) {
-    brio_status status = BRIO_OK;
     const brio_judge *j = w->j;
     double more = j->weighted ? j->t.record[p][3] - j->t.record[v][3] : 0;
-    BRIO_REQUIRE(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position", p, v);
-    if (!w->result) goto done;
-    BRIO_REQUIRE(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u", p, v);
-    BRIO_REQUIRE(j->ctx, w->result->representative[p] == v, BRIO_ERR_CHECK,
-                 "point %u is a duplicate of vertex %u, but vertex %u represents it", p, v,
-                 w->result->representative[p]);
-done:
-    return status;
+    BRIO_EXPECT(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position", p, v);
+    if (!w->result) return BRIO_OK;
+    BRIO_EXPECT(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u", p, v);
+    BRIO_EXPECT(j->ctx, w->result->representative[p] == v, BRIO_ERR_CHECK,
+                "point %u is a duplicate of vertex %u, but vertex %u represents it", p, v,
+                w->result->representative[p]);
+    return BRIO_OK;
 }
 
 /* Checks point p, which is in tetrahedron tet and at the position of no vertex. Without weights p is inside the
  * sphere, so the check fails. */
 static brio_status check_hidden(workspace *w, uint32_t p, uint32_t tet) {
-    brio_status status = BRIO_OK;
     brio_judge *j = w->j;
     uint32_t best = BRIO_INFINITE;
-    BRIO_TRY(brio_check_sphere(j, tet, p));
-    if (!w->result) goto done;
+    BRIO_FORWARD(brio_check_sphere(j, tet, p));
+    if (!w->result) return BRIO_OK;
     assert(w->num_hidden < j->num_points - w->num_vertices);
     w->hidden[w->num_hidden++] = p;
-    if (!w->result->leaves_hidden) BRIO_TRY(brio_nearest_vertex(&w->nearest, tet, j->t.record[p], &best));
-    BRIO_REQUIRE(j->ctx, w->result->representative[p] == best, BRIO_ERR_CHECK,
-                 "hidden point %u is represented by %u instead of %u", p, w->result->representative[p], best);
-done:
-    return status;
+    if (!w->result->leaves_hidden) BRIO_FORWARD(brio_nearest_vertex(&w->nearest, tet, j->t.record[p], &best));
+    BRIO_EXPECT(j->ctx, w->result->representative[p] == best, BRIO_ERR_CHECK,
+                "hidden point %u is represented by %u instead of %u", p, w->result->representative[p], best);
+    return BRIO_OK;
 }
 
 static brio_status check_point(workspace *w, uint32_t p) {
@@ -116,19 +108,17 @@ static int compare_positions(uint32_t p, uint32_t q, const void *record) {
 
 /* Checks the counts. Coincident hidden points count once. */
 static brio_status check_counts(workspace *w) {
-    brio_status status = BRIO_OK;
     const brio_record *r = w->j->t.record;
     const brio_delaunay_stats *s = &w->result->stats;
     size_t hidden = 0;
-    BRIO_TRY(brio_sort_rows(w->j->ctx, &(brio_row_order){*r, 4, compare_positions, r}, w->hidden, w->num_hidden));
+    BRIO_FORWARD(brio_sort_rows(w->j->ctx, &(brio_row_order){*r, 4, compare_positions, r}, w->hidden, w->num_hidden));
     for (size_t i = 0; i < w->num_hidden; i++)
         hidden += i == 0 || !brio_same_position(r[w->hidden[i - 1]], r[w->hidden[i]]);
     size_t duplicates = w->j->num_points - w->num_vertices - hidden;
-    BRIO_REQUIRE(w->j->ctx, s->vertices == w->num_vertices && s->duplicates == duplicates && s->hidden == hidden,
-                 BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
-                 w->num_vertices, duplicates, hidden, s->vertices, s->duplicates, s->hidden);
-done:
-    return status;
+    BRIO_EXPECT(w->j->ctx, s->vertices == w->num_vertices && s->duplicates == duplicates && s->hidden == hidden,
+                BRIO_ERR_CHECK, "%zu vertices, %zu duplicates and %zu hidden points are counted as %zu, %zu and %zu",
+                w->num_vertices, duplicates, hidden, s->vertices, s->duplicates, s->hidden);
+    return BRIO_OK;
 }
 
 brio_status brio_check_points(brio_judge *j, const brio_triangulation *result) {

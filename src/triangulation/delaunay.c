@@ -24,37 +24,32 @@ static const brio_delaunay_options STANDARD = {
 BRIO_OPTIONS_INIT(brio_delaunay_options)
 
 static brio_status check_count(brio_context *ctx, size_t n) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
+    BRIO_EXPECT(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
     /* canonical_order.c numbers two buckets a record in 32 bits */
-    BRIO_REQUIRE(ctx, ctx->scratch || n < (UINT32_C(1) << 31) - 16, BRIO_ERR_TOO_LARGE,
-                 "%zu points; at most 2^31 - 17 without a scratch folder", n);
-done:
-    return status;
+    BRIO_EXPECT(ctx, ctx->scratch || n < (UINT32_C(1) << 31) - 16, BRIO_ERR_TOO_LARGE,
+                "%zu points; at most 2^31 - 17 without a scratch folder", n);
+    return BRIO_OK;
 }
 
 brio_status brio_delaunay_check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
-    BRIO_REQUIRE(ctx, o->round_ratio >= 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
-                 "round ratio %g is not between 0 and 1", o->round_ratio);
-    BRIO_REQUIRE(ctx, (unsigned)o->locate < BRIO_LOCATION_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
-                 (int)o->locate);
-    BRIO_REQUIRE(ctx, o->edges || !o->num_edges, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them", o->num_edges);
-    BRIO_REQUIRE(ctx, o->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1", o->num_edges);
+    BRIO_EXPECT(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
+    BRIO_EXPECT(ctx, o->round_ratio >= 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
+                "round ratio %g is not between 0 and 1", o->round_ratio);
+    BRIO_EXPECT(ctx, (unsigned)o->locate < BRIO_LOCATION_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
+                (int)o->locate);
+    BRIO_EXPECT(ctx, o->edges || !o->num_edges, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them", o->num_edges);
+    BRIO_EXPECT(ctx, o->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1", o->num_edges);
     for (size_t i = 0; i < 2 * o->num_edges; i++)
-        BRIO_REQUIRE(ctx, o->edges[i] < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, o->edges[i],
-                     n);
-    BRIO_REQUIRE(ctx, !(o->page_bytes & (o->page_bytes - 1)) && (!o->page_bytes || o->page_bytes >= 64),
-                 BRIO_ERR_ARGUMENT, "pages of %llu bytes; their size is a power of two from 64 on",
-                 (unsigned long long)o->page_bytes);
-    BRIO_REQUIRE(ctx, !o->cache_bytes || o->page_bytes, BRIO_ERR_ARGUMENT, "a cache of pages without a size of pages");
-    BRIO_REQUIRE(ctx, !o->all_conflicts || !o->first_conflict, BRIO_ERR_ARGUMENT,
-                 "only one of all conflicts and the first conflict");
-    BRIO_REQUIRE(ctx, o->max_tetrahedra <= UINT32_C(1) << 30, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
-                 o->max_tetrahedra);
-done:
-    return status;
+        BRIO_EXPECT(ctx, o->edges[i] < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, o->edges[i], n);
+    BRIO_EXPECT(ctx, !(o->page_bytes & (o->page_bytes - 1)) && (!o->page_bytes || o->page_bytes >= 64),
+                BRIO_ERR_ARGUMENT, "pages of %llu bytes; their size is a power of two from 64 on",
+                (unsigned long long)o->page_bytes);
+    BRIO_EXPECT(ctx, !o->cache_bytes || o->page_bytes, BRIO_ERR_ARGUMENT, "a cache of pages without a size of pages");
+    BRIO_EXPECT(ctx, !o->all_conflicts || !o->first_conflict, BRIO_ERR_ARGUMENT,
+                "only one of all conflicts and the first conflict");
+    BRIO_EXPECT(ctx, o->max_tetrahedra <= UINT32_C(1) << 30, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
+                o->max_tetrahedra);
+    return BRIO_OK;
 }
 
 /* --- construction --- */
@@ -72,16 +67,14 @@ static size_t end_of_run(const brio_store *s, size_t begin, size_t end) {
 }
 
 static brio_status insert_some(brio_inserter *ins, size_t begin, size_t end) {
-    brio_status status = BRIO_OK;
     for (size_t p = begin; p < end; p++) {
         brio_insertion outcome;
-        BRIO_TRY(brio_insert(ins, brio_record_at(ins->store, p), &outcome));
+        BRIO_FORWARD(brio_insert(ins, brio_record_at(ins->store, p), &outcome));
         assert(outcome != BRIO_DEFERRED);
         if (brio_inserter_work(ins) >= ins->report_at)
-            BRIO_TRY(brio_inserter_report(ins, (double)p / (double)ins->store->num_points));
+            BRIO_FORWARD(brio_inserter_report(ins, (double)p / (double)ins->store->num_points));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Inserts the records after those of the first tetrahedron, in runs between the entries of the recorder. */

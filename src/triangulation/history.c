@@ -185,12 +185,11 @@ static brio_status begin_search(brio_context *ctx, brio_history *h) {
 
 brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, size_t most) {
     const brio_store *s = ins->store;
-    brio_status status = BRIO_OK;
     size_t depth = 0;
     uint32_t next = next_of(h, from);
-    BRIO_TRY(begin_search(s->ctx, h));
+    BRIO_FORWARD(begin_search(s->ctx, h));
     if (next & BRIO_HISTORY_LIVE) return list_conflict(s->ctx, h, next & ~BRIO_HISTORY_LIVE);
-    BRIO_TRY(come_to(s->ctx, h, next, &depth));
+    BRIO_FORWARD(come_to(s->ctx, h, next, &depth));
     while (depth > 0 && h->num_conflicts < most) {
         brio_history_span *here = &h->open[depth - 1];
         if (here->node == here->end) {
@@ -203,12 +202,11 @@ brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t
         if (!conflicts(ins, node, p)) continue;
         ins->stats.history_conflicts++;
         if (is_live(node))
-            BRIO_TRY(list_conflict(s->ctx, h, live_slot(node)));
+            BRIO_FORWARD(list_conflict(s->ctx, h, live_slot(node)));
         else
-            BRIO_TRY(come_to(s->ctx, h, node->next, &depth));
+            BRIO_FORWARD(come_to(s->ctx, h, node->next, &depth));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_history_locate(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, uint32_t *tet) {

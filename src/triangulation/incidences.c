@@ -112,15 +112,13 @@ static size_t longest_list(const brio_incidences *lists) {
 
 /* Does all vertices, a group at a time. */
 static brio_status for_all(brio_context *ctx, neighbour_job *job, int threads, brio_part_fn part) {
-    brio_status status = BRIO_OK;
     size_t n = job->out->count;
     for (job->first = 0; job->first < n; job->first += GROUP) {
         size_t count = n - job->first < GROUP ? n - job->first : GROUP;
-        BRIO_TRY(brio_for_chunks(ctx, threads, count, VERTICES_A_CHUNK, part, job));
-        BRIO_TRY(brio_progress(ctx, "neighbours", (double)(job->first + count) / (double)n));
+        BRIO_FORWARD(brio_for_chunks(ctx, threads, count, VERTICES_A_CHUNK, part, job));
+        BRIO_FORWARD(brio_progress(ctx, "neighbours", (double)(job->first + count) / (double)n));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status list_neighbours(brio_context *ctx, const brio_triangulation *t, brio_incidences *out) {

@@ -63,12 +63,9 @@ static const brio_strategy locator_level = {.locate = locate_level, .filled = fi
 
 /* Allocates a level for n of all records. */
 static brio_status level_new(const brio_store *all, level *own, size_t n) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_store_sample(all, n, &own->store));
-    BRIO_TRY(BRIO_ALLOC(all->ctx, own->below, n + 3));
-    BRIO_TRY(BRIO_ALLOC(all->ctx, own->vertex_tet, n + 3));
-done:
-    return status;
+    BRIO_FORWARD(brio_store_sample(all, n, &own->store));
+    BRIO_FORWARD(BRIO_ALLOC(all->ctx, own->below, n + 3));
+    return BRIO_ALLOC(all->ctx, own->vertex_tet, n + 3);
 }
 
 /* Distributes the records among the levels; each level keeps the order of insertion. */
@@ -93,43 +90,39 @@ static void deal_records(const brio_store *all, hierarchy *own) {
  * included. */
 static brio_status start_level(const brio_store *all, level *own, const brio_store *below) {
     brio_store *s = own->store;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_start(s));
+    BRIO_FORWARD(brio_start(s));
     s->filter = all->filter; /* its bounds hold for all points that will be located */
-    BRIO_TRY(brio_inserter_new(s, &own->inserter));
+    BRIO_FORWARD(brio_inserter_new(s, &own->inserter));
     own->inserter->locator = &locator_level;
     own->inserter->location = own;
     for (uint32_t i = 0; i < 3; i++) own->below[s->num_points + i] = (uint32_t)below->num_points + i;
     own->next = (uint32_t)s->dimension + 1;
     brio_vertex_tets_fill(s, own->vertex_tet);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status start_hierarchy(brio_inserter *ins, const brio_delaunay_options *options) {
     brio_store *s = ins->store;
     hierarchy *own = NULL;
     size_t size[MOST_LEVELS] = {0};
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, own, 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, own, 1));
     ins->location = own;
     own->seed = options->seed;
     own->level[0].store = s;
     own->level[0].inserter = ins;
     own->num_levels = 1;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, own->level[0].vertex_tet, s->num_points + 3));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, own->level[0].vertex_tet, s->num_points + 3));
     brio_vertex_tets_fill(s, own->level[0].vertex_tet);
     for (uint32_t p = 0; p < s->num_points; p++)
         for (int l = height_of(s, own, p); l >= 0; l--) size[l]++;
     for (int l = 1; l < MOST_LEVELS && size[l] > (size_t)s->dimension + 1; l++, own->num_levels++)
-        BRIO_TRY(level_new(s, &own->level[l], size[l]));
+        BRIO_FORWARD(level_new(s, &own->level[l], size[l]));
     deal_records(s, own);
     for (int l = 1; l < own->num_levels; l++) {
-        BRIO_TRY(start_level(s, &own->level[l], own->level[l - 1].store));
+        BRIO_FORWARD(start_level(s, &own->level[l], own->level[l - 1].store));
         brio_inserter_count_touches(own->level[l].inserter, ins->touches.counts, 2 * l);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static uint32_t nearest_of(const brio_store *s, uint32_t tet, const double *p) {

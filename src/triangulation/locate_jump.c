@@ -19,14 +19,12 @@ typedef struct {
 static brio_status start_jump(brio_inserter *ins, const brio_delaunay_options *options) {
     const brio_store *s = ins->store;
     jump *own = NULL;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, own, 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, own, 1));
     ins->location = own;
     own->rng = brio_rng_new(options->seed);
-    BRIO_TRY(BRIO_ALLOC(s->ctx, own->vertex_tet, s->num_points + 3));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, own->vertex_tet, s->num_points + 3));
     brio_vertex_tets_fill(s, own->vertex_tet);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {

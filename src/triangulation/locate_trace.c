@@ -38,16 +38,14 @@ typedef struct {
 static brio_status start_trace(brio_inserter *ins, const brio_delaunay_options *options) {
     const brio_store *s = ins->store;
     trace *own = NULL;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, own, 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, own, 1));
     ins->location = own;
     own->logarithm = log((double)s->num_points);
-    BRIO_TRY(brio_history_new(ins, options, &own->history));
-    BRIO_TRY(brio_point_graph_new(s, options, &own->graph));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, own->node, s->num_points));
+    BRIO_FORWARD(brio_history_new(ins, options, &own->history));
+    BRIO_FORWARD(brio_point_graph_new(s, options, &own->graph));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, own->node, s->num_points));
     for (size_t p = 0; p < s->num_points; p++) own->node[p] = BRIO_HISTORY_ROOT;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void found(tracing *t, uint32_t p, uint32_t tet) {

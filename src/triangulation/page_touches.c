@@ -45,13 +45,11 @@ static uint32_t marks_up_to(const brio_page_touches *t, uint32_t time) {
 
 /* Makes room for `times` times. */
 static brio_status reserve_times(brio_page_touches *t, uint32_t times) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(t->ctx, times < UINT32_C(1) << 31, BRIO_ERR_TOO_LARGE, "page touches of more than 2^30 pages");
-    BRIO_TRY(BRIO_RESIZE(t->ctx, t->touched, (size_t)times + 1));
-    BRIO_TRY(BRIO_RESIZE(t->ctx, t->sum, (size_t)times + 1));
+    BRIO_EXPECT(t->ctx, times < UINT32_C(1) << 31, BRIO_ERR_TOO_LARGE, "page touches of more than 2^30 pages");
+    BRIO_FORWARD(BRIO_RESIZE(t->ctx, t->touched, (size_t)times + 1));
+    BRIO_FORWARD(BRIO_RESIZE(t->ctx, t->sum, (size_t)times + 1));
     t->times = times;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Numbers the last touches anew. At least half of the times are free afterwards. */
@@ -103,12 +101,10 @@ void brio_page_touches_free(brio_page_touches *t) {
 /* Makes a page of an array known. */
 static brio_status reserve_page(brio_page_touches *t, int array, uint64_t page) {
     size_t old = t->capacity[array];
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(t->ctx, page < UINT32_MAX, BRIO_ERR_TOO_LARGE, "page touches of more than 2^32 pages");
-    BRIO_TRY(BRIO_RESERVE(t->ctx, t->last[array], t->capacity[array], page + 1));
+    BRIO_EXPECT(t->ctx, page < UINT32_MAX, BRIO_ERR_TOO_LARGE, "page touches of more than 2^32 pages");
+    BRIO_FORWARD(BRIO_RESERVE(t->ctx, t->last[array], t->capacity[array], page + 1));
     for (size_t i = old; i < t->capacity[array]; i++) t->last[array][i] = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Counts a touch of a page that `distance` others were touched since, or that was never touched. */

@@ -87,13 +87,11 @@ static brio_status insert_in_zone(brio_inserter *ins, uint32_t p, brio_insertion
 
 static brio_status try_point(worker *w, uint32_t p) {
     brio_insertion outcome = BRIO_DEFERRED;
-    brio_status status = BRIO_OK;
-    if (w->placed) BRIO_TRY(insert_in_zone(w->inserter, p, &outcome));
+    if (w->placed) BRIO_FORWARD(insert_in_zone(w->inserter, p, &outcome));
     if (outcome != BRIO_DEFERRED) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(w->pass->store->ctx, w->deferred, w->deferred_capacity, w->num_deferred + 1));
+    BRIO_FORWARD(BRIO_RESERVE(w->pass->store->ctx, w->deferred, w->deferred_capacity, w->num_deferred + 1));
     w->deferred[w->num_deferred++] = p;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reports progress: that of one thread stands for that of all. */
@@ -110,23 +108,20 @@ static bool is_report_due(const brio_inserter *ins) {
 
 /* Tries the deferred points again. */
 static brio_status try_again(worker *w) {
-    brio_status status = BRIO_OK;
     size_t count = w->num_deferred;
     w->num_deferred = 0;
     for (size_t i = 0; i < count; i++) {
         if (__atomic_load_n(&w->pass->stop, __ATOMIC_RELAXED)) break;
-        BRIO_TRY(try_point(w, w->deferred[i]));
-        if (is_report_due(w->inserter)) BRIO_TRY(report(w, w->end));
+        BRIO_FORWARD(try_point(w, w->deferred[i]));
+        if (is_report_due(w->inserter)) BRIO_FORWARD(report(w, w->end));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reports progress, in the calling thread, from when it is done with its part until the other threads are. It sleeps for a share
  * of the time that it has waited, so that it is late by no more than that share. */
 static brio_status wait_for_others(worker *w) {
     const double SHARE = 1.0 / 16, LEAST_SLEEP = 2e-5, MOST_SLEEP = 1e-2, BETWEEN = 0.05;
-    brio_status status = BRIO_OK;
     double start = brio_seconds(), told = start, now = start;
     while (__atomic_load_n(&w->pass->running, __ATOMIC_ACQUIRE) > 0) {
         double sleep = fmin(fmax(SHARE * (now - start), LEAST_SLEEP), MOST_SLEEP);
@@ -134,10 +129,9 @@ static brio_status wait_for_others(worker *w) {
         now = brio_seconds();
         if (now - told < BETWEEN) continue;
         told = now;
-        BRIO_TRY(report(w, w->end));
+        BRIO_FORWARD(report(w, w->end));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Does a thread's part of a pass. A failed insertion may have left its cavity half filled: then the thread's segments stay
@@ -213,9 +207,8 @@ static void worker_free(worker *w, brio_context *ctx) {
 static brio_status leave_pass(worker *w) {
     brio_inserter *ins = w->inserter, *main = w->pass->main;
     brio_store *store = w->pass->store;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_inserter_return_stretch(ins));
-    BRIO_TRY(BRIO_RESERVE(store->ctx, main->unused, main->unused_capacity, main->num_unused + ins->num_unused));
+    BRIO_FORWARD(brio_inserter_return_stretch(ins));
+    BRIO_FORWARD(BRIO_RESERVE(store->ctx, main->unused, main->unused_capacity, main->num_unused + ins->num_unused));
     if (ins->num_unused) memcpy(main->unused + main->num_unused, ins->unused, ins->num_unused * sizeof *ins->unused);
     assert(main->num_unused + ins->num_unused <= main->unused_capacity); /* N4 */
     main->num_unused += ins->num_unused;
@@ -230,8 +223,7 @@ static brio_status leave_pass(worker *w) {
     /* once a thread has left its zone, others may destroy the tetrahedron where it stopped; that of the last is left */
     if (ins->stats.created && store->state[ins->walk.start] == TET_PLAIN) main->walk.start = ins->walk.start;
     main->done = fmax(main->done, ins->done);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- passes --- */
@@ -314,16 +306,14 @@ static int useful_threads(size_t count, size_t inserted, int most) {
 /* Inserts what the passes have left, by the main inserter alone. */
 static brio_status insert_rest(pass *own, double done) {
     brio_inserter *ins = own->main;
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < own->count; i++) {
         brio_insertion outcome;
-        BRIO_TRY(brio_insert(ins, record_of(own, i), &outcome));
+        BRIO_FORWARD(brio_insert(ins, record_of(own, i), &outcome));
         assert(outcome != BRIO_DEFERRED);
-        if (is_report_due(ins)) BRIO_TRY(brio_inserter_report(ins, done));
+        if (is_report_due(ins)) BRIO_FORWARD(brio_inserter_report(ins, done));
     }
     ins->stats.serial += own->count;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_insert_parallel(brio_inserter *ins, size_t begin, size_t end) {

@@ -25,12 +25,11 @@ size_t brio_recorder_next(const brio_recorder *r, size_t inserted) {
 
 brio_status brio_recorder_note(brio_recorder *r, const brio_inserter *ins, size_t inserted) {
     const brio_store *s = ins->store;
-    brio_status status = BRIO_OK;
     brio_delaunay_stats so_far = {0};
     bool due = inserted > 0 && brio_recorder_next(r, inserted - 1) == inserted;
     if (r->every == 0 || !(due || inserted == s->num_points)) return BRIO_OK;
     if (ins->touches.counts) brio_page_touches_total(ins->touches.counts, &so_far);
-    BRIO_TRY(BRIO_RESERVE(s->ctx, r->list, r->capacity, r->count + 1));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, r->list, r->capacity, r->count + 1));
     r->list[r->count++] = (brio_round){
         .points = inserted,
         .tetrahedra = (size_t)(ins->stats.created - ins->stats.destroyed),
@@ -45,6 +44,5 @@ brio_status brio_recorder_note(brio_recorder *r, const brio_inserter *ins, size_
         .locate_seconds = ins->stats.locate_seconds,
         .seconds = brio_seconds() - r->start,
     };
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -23,16 +23,13 @@ static brio_status begin_store(brio_context *ctx, size_t n, brio_store **out) {
 static brio_status end_store(brio_store *s) {
     assert(s->record && s->caller && s->t.infinite == s->num_points + 2); /* the layout of store.h */
     size_t n = s->num_points + MORE_RECORDS;
-    brio_status status = BRIO_OK;
     s->record[s->t.infinite][3] = INFINITY; /* as conflict_lanes.h knows the infinite vertex */
     s->t.record = s->record;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, s->representative, n));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, s->representative, n));
     brio_expect_sequence(s->representative);
     for (uint32_t i = 0; i < n; i++) s->representative[i] = i;
     brio_expect_random(s->representative);
-    BRIO_TRY(BRIO_ALLOC(s->ctx, s->local, n));
-done:
-    return status;
+    return BRIO_ALLOC(s->ctx, s->local, n);
 }
 
 brio_status brio_store_new(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
@@ -100,18 +97,16 @@ void brio_store_free(brio_store *s) {
 }
 
 brio_status brio_store_reserve(brio_store *s, size_t more) {
-    brio_status status = BRIO_OK;
     size_t need = s->t.count + more, capacity = need + need / 8 + 1024;
     assert(s->t.count <= s->capacity && s->max_tetrahedra <= (size_t)1 << 30);
     if (need <= s->capacity) return BRIO_OK;
-    BRIO_REQUIRE(s->ctx, need <= s->max_tetrahedra, BRIO_ERR_TOO_LARGE, "more than %zu tetrahedra", s->max_tetrahedra);
+    BRIO_EXPECT(s->ctx, need <= s->max_tetrahedra, BRIO_ERR_TOO_LARGE, "more than %zu tetrahedra", s->max_tetrahedra);
     if (capacity > s->max_tetrahedra) capacity = s->max_tetrahedra;
-    BRIO_TRY(BRIO_RESIZE(s->ctx, s->t.tet, capacity));
-    BRIO_TRY(BRIO_RESIZE(s->ctx, s->state, capacity));
+    BRIO_FORWARD(BRIO_RESIZE(s->ctx, s->t.tet, capacity));
+    BRIO_FORWARD(BRIO_RESIZE(s->ctx, s->state, capacity));
     assert(need <= capacity && capacity <= (size_t)1 << 30); /* facet handles have 32 bits */
     s->capacity = capacity;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 bool brio_store_take(brio_store *s, size_t size, size_t *begin) {

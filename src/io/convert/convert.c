@@ -72,17 +72,14 @@ static void name_metadata(const conversion *c, const brio_mesh *m) {
 
 /* Writes the coordinate system to its file, which has no name yet. */
 static brio_status write_crs(conversion *c, const brio_mesh *m) {
-    brio_status status = BRIO_OK;
     const brio_metadata *text = brio_mesh_metadata(m, "crs.wkt"), *code = brio_mesh_metadata(m, "crs.code");
     if (!c->options->crs || c->crs.name) return BRIO_OK;
-    BRIO_REQUIRE(c->ctx, text, BRIO_ERR_NO_ANSWER,
-                 "%s: no coordinate system as well-known text, which %s is to have%s%s", c->source.path,
-                 c->options->crs, code ? "; its code is " : "", code ? code->bytes : "");
-    BRIO_TRY(brio_output_open(&c->crs, c->ctx, c->options->crs, BRIO_NO_PROGRESS));
-    BRIO_TRY(brio_output_bytes(&c->crs, text->bytes, text->size));
-    BRIO_TRY(brio_output_finish(&c->crs));
-done:
-    return status;
+    BRIO_EXPECT(c->ctx, text, BRIO_ERR_NO_ANSWER,
+                "%s: no coordinate system as well-known text, which %s is to have%s%s", c->source.path, c->options->crs,
+                code ? "; its code is " : "", code ? code->bytes : "");
+    BRIO_FORWARD(brio_output_open(&c->crs, c->ctx, c->options->crs, BRIO_NO_PROGRESS));
+    BRIO_FORWARD(brio_output_bytes(&c->crs, text->bytes, text->size));
+    return brio_output_finish(&c->crs);
 }
 
 /* Whether the writer knows best which properties have a place. */
@@ -178,10 +175,9 @@ static brio_status count(void *user, const brio_mesh *block) {
 
 static brio_status write_block(void *user, const brio_mesh *block) {
     conversion *c = user;
-    brio_status status = BRIO_OK;
     brio_mesh shown = *block;
-    BRIO_TRY(refuse_open(c, block));
-    BRIO_TRY(write_crs(c, block));
+    BRIO_FORWARD(refuse_open(c, block));
+    BRIO_FORWARD(write_crs(c, block));
     name_losses(c, block);
     find_rounding(c, block);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
@@ -194,7 +190,7 @@ static brio_status write_block(void *user, const brio_mesh *block) {
             c->writer.job.points = c->source.job.announced;
     }
     bool first = !c->writer.begun;
-    BRIO_TRY(brio_row_writer_write(&c->writer, c->to, &shown));
+    BRIO_FORWARD(brio_row_writer_write(&c->writer, c->to, &shown));
     if (first) name_properties(c, &shown);
     c->stats.points += block->num_vertices;
     if (c->source.job.mesh) {
@@ -202,8 +198,7 @@ static brio_status write_block(void *user, const brio_mesh *block) {
         c->stats.tetrahedra = shown.num_tetrahedra;
         c->stats.edges = holds(c, BRIO_HOLDS_EDGES) ? shown.num_edges : 0;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Whether the output is a new file, of which the beginning can be written last. */
@@ -234,20 +229,18 @@ done:
 
 /* Goes through the points before the first one is written, as often as the format needs. */
 static brio_status prepare(conversion *c, brio_bar bar) {
-    brio_status status = BRIO_OK;
     const brio_sink surveys = {survey, c}, counts = {count, c};
     brio_progress_part(c->ctx, bar, 0, 0.5);
     while (c->writer.surveys) {
-        BRIO_TRY(go_through(c, &surveys));
+        BRIO_FORWARD(go_through(c, &surveys));
         brio_row_writer_end_survey(&c->writer);
         c->writer.job.points = brio_row_writer_surveyed_points(&c->writer);
     }
     if (must_count(c)) {
-        BRIO_TRY(brio_source_pass(&c->source, &counts));
+        BRIO_FORWARD(brio_source_pass(&c->source, &counts));
         c->writer.job.points = c->counted;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Writes with the passes that the format needs. */
@@ -317,18 +310,16 @@ static bool is_one_file(const conversion *c) {
 }
 
 static brio_status check(conversion *c) {
-    brio_status status = BRIO_OK;
     const brio_convert_options *o = c->options;
     const char *from = c->source.path;
-    BRIO_REQUIRE(c->ctx, o->thin >= 0 && isfinite(o->thin), BRIO_ERR_ARGUMENT, "a spacing of %g, expected 0 or more",
-                 o->thin);
-    BRIO_REQUIRE(c->ctx, o->drop_outliers >= 0, BRIO_ERR_ARGUMENT, "outliers by %d neighbours", o->drop_outliers);
+    BRIO_EXPECT(c->ctx, o->thin >= 0 && isfinite(o->thin), BRIO_ERR_ARGUMENT, "a spacing of %g, expected 0 or more",
+                o->thin);
+    BRIO_EXPECT(c->ctx, o->drop_outliers >= 0, BRIO_ERR_ARGUMENT, "outliers by %d neighbours", o->drop_outliers);
     for (int k = 0; k < 3 && o->crop; k++)
-        BRIO_REQUIRE(c->ctx, o->box[k] <= o->box[k + 3], BRIO_ERR_ARGUMENT, "a box from %g to %g along %c", o->box[k],
-                     o->box[k + 3], "xyz"[k]);
-    BRIO_REQUIRE(c->ctx, !is_one_file(c), BRIO_ERR_ARGUMENT, "%s and %s are the same file", from, c->to);
-done:
-    return status;
+        BRIO_EXPECT(c->ctx, o->box[k] <= o->box[k + 3], BRIO_ERR_ARGUMENT, "a box from %g to %g along %c", o->box[k],
+                    o->box[k + 3], "xyz"[k]);
+    BRIO_EXPECT(c->ctx, !is_one_file(c), BRIO_ERR_ARGUMENT, "%s and %s are the same file", from, c->to);
+    return BRIO_OK;
 }
 
 static brio_status ignore(void *user, const brio_mesh *mesh) {
@@ -338,15 +329,13 @@ static brio_status ignore(void *user, const brio_mesh *mesh) {
 
 /* Merges the vertices that stay, which are in memory afterwards. */
 static brio_status merge(conversion *c) {
-    brio_status status = BRIO_OK;
     const brio_sink none = {ignore, NULL};
     brio_merge_stats found = {.size = sizeof found};
-    if (!c->source.job.mesh) BRIO_TRY(brio_source_pass(&c->source, &none));
-    BRIO_TRY(brio_mesh_merge_vertices(c->source.job.mesh, c->options->merge_distance, &found));
+    if (!c->source.job.mesh) BRIO_FORWARD(brio_source_pass(&c->source, &none));
+    BRIO_FORWARD(brio_mesh_merge_vertices(c->source.job.mesh, c->options->merge_distance, &found));
     c->stats.merged = found.vertices;
     c->stats.degenerate = found.faces + found.tetrahedra + found.edges;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status run(conversion *c) {

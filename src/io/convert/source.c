@@ -39,8 +39,7 @@ static bool is_unchanged(brio_source *s) {
 /* Finds which points of a block stay. */
 static brio_status find_stays(pass *p, const brio_mesh *block) {
     brio_source *s = p->source;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(s->ctx, p->stays, p->capacity, block->num_vertices + 1));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, p->stays, p->capacity, block->num_vertices + 1));
     if (s->options->crop)
         brio_find_in_box(block, s->options->box, p->stays);
     else
@@ -51,24 +50,20 @@ static brio_status find_stays(pass *p, const brio_mesh *block) {
         if (s->chosen) p->stays[v] = s->chosen[p->boxed];
         p->boxed++;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Filters a block in place: the reader does not look at its rows again. */
 static brio_status take_block(void *user, const brio_mesh *block) {
     pass *p = user;
     brio_source *s = p->source;
-    brio_status status = BRIO_OK;
     brio_mesh rest = *block;
     s->points_read += block->num_vertices;
     if (s->options->crop || s->chosen) {
-        BRIO_TRY(find_stays(p, block));
-        BRIO_TRY(brio_filter_mesh(s->ctx, &rest, p->stays));
+        BRIO_FORWARD(find_stays(p, block));
+        BRIO_FORWARD(brio_filter_mesh(s->ctx, &rest, p->stays));
     }
-    BRIO_TRY(p->sink->take(p->sink->user, &rest));
-done:
-    return status;
+    return p->sink->take(p->sink->user, &rest);
 }
 
 static brio_status read_pass(pass *p) {
@@ -87,13 +82,10 @@ static brio_status read_pass(pass *p) {
 /* Filters the file in memory. */
 static brio_status filter_whole(pass *p) {
     brio_source *s = p->source;
-    brio_status status = BRIO_OK;
     s->points_read = s->job.mesh->num_vertices;
     if (!s->options->crop) return BRIO_OK;
-    BRIO_TRY(find_stays(p, s->job.mesh));
-    BRIO_TRY(brio_filter_mesh(s->ctx, s->job.mesh, p->stays));
-done:
-    return status;
+    BRIO_FORWARD(find_stays(p, s->job.mesh));
+    return brio_filter_mesh(s->ctx, s->job.mesh, p->stays);
 }
 
 brio_status brio_source_pass(brio_source *s, const brio_sink *sink) {
@@ -119,19 +111,17 @@ typedef struct {
 
 static brio_status collect(void *user, const brio_mesh *block) {
     collection *c = user;
-    brio_status status = BRIO_OK;
     size_t need = c->count + block->num_vertices;
     if (need > c->capacity) {
         size_t capacity = c->capacity + c->capacity / 8;
         if (capacity < need) capacity = need;
-        BRIO_TRY(BRIO_RESIZE(c->ctx, c->points, 3 * capacity));
+        BRIO_FORWARD(BRIO_RESIZE(c->ctx, c->points, 3 * capacity));
         c->capacity = capacity;
     }
     if (!block->num_vertices) return BRIO_OK; /* then there may be no arrays */
     memcpy(c->points + 3 * c->count, block->vertices, 3 * block->num_vertices * sizeof *c->points);
     c->count = need;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Packs the points whose flag is `kept`. */
@@ -143,14 +133,12 @@ static size_t pack(double *points, size_t count, const uint8_t *flags, uint8_t k
 }
 
 static brio_status drop_outliers(brio_source *s, collection *c) {
-    brio_status status = BRIO_OK;
     size_t all = c->count;
-    BRIO_TRY(brio_outliers(s->ctx, c->points, all, s->options->drop_outliers, s->options->outliers, s->chosen));
+    BRIO_FORWARD(brio_outliers(s->ctx, c->points, all, s->options->drop_outliers, s->options->outliers, s->chosen));
     c->count = pack(c->points, all, s->chosen, 0);
     s->outliers = all - c->count;
     for (size_t i = 0; i < all; i++) s->chosen[i] = !s->chosen[i];
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Thins the points that are chosen. */

@@ -61,43 +61,37 @@ uint64_t brio_e57_physical(uint64_t logical) {
 }
 
 brio_status brio_e57_logical(const brio_e57_pages *p, const char *what, uint64_t physical, uint64_t *logical) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(p->stream->ctx, physical < p->length, BRIO_ERR_FORMAT,
-                 "%s: %s at byte %" PRIu64 ", the file has %" PRIu64 " bytes", p->stream->name, what, physical,
-                 p->length);
-    BRIO_REQUIRE(p->stream->ctx, physical % BRIO_E57_PAGE < BRIO_E57_CONTENT, BRIO_ERR_FORMAT,
-                 "%s: %s at byte %" PRIu64 ", where a checksum is", p->stream->name, what, physical);
+    BRIO_EXPECT(p->stream->ctx, physical < p->length, BRIO_ERR_FORMAT,
+                "%s: %s at byte %" PRIu64 ", the file has %" PRIu64 " bytes", p->stream->name, what, physical,
+                p->length);
+    BRIO_EXPECT(p->stream->ctx, physical % BRIO_E57_PAGE < BRIO_E57_CONTENT, BRIO_ERR_FORMAT,
+                "%s: %s at byte %" PRIu64 ", where a checksum is", p->stream->name, what, physical);
     *logical = physical / BRIO_E57_PAGE * BRIO_E57_CONTENT + physical % BRIO_E57_PAGE;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Checks a page and appends its content to the window. */
 static brio_status add_page(brio_e57_pages *p, const char *page) {
-    brio_status status = BRIO_OK;
     const uint8_t *stored = (const uint8_t *)page + BRIO_E57_CONTENT;
     uint32_t expected = (uint32_t)stored[0] << 24 | (uint32_t)stored[1] << 16 | (uint32_t)stored[2] << 8 | stored[3];
     uint32_t found = brio_e57_checksum(p->table, page);
-    BRIO_REQUIRE(p->stream->ctx, found == expected, BRIO_ERR_FORMAT,
-                 "%s: the page at byte %" PRIu64 " is damaged: its checksum is %08" PRIx32 ", expected %08" PRIx32,
-                 p->stream->name, brio_e57_physical(p->first + p->size), found, expected);
+    BRIO_EXPECT(p->stream->ctx, found == expected, BRIO_ERR_FORMAT,
+                "%s: the page at byte %" PRIu64 " is damaged: its checksum is %08" PRIx32 ", expected %08" PRIx32,
+                p->stream->name, brio_e57_physical(p->first + p->size), found, expected);
     memcpy(p->window + p->size, page, BRIO_E57_CONTENT);
     p->size += BRIO_E57_CONTENT;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads pages until the window has `size` bytes. */
 static brio_status fill_window(brio_e57_pages *p, size_t size) {
-    brio_status status = BRIO_OK;
     while (p->size < size) {
         size_t count = (size - p->size) / BRIO_E57_CONTENT;
         if (count > BATCH) count = BATCH;
-        BRIO_TRY(brio_stream_peek(p->stream, brio_e57_physical(p->first + p->size), p->raw, count * BRIO_E57_PAGE));
-        for (size_t i = 0; i < count; i++) BRIO_TRY(add_page(p, p->raw + i * BRIO_E57_PAGE));
+        BRIO_FORWARD(brio_stream_peek(p->stream, brio_e57_physical(p->first + p->size), p->raw, count * BRIO_E57_PAGE));
+        for (size_t i = 0; i < count; i++) BRIO_FORWARD(add_page(p, p->raw + i * BRIO_E57_PAGE));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Moves the window so that it begins with the page of an offset. Where the window goes on it is filled; behind a jump it
@@ -128,58 +122,51 @@ done:
 }
 
 brio_status brio_e57_take(brio_e57_pages *p, uint64_t logical, size_t need, const char **bytes) {
-    brio_status status = BRIO_OK;
     if (logical < p->first || logical - p->first > p->size || p->size - (logical - p->first) < need)
-        BRIO_TRY(move_window(p, logical, need));
+        BRIO_FORWARD(move_window(p, logical, need));
     *bytes = p->window + (logical - p->first);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the header --- */
 
 static brio_status read_header(brio_e57_pages *p) {
-    brio_status status = BRIO_OK;
     brio_stream *s = p->stream;
     char h[HEADER];
-    BRIO_TRY(brio_stream_peek(s, 0, h, HEADER));
-    BRIO_REQUIRE(s->ctx, !memcmp(h, "ASTM-E57", 8), BRIO_ERR_FORMAT, "%s: byte 0: expected ASTM-E57: not an E57 file",
-                 s->name);
-    BRIO_REQUIRE(s->ctx, brio_le32(h + 8) == 1, BRIO_ERR_FORMAT, "%s: byte 8: version %" PRIu32 ", expected 1", s->name,
-                 brio_le32(h + 8));
-    BRIO_REQUIRE(s->ctx, brio_le64(h + 40) == BRIO_E57_PAGE, BRIO_ERR_FORMAT,
-                 "%s: byte 40: pages of %" PRIu64 " bytes, expected %d", s->name, brio_le64(h + 40), BRIO_E57_PAGE);
+    BRIO_FORWARD(brio_stream_peek(s, 0, h, HEADER));
+    BRIO_EXPECT(s->ctx, !memcmp(h, "ASTM-E57", 8), BRIO_ERR_FORMAT, "%s: byte 0: expected ASTM-E57: not an E57 file",
+                s->name);
+    BRIO_EXPECT(s->ctx, brio_le32(h + 8) == 1, BRIO_ERR_FORMAT, "%s: byte 8: version %" PRIu32 ", expected 1", s->name,
+                brio_le32(h + 8));
+    BRIO_EXPECT(s->ctx, brio_le64(h + 40) == BRIO_E57_PAGE, BRIO_ERR_FORMAT,
+                "%s: byte 40: pages of %" PRIu64 " bytes, expected %d", s->name, brio_le64(h + 40), BRIO_E57_PAGE);
     p->length = brio_le64(h + 16);
-    BRIO_REQUIRE(s->ctx, p->length <= s->size, BRIO_ERR_FORMAT,
-                 "%s: ends at byte %" PRIu64 ", its header announces %" PRIu64 " bytes", s->name, s->size, p->length);
-    BRIO_REQUIRE(s->ctx, p->length >= BRIO_E57_PAGE && p->length % BRIO_E57_PAGE == 0, BRIO_ERR_FORMAT,
-                 "%s: byte 16: a file of %" PRIu64 " bytes, expected whole pages of %d", s->name, p->length,
-                 BRIO_E57_PAGE);
-    BRIO_TRY(brio_e57_logical(p, "the XML section", brio_le64(h + 24), &p->xml));
+    BRIO_EXPECT(s->ctx, p->length <= s->size, BRIO_ERR_FORMAT,
+                "%s: ends at byte %" PRIu64 ", its header announces %" PRIu64 " bytes", s->name, s->size, p->length);
+    BRIO_EXPECT(s->ctx, p->length >= BRIO_E57_PAGE && p->length % BRIO_E57_PAGE == 0, BRIO_ERR_FORMAT,
+                "%s: byte 16: a file of %" PRIu64 " bytes, expected whole pages of %d", s->name, p->length,
+                BRIO_E57_PAGE);
+    BRIO_FORWARD(brio_e57_logical(p, "the XML section", brio_le64(h + 24), &p->xml));
     p->xml_length = brio_le64(h + 32);
-    BRIO_REQUIRE(s->ctx, p->xml_length <= brio_e57_size(p) - p->xml, BRIO_ERR_FORMAT,
-                 "%s: byte 32: an XML section of %" PRIu64 " bytes, behind its beginning the file has %" PRIu64,
-                 s->name, p->xml_length, brio_e57_size(p) - p->xml);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, p->xml_length <= brio_e57_size(p) - p->xml, BRIO_ERR_FORMAT,
+                "%s: byte 32: an XML section of %" PRIu64 " bytes, behind its beginning the file has %" PRIu64, s->name,
+                p->xml_length, brio_e57_size(p) - p->xml);
+    return BRIO_OK;
 }
 
 brio_status brio_e57_pages_open(brio_e57_pages *p, brio_stream *s) {
-    brio_status status = BRIO_OK;
     *p = (brio_e57_pages){.stream = s};
-    BRIO_TRY(brio_stream_fill(s, 1));
-    BRIO_REQUIRE(s->ctx, brio_stream_left(s), BRIO_ERR_FORMAT, "%s: is empty", s->name);
-    BRIO_REQUIRE(s->ctx, s->size != BRIO_SIZE_UNKNOWN, BRIO_ERR_FORMAT,
-                 "%s: an E57 file is read from its end first, which a pipe does not allow; expected a regular file",
-                 s->name);
-    BRIO_REQUIRE(s->ctx, s->size >= HEADER, BRIO_ERR_FORMAT,
-                 "%s: ends at byte %" PRIu64 ", the header of an E57 file has %d bytes", s->name, s->size, HEADER);
-    BRIO_TRY(read_header(p));
-    BRIO_TRY(brio_e57_checksum_table(s->ctx, &p->table));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, p->raw, BATCH * BRIO_E57_PAGE));
-    BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, p->window, WINDOW * BRIO_E57_CONTENT + BRIO_E57_SLACK));
-done:
-    return status;
+    BRIO_FORWARD(brio_stream_fill(s, 1));
+    BRIO_EXPECT(s->ctx, brio_stream_left(s), BRIO_ERR_FORMAT, "%s: is empty", s->name);
+    BRIO_EXPECT(s->ctx, s->size != BRIO_SIZE_UNKNOWN, BRIO_ERR_FORMAT,
+                "%s: an E57 file is read from its end first, which a pipe does not allow; expected a regular file",
+                s->name);
+    BRIO_EXPECT(s->ctx, s->size >= HEADER, BRIO_ERR_FORMAT,
+                "%s: ends at byte %" PRIu64 ", the header of an E57 file has %d bytes", s->name, s->size, HEADER);
+    BRIO_FORWARD(read_header(p));
+    BRIO_FORWARD(brio_e57_checksum_table(s->ctx, &p->table));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, p->raw, BATCH * BRIO_E57_PAGE));
+    return BRIO_ALLOC_ZERO(s->ctx, p->window, WINDOW * BRIO_E57_CONTENT + BRIO_E57_SLACK);
 }
 
 void brio_e57_pages_close(brio_e57_pages *p) {

@@ -219,26 +219,24 @@ static brio_scalar type_of(const column *c, size_t scans) {
 /* --- roles --- */
 
 static brio_status plan_column(planner *l, size_t scan, const brio_e57_field *field, uint32_t *role) {
-    brio_status status = BRIO_OK;
     size_t i = 0;
     while (i < l->num_columns && strcmp(l->columns[i].source, field->name) != 0) i++;
     if (i == l->num_columns) {
         column new = {.source = field->name, .last_scan = SIZE_MAX};
         make_name(l, field->name, new.name);
-        BRIO_REQUIRE(l->builder->ctx, i < BRIO_E57_MOST_FIELDS, BRIO_ERR_FORMAT,
-                     "%s: the scans have more than %d different fields", l->builder->name, BRIO_E57_MOST_FIELDS);
-        BRIO_TRY(BRIO_RESERVE(l->builder->ctx, l->columns, l->capacity, i + 1));
+        BRIO_EXPECT(l->builder->ctx, i < BRIO_E57_MOST_FIELDS, BRIO_ERR_FORMAT,
+                    "%s: the scans have more than %d different fields", l->builder->name, BRIO_E57_MOST_FIELDS);
+        BRIO_FORWARD(BRIO_RESERVE(l->builder->ctx, l->columns, l->capacity, i + 1));
         l->columns[l->num_columns++] = new;
     }
     column *c = &l->columns[i];
-    BRIO_REQUIRE(l->builder->ctx, c->last_scan != scan, BRIO_ERR_FORMAT,
-                 "%s: scan %zu (counted from 0): two fields named %s", l->builder->name, scan, field->name);
+    BRIO_EXPECT(l->builder->ctx, c->last_scan != scan, BRIO_ERR_FORMAT,
+                "%s: scan %zu (counted from 0): two fields named %s", l->builder->name, scan, field->name);
     c->last_scan = scan;
     c->scans++;
     widen(c, &field->code);
     *role = BRIO_E57_PROPERTY + (uint32_t)i;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static const brio_e57_field *field_of(const planner *l, size_t scan, const char *name) {
@@ -253,21 +251,19 @@ static brio_status plan_axes(planner *l, size_t scan) {
     static const char *const names[2][4] = {
         {"cartesianX", "cartesianY", "cartesianZ", "cartesianInvalidState"},
         {"sphericalRange", "sphericalAzimuth", "sphericalElevation", "sphericalInvalidState"}};
-    brio_status status = BRIO_OK;
     const brio_e57_field *found[4];
     for (int kind = 0; kind < 2; kind++) {
         for (int k = 0; k < 4; k++) found[k] = field_of(l, scan, names[kind][k]);
         l->plan->spherical[scan] = kind;
         if (found[0] && found[1] && found[2]) break;
     }
-    BRIO_REQUIRE(l->builder->ctx, found[0] && found[1] && found[2], BRIO_ERR_FORMAT,
-                 "%s: scan %zu (counted from 0): points without coordinates, expected cartesianX, Y and Z or "
-                 "sphericalRange, Azimuth and Elevation",
-                 l->builder->name, scan);
+    BRIO_EXPECT(l->builder->ctx, found[0] && found[1] && found[2], BRIO_ERR_FORMAT,
+                "%s: scan %zu (counted from 0): points without coordinates, expected cartesianX, Y and Z or "
+                "sphericalRange, Azimuth and Elevation",
+                l->builder->name, scan);
     for (uint32_t k = 0; k < 3; k++) l->plan->roles[found[k] - l->scans->fields] = BRIO_E57_AXIS + k;
     if (found[3]) l->plan->roles[found[3] - l->scans->fields] = BRIO_E57_INVALID;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static bool is_coordinate(const char *name) {
@@ -275,22 +271,20 @@ static bool is_coordinate(const char *name) {
 }
 
 static brio_status plan_scan(planner *l, size_t scan) {
-    brio_status status = BRIO_OK;
     const brio_e57_scan *s = &l->scans->scans[scan];
-    BRIO_TRY(plan_axes(l, scan));
+    BRIO_FORWARD(plan_axes(l, scan));
     for (size_t i = s->first_field; i < s->first_field + s->num_fields; i++) {
         const brio_e57_field *field = &l->scans->fields[i];
         bool other = !strncmp(field->name, l->plan->spherical[scan] ? "cartesian" : "spherical", 9);
         if (field->text)
-            BRIO_TRY(brio_builder_leave_out(l->builder, field->name));
+            BRIO_FORWARD(brio_builder_leave_out(l->builder, field->name));
         else if (other)
-            BRIO_TRY(brio_builder_leave_out(l->builder, l->plan->spherical[scan] ? "cartesian coordinates"
-                                                                                 : "spherical coordinates"));
+            BRIO_FORWARD(brio_builder_leave_out(l->builder, l->plan->spherical[scan] ? "cartesian coordinates"
+                                                                                     : "spherical coordinates"));
         else if (!is_coordinate(field->name))
-            BRIO_TRY(plan_column(l, scan, field, &l->plan->roles[i]));
+            BRIO_FORWARD(plan_column(l, scan, field, &l->plan->roles[i]));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds the roles and adds the properties to the mesh. Call e57_plan_free even if this fails.
@@ -374,25 +368,22 @@ done:
 /* Finds and checks all sections, and makes room for their points. Sections may not lie upon one another: together they
  * are not longer than the file. */
 static brio_status open_sections(e57_reader *r) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = r->builder->ctx;
     uint64_t points = 0, bytes = 0;
-    BRIO_TRY(BRIO_ALLOC(ctx, r->sections, r->scans.num_scans));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, r->sections, r->scans.num_scans));
     for (size_t i = 0; i < r->scans.num_scans; i++)
-        BRIO_TRY(brio_e57_section_open(&r->pages, &r->scans, i, &r->sections[i]));
-    BRIO_TRY(end_sections(r));
+        BRIO_FORWARD(brio_e57_section_open(&r->pages, &r->scans, i, &r->sections[i]));
+    BRIO_FORWARD(end_sections(r));
     for (size_t i = 0; i < r->scans.num_scans; i++) {
-        BRIO_TRY(brio_e57_section_check(&r->pages, &r->scans, &r->sections[i]));
+        BRIO_FORWARD(brio_e57_section_check(&r->pages, &r->scans, &r->sections[i]));
         points += r->scans.scans[i].records;
         bytes += r->sections[i].end - r->sections[i].begin;
-        BRIO_REQUIRE(ctx, bytes <= brio_e57_size(&r->pages), BRIO_ERR_FORMAT,
-                     "%s: scan %zu (counted from 0): the points of the scans up to this one have more bytes than the "
-                     "file",
-                     r->builder->name, i);
+        BRIO_EXPECT(ctx, bytes <= brio_e57_size(&r->pages), BRIO_ERR_FORMAT,
+                    "%s: scan %zu (counted from 0): the points of the scans up to this one have more bytes than the "
+                    "file",
+                    r->builder->name, i);
     }
-    BRIO_TRY(brio_builder_expect_vertices(r->builder, points));
-done:
-    return status;
+    return brio_builder_expect_vertices(r->builder, points);
 }
 
 /* --- one scan --- */
@@ -432,21 +423,19 @@ static void fill_rest(e57_reader *r, size_t scan) {
 }
 
 static brio_status decode_scan(e57_reader *r, size_t scan) {
-    brio_status status = BRIO_OK;
     const brio_e57_scan *s = &r->scans.scans[scan];
     const brio_e57_field *fields = r->scans.fields + s->first_field;
-    BRIO_TRY(BRIO_ALLOC_ZERO(r->builder->ctx, r->decoders, s->num_fields));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(r->builder->ctx, r->decoders, s->num_fields));
     for (size_t i = 0; i < s->num_fields; i++) {
         uint32_t role = r->plan.roles[s->first_field + i];
         r->decoders[i] = (brio_e57_decoder){.code = fields[i].code, .count = s->records};
-        if (role == BRIO_E57_INVALID) BRIO_TRY(BRIO_ALLOC(r->builder->ctx, r->invalid, s->records));
+        if (role == BRIO_E57_INVALID) BRIO_FORWARD(BRIO_ALLOC(r->builder->ctx, r->invalid, s->records));
         aim(r, role, &r->decoders[i]);
     }
-    BRIO_TRY(brio_e57_section_read(&r->pages, &r->sections[scan], fields, r->decoders, s->num_fields));
+    BRIO_FORWARD(brio_e57_section_read(&r->pages, &r->sections[scan], fields, r->decoders, s->num_fields));
     for (size_t i = 0; i < s->num_fields; i++)
-        if (r->decoders[i].rounded) BRIO_TRY(brio_builder_leave_out(r->builder, "integers beyond 2^53"));
-done:
-    return status;
+        if (r->decoders[i].rounded) BRIO_FORWARD(brio_builder_leave_out(r->builder, "integers beyond 2^53"));
+    return BRIO_OK;
 }
 
 static brio_status read_scan(e57_reader *r, size_t scan) {

@@ -65,7 +65,6 @@ static brio_status write_page(brio_e57_pen *p) {
 }
 
 static brio_status e57_put(brio_e57_pen *p, const void *bytes, size_t size) {
-    brio_status status = BRIO_OK;
     const char *at = bytes;
     while (size) {
         size_t part = size < BRIO_E57_CONTENT - p->used ? size : BRIO_E57_CONTENT - p->used;
@@ -73,10 +72,9 @@ static brio_status e57_put(brio_e57_pen *p, const void *bytes, size_t size) {
         p->used += part;
         at += part;
         size -= part;
-        if (p->used == BRIO_E57_CONTENT) BRIO_TRY(write_page(p));
+        if (p->used == BRIO_E57_CONTENT) BRIO_FORWARD(write_page(p));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Writes a text as printf does: at most 511 bytes. */
@@ -92,27 +90,22 @@ __attribute__((format(printf, 2, 3))) static brio_status e57_put_text(brio_e57_p
 
 /* Fills the page with zeros, so that the next byte begins a page, which is kept until the next call. */
 static brio_status e57_pen_turn(brio_e57_pen *p) {
-    brio_status status = BRIO_OK;
     if (p->used) {
         memset(p->page + p->used, 0, BRIO_E57_CONTENT - p->used);
         p->used = BRIO_E57_CONTENT;
-        BRIO_TRY(write_page(p));
+        BRIO_FORWARD(write_page(p));
     }
     p->kept_page = p->pages;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Begins a file: its first page is empty. Call e57_pen_free even if this fails. */
 static brio_status e57_pen_begin(brio_e57_pen *p) {
-    brio_status status = BRIO_OK;
     const char header[1] = {0};
-    BRIO_TRY(brio_e57_checksum_table(p->out->ctx, &p->table));
+    BRIO_FORWARD(brio_e57_checksum_table(p->out->ctx, &p->table));
     p->kept_page = UINT64_MAX;
-    BRIO_TRY(e57_put(p, header, sizeof header));
-    BRIO_TRY(e57_pen_turn(p));
-done:
-    return status;
+    BRIO_FORWARD(e57_put(p, header, sizeof header));
+    return e57_pen_turn(p);
 }
 
 /* Replaces the first bytes of the page that is kept. */
@@ -128,13 +121,10 @@ static brio_status e57_pen_patch(brio_e57_pen *p, const void *bytes, size_t size
 
 /* Fills the last page with zeros and gives the first one its bytes. */
 static brio_status e57_pen_end(brio_e57_pen *p, const void *header, size_t size) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(e57_pen_turn(p));
+    BRIO_FORWARD(e57_pen_turn(p));
     memset(p->kept, 0, BRIO_E57_PAGE);
     p->kept_page = 0;
-    BRIO_TRY(e57_pen_patch(p, header, size));
-done:
-    return status;
+    return e57_pen_patch(p, header, size);
 }
 
 /* --- scans --- */
@@ -241,9 +231,8 @@ static void add_field(e57_writer *w, field f) {
 
 static brio_status plan(brio_output *out, const brio_write_job *job, e57_writer *w) {
     static const char *const axes[AXES] = {"cartesianX", "cartesianY", "cartesianZ"};
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh;
-    BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, w->fields, AXES + 1 + m->num_properties));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(out->ctx, w->fields, AXES + 1 + m->num_properties));
     for (size_t k = 0; k < AXES; k++) {
         field f = {.axis = true, .from = k, .type = job->options->float32 ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_FLOAT64};
         strcpy(f.element, axes[k]);
@@ -260,8 +249,7 @@ static brio_status plan(brio_output *out, const brio_write_job *job, e57_writer 
             make_element(w, m->properties[i].name, &f);
         add_field(w, f);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static bool renames(const void *state, size_t i) {
@@ -274,15 +262,12 @@ static bool renames(const void *state, size_t i) {
 /* --- points --- */
 
 static brio_status begin_scan(brio_output *out, e57_writer *w) {
-    brio_status status = BRIO_OK;
     const char header[SECTION_HEADER] = {0};
     written *s = &w->list[w->num_written++];
-    BRIO_TRY(e57_pen_turn(&w->pen));
+    BRIO_FORWARD(e57_pen_turn(&w->pen));
     *s = (written){.section = brio_output_offset(out), .sum = w->pen.sum, .least = INFINITY, .most = -INFINITY};
     for (int k = 0; k < AXES; k++) s->low[k] = INFINITY, s->high[k] = -INFINITY;
-    BRIO_TRY(e57_put(&w->pen, header, sizeof header));
-done:
-    return status;
+    return e57_put(&w->pen, header, sizeof header);
 }
 
 static brio_status end_scan(e57_writer *w) {
@@ -357,28 +342,24 @@ static brio_status write_packet(e57_writer *w, const brio_mesh *m, const brio_sc
 }
 
 static brio_status write_part(brio_output *out, const brio_mesh *m, e57_writer *w, const brio_scan_part *part) {
-    brio_status status = BRIO_OK;
     size_t most = (PACKET - 4 - DATA_HEADER - 2 * w->num_fields) / w->record;
-    if (part->begins) BRIO_TRY(begin_scan(out, w));
+    if (part->begins) BRIO_FORWARD(begin_scan(out, w));
     for (brio_scan_part chunk = *part; chunk.first < part->end; chunk.first = chunk.end) {
         chunk.end = part->end - chunk.first < most ? part->end : chunk.first + most;
-        BRIO_TRY(write_packet(w, m, &chunk));
+        BRIO_FORWARD(write_packet(w, m, &chunk));
     }
-    if (part->ends) BRIO_TRY(end_scan(w));
-done:
-    return status;
+    if (part->ends) BRIO_FORWARD(end_scan(w));
+    return BRIO_OK;
 }
 
 static brio_status write_rows(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     e57_writer *w = state;
     brio_scan_part part = {.end = 0};
     w->pen.out = out;
     w->scans.moved = 0;
-    while (brio_scans_next(&w->scans, job->mesh, &part)) BRIO_TRY(write_part(out, job->mesh, w, &part));
+    while (brio_scans_next(&w->scans, job->mesh, &part)) BRIO_FORWARD(write_part(out, job->mesh, w, &part));
     w->scans.rounds |= w->scans.moved > 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the XML section --- */
@@ -402,15 +383,13 @@ static brio_status put_character(brio_e57_pen *p, const char *c, size_t n) {
 
 /* Writes a text of an element. Bytes that are not UTF-8 are taken for Latin-1. */
 static brio_status put_escaped(brio_e57_pen *p, const char *text) {
-    brio_status status = BRIO_OK;
     for (size_t n; *text; text += n) {
         n = brio_utf8_length(text);
         const char latin[2] = {(char)(0xc0 | (unsigned char)*text >> 6), (char)(0x80 | (*text & 0x3f))};
-        BRIO_TRY(n ? put_character(p, text, n) : e57_put(p, latin, sizeof latin));
+        BRIO_FORWARD(n ? put_character(p, text, n) : e57_put(p, latin, sizeof latin));
         n += !n;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* A name for the content: the same bytes have the same one. */
@@ -422,30 +401,25 @@ static brio_status put_guid(brio_e57_pen *p, uint64_t sum, uint64_t number) {
 }
 
 static brio_status put_pose(brio_e57_pen *p, const brio_scan *scan) {
-    brio_status status = BRIO_OK;
     if (scan->place[0] == 0 && scan->place[1] == 0 && scan->place[2] == 0) return BRIO_OK;
-    BRIO_TRY(e57_put_text(p, "<pose type=\"Structure\">\n<rotation type=\"Structure\">\n"));
-    for (int k = 0; k < 4; k++) BRIO_TRY(put_number(p, (const char *[]){"w", "x", "y", "z"}[k], true, k == 0));
-    BRIO_TRY(e57_put_text(p, "</rotation>\n<translation type=\"Structure\">\n"));
-    for (int k = 0; k < AXES; k++) BRIO_TRY(put_number(p, (const char *[]){"x", "y", "z"}[k], true, scan->place[k]));
-    BRIO_TRY(e57_put_text(p, "</translation>\n</pose>\n"));
-done:
-    return status;
+    BRIO_FORWARD(e57_put_text(p, "<pose type=\"Structure\">\n<rotation type=\"Structure\">\n"));
+    for (int k = 0; k < 4; k++) BRIO_FORWARD(put_number(p, (const char *[]){"w", "x", "y", "z"}[k], true, k == 0));
+    BRIO_FORWARD(e57_put_text(p, "</rotation>\n<translation type=\"Structure\">\n"));
+    for (int k = 0; k < AXES; k++)
+        BRIO_FORWARD(put_number(p, (const char *[]){"x", "y", "z"}[k], true, scan->place[k]));
+    return e57_put_text(p, "</translation>\n</pose>\n");
 }
 
 static brio_status put_bounds(brio_e57_pen *p, const written *s) {
     static const char *const names[2][AXES] = {{"xMinimum", "yMinimum", "zMinimum"},
                                                {"xMaximum", "yMaximum", "zMaximum"}};
-    brio_status status = BRIO_OK;
     if (!(s->low[0] <= s->high[0])) return BRIO_OK;
-    BRIO_TRY(e57_put_text(p, "<cartesianBounds type=\"Structure\">\n"));
+    BRIO_FORWARD(e57_put_text(p, "<cartesianBounds type=\"Structure\">\n"));
     for (int k = 0; k < AXES; k++) {
-        BRIO_TRY(put_number(p, names[0][k], true, s->low[k]));
-        BRIO_TRY(put_number(p, names[1][k], true, s->high[k]));
+        BRIO_FORWARD(put_number(p, names[0][k], true, s->low[k]));
+        BRIO_FORWARD(put_number(p, names[1][k], true, s->high[k]));
     }
-    BRIO_TRY(e57_put_text(p, "</cartesianBounds>\n"));
-done:
-    return status;
+    return e57_put_text(p, "</cartesianBounds>\n");
 }
 
 static const field *field_named(const e57_writer *w, const char *element) {
@@ -457,27 +431,24 @@ static const field *field_named(const e57_writer *w, const char *element) {
 /* Writes what white is, and the range of the intensities. */
 static brio_status put_limits(e57_writer *w, const written *s) {
     static const char *const colours[] = {"colorRed", "colorGreen", "colorBlue"};
-    brio_status status = BRIO_OK;
     brio_e57_pen *p = &w->pen;
     const field *intensity = field_named(w, "intensity"), *red = field_named(w, "colorRed");
     char name[BRIO_E57_NAME];
     if (intensity && s->least <= s->most && isfinite(s->least) && isfinite(s->most)) {
-        BRIO_TRY(e57_put_text(p, "<intensityLimits type=\"Structure\">\n"));
-        BRIO_TRY(put_number(p, "intensityMinimum", is_real(intensity->type), s->least));
-        BRIO_TRY(put_number(p, "intensityMaximum", is_real(intensity->type), s->most));
-        BRIO_TRY(e57_put_text(p, "</intensityLimits>\n"));
+        BRIO_FORWARD(e57_put_text(p, "<intensityLimits type=\"Structure\">\n"));
+        BRIO_FORWARD(put_number(p, "intensityMinimum", is_real(intensity->type), s->least));
+        BRIO_FORWARD(put_number(p, "intensityMaximum", is_real(intensity->type), s->most));
+        BRIO_FORWARD(e57_put_text(p, "</intensityLimits>\n"));
     }
     if (!red) return BRIO_OK;
-    BRIO_TRY(e57_put_text(p, "<colorLimits type=\"Structure\">\n"));
+    BRIO_FORWARD(e57_put_text(p, "<colorLimits type=\"Structure\">\n"));
     for (int k = 0; k < 3; k++) {
         snprintf(name, sizeof name, "%sMinimum", colours[k]);
-        BRIO_TRY(put_number(p, name, false, 0));
+        BRIO_FORWARD(put_number(p, name, false, 0));
         snprintf(name, sizeof name, "%sMaximum", colours[k]);
-        BRIO_TRY(put_number(p, name, false, red->type == BRIO_SCALAR_UINT8 ? UINT8_MAX : UINT16_MAX));
+        BRIO_FORWARD(put_number(p, name, false, red->type == BRIO_SCALAR_UINT8 ? UINT8_MAX : UINT16_MAX));
     }
-    BRIO_TRY(e57_put_text(p, "</colorLimits>\n"));
-done:
-    return status;
+    return e57_put_text(p, "</colorLimits>\n");
 }
 
 static brio_status put_field(brio_e57_pen *p, const field *f) {
@@ -495,93 +466,81 @@ static brio_status put_field(brio_e57_pen *p, const field *f) {
 }
 
 static brio_status put_scan(e57_writer *w, size_t i) {
-    brio_status status = BRIO_OK;
     brio_e57_pen *p = &w->pen;
-    BRIO_TRY(e57_put_text(p, "<vectorChild type=\"Structure\">\n"));
-    BRIO_TRY(put_guid(p, w->list[i].sum, i + 1));
-    BRIO_TRY(put_pose(p, &w->scans.list[i]));
-    BRIO_TRY(put_bounds(p, &w->list[i]));
-    BRIO_TRY(put_limits(w, &w->list[i]));
-    BRIO_TRY(e57_put_text(p,
-                          "<points type=\"CompressedVector\" fileOffset=\"%" PRIu64 "\" recordCount=\"%" PRIu64
-                          "\">\n<prototype type=\"Structure\">\n",
-                          w->list[i].section, w->scans.list[i].points));
-    for (size_t f = 0; f < w->num_fields; f++) BRIO_TRY(put_field(p, &w->fields[f]));
-    BRIO_TRY(e57_put_text(p, "</prototype>\n<codecs type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n"
-                             "</points>\n</vectorChild>\n"));
-done:
-    return status;
+    BRIO_FORWARD(e57_put_text(p, "<vectorChild type=\"Structure\">\n"));
+    BRIO_FORWARD(put_guid(p, w->list[i].sum, i + 1));
+    BRIO_FORWARD(put_pose(p, &w->scans.list[i]));
+    BRIO_FORWARD(put_bounds(p, &w->list[i]));
+    BRIO_FORWARD(put_limits(w, &w->list[i]));
+    BRIO_FORWARD(e57_put_text(p,
+                              "<points type=\"CompressedVector\" fileOffset=\"%" PRIu64 "\" recordCount=\"%" PRIu64
+                              "\">\n<prototype type=\"Structure\">\n",
+                              w->list[i].section, w->scans.list[i].points));
+    for (size_t f = 0; f < w->num_fields; f++) BRIO_FORWARD(put_field(p, &w->fields[f]));
+    return e57_put_text(p, "</prototype>\n<codecs type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n"
+                           "</points>\n</vectorChild>\n");
 }
 
 static brio_status put_xml(e57_writer *w, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
     brio_e57_pen *p = &w->pen;
-    BRIO_TRY(e57_put_text(p, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" xmlns=\"%s\"",
-                          E57_NAMES));
-    BRIO_TRY(e57_put_text(p, " xmlns:nor=\"%s\" xmlns:brio=\"%s\">\n", NORMAL_NAMES, OWN_NAMES));
-    BRIO_TRY(e57_put_text(p, "<formatName type=\"String\">ASTM E57 3D Imaging Data File</formatName>\n"));
-    BRIO_TRY(put_guid(p, p->sum, 0));
-    BRIO_TRY(e57_put_text(p, "<versionMajor type=\"Integer\">1</versionMajor>\n"
-                             "<versionMinor type=\"Integer\">0</versionMinor>\n"
-                             "<e57LibraryVersion type=\"String\">"));
-    BRIO_TRY(put_escaped(p, job->options->comment ? job->options->comment : "brio"));
-    BRIO_TRY(e57_put_text(p, "</e57LibraryVersion>\n"));
+    BRIO_FORWARD(e57_put_text(p, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<e57Root type=\"Structure\" xmlns=\"%s\"",
+                              E57_NAMES));
+    BRIO_FORWARD(e57_put_text(p, " xmlns:nor=\"%s\" xmlns:brio=\"%s\">\n", NORMAL_NAMES, OWN_NAMES));
+    BRIO_FORWARD(e57_put_text(p, "<formatName type=\"String\">ASTM E57 3D Imaging Data File</formatName>\n"));
+    BRIO_FORWARD(put_guid(p, p->sum, 0));
+    BRIO_FORWARD(e57_put_text(p, "<versionMajor type=\"Integer\">1</versionMajor>\n"
+                                 "<versionMinor type=\"Integer\">0</versionMinor>\n"
+                                 "<e57LibraryVersion type=\"String\">"));
+    BRIO_FORWARD(put_escaped(p, job->options->comment ? job->options->comment : "brio"));
+    BRIO_FORWARD(e57_put_text(p, "</e57LibraryVersion>\n"));
     if (w->crs) {
-        BRIO_TRY(e57_put_text(p, "<coordinateMetadata type=\"String\">"));
-        BRIO_TRY(put_escaped(p, w->crs));
-        BRIO_TRY(e57_put_text(p, "</coordinateMetadata>\n"));
+        BRIO_FORWARD(e57_put_text(p, "<coordinateMetadata type=\"String\">"));
+        BRIO_FORWARD(put_escaped(p, w->crs));
+        BRIO_FORWARD(e57_put_text(p, "</coordinateMetadata>\n"));
     }
-    BRIO_TRY(e57_put_text(p, "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n"));
-    for (size_t i = 0; i < w->scans.count; i++) BRIO_TRY(put_scan(w, i));
-    BRIO_TRY(e57_put_text(p, "</data3D>\n<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n</e57Root>\n"));
-done:
-    return status;
+    BRIO_FORWARD(e57_put_text(p, "<data3D type=\"Vector\" allowHeterogeneousChildren=\"1\">\n"));
+    for (size_t i = 0; i < w->scans.count; i++) BRIO_FORWARD(put_scan(w, i));
+    return e57_put_text(p, "</data3D>\n<images2D type=\"Vector\" allowHeterogeneousChildren=\"1\"/>\n</e57Root>\n");
 }
 
 /* --- the file --- */
 
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     e57_writer *w = state;
     const brio_metadata *crs = brio_mesh_metadata(job->mesh, "crs.wkt");
-    BRIO_REQUIRE(out->ctx, brio_output_can_patch(out), BRIO_ERR_ARGUMENT,
-                 "%s: the beginning of an E57 file is written last: that needs a file, no pipe", out->name);
-    BRIO_TRY(brio_scans_settle(out->ctx, &w->scans));
-    BRIO_TRY(BRIO_ALLOC_ZERO(out->ctx, w->list, w->scans.count));
-    BRIO_TRY(BRIO_ALLOC(out->ctx, w->packet, PACKET));
+    BRIO_EXPECT(out->ctx, brio_output_can_patch(out), BRIO_ERR_ARGUMENT,
+                "%s: the beginning of an E57 file is written last: that needs a file, no pipe", out->name);
+    BRIO_FORWARD(brio_scans_settle(out->ctx, &w->scans));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(out->ctx, w->list, w->scans.count));
+    BRIO_FORWARD(BRIO_ALLOC(out->ctx, w->packet, PACKET));
     if (crs) {
-        BRIO_TRY(BRIO_ALLOC(out->ctx, w->crs, crs->size + 1));
+        BRIO_FORWARD(BRIO_ALLOC(out->ctx, w->crs, crs->size + 1));
         memcpy(w->crs, crs->bytes, crs->size);
         w->crs[crs->size] = 0;
     }
-    BRIO_TRY(plan(out, job, w));
+    BRIO_FORWARD(plan(out, job, w));
     w->pen.out = out;
-    BRIO_TRY(e57_pen_begin(&w->pen));
-done:
-    return status;
+    return e57_pen_begin(&w->pen);
 }
 
 static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     e57_writer *w = state;
     char header[FILE_HEADER] = "ASTM-E57\1";
     w->pen.out = out;
     if (!w->scans.points) {
-        BRIO_TRY(begin_scan(out, w));
-        BRIO_TRY(write_packet(w, job->mesh, &(brio_scan_part){.scan = w->scans.list})); /* readers expect one */
-        BRIO_TRY(end_scan(w));
+        BRIO_FORWARD(begin_scan(out, w));
+        BRIO_FORWARD(write_packet(w, job->mesh, &(brio_scan_part){.scan = w->scans.list})); /* readers expect one */
+        BRIO_FORWARD(end_scan(w));
     }
     assert(w->num_written == w->scans.count);
     uint64_t xml = e57_pen_offset(&w->pen);
-    BRIO_TRY(put_xml(w, job));
+    BRIO_FORWARD(put_xml(w, job));
     uint64_t length = e57_pen_offset(&w->pen) - xml, pages = (xml + length + BRIO_E57_CONTENT - 1) / BRIO_E57_CONTENT;
     brio_put_le64(header + 16, pages * BRIO_E57_PAGE);
     brio_put_le64(header + 24, brio_e57_physical(xml));
     brio_put_le64(header + 32, length);
     brio_put_le64(header + 40, BRIO_E57_PAGE);
-    BRIO_TRY(e57_pen_end(&w->pen, header, sizeof header));
-done:
-    return status;
+    return e57_pen_end(&w->pen, header, sizeof header);
 }
 
 static void free_state(brio_context *ctx, void *state) {

@@ -455,39 +455,35 @@ static brio_status stopped(const xml_reader *r) {
 
 /* Some programs fill the section with zero bytes, which are no XML: finds its length without them. */
 static brio_status measure(brio_e57_pages *p, uint64_t *length) {
-    brio_status status = BRIO_OK;
     *length = p->xml_length;
     while (*length) {
         const char *bytes = NULL;
         size_t size = *length < PART ? (size_t)*length : PART;
-        BRIO_TRY(brio_e57_take(p, p->xml + *length - size, size, &bytes));
+        BRIO_FORWARD(brio_e57_take(p, p->xml + *length - size, size, &bytes));
         size_t used = size;
         while (used && !bytes[used - 1]) used--;
         *length -= size - used;
         if (used) break;
     }
-    BRIO_REQUIRE(p->stream->ctx, *length, BRIO_ERR_FORMAT, "%s: the XML section is empty", p->stream->name);
-done:
-    return status;
+    BRIO_EXPECT(p->stream->ctx, *length, BRIO_ERR_FORMAT, "%s: the XML section is empty", p->stream->name);
+    return BRIO_OK;
 }
 
 static brio_status parse(xml_reader *r, brio_e57_pages *p) {
-    brio_status status = BRIO_OK;
     uint64_t length = 0;
-    BRIO_TRY(measure(p, &length));
+    BRIO_FORWARD(measure(p, &length));
     for (uint64_t at = 0; at < length;) {
         const char *bytes = NULL;
         size_t size = length - at < PART ? (size_t)(length - at) : PART;
-        BRIO_TRY(brio_e57_take(p, p->xml + at, size, &bytes));
+        BRIO_FORWARD(brio_e57_take(p, p->xml + at, size, &bytes));
         at += size;
         if (XML_Parse(r->parser, bytes, (int)size, at == length) != XML_STATUS_OK) return stopped(r);
         XML_Index done = XML_GetCurrentByteIndex(r->parser);
-        BRIO_REQUIRE(r->ctx, done < 0 || at - (uint64_t)done <= TAG, BRIO_ERR_FORMAT,
-                     "%s: XML section, line %lu: a tag or comment of more than %d bytes", r->name,
-                     (unsigned long)XML_GetCurrentLineNumber(r->parser), TAG);
+        BRIO_EXPECT(r->ctx, done < 0 || at - (uint64_t)done <= TAG, BRIO_ERR_FORMAT,
+                    "%s: XML section, line %lu: a tag or comment of more than %d bytes", r->name,
+                    (unsigned long)XML_GetCurrentLineNumber(r->parser), TAG);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_e57_xml_read(brio_e57_pages *p, brio_builder *b, brio_e57_scans *out) {

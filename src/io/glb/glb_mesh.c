@@ -48,22 +48,19 @@ static size_t size_of(int type) {
 
 /* Finds the bytes of a view. */
 static brio_status view_bytes(const brio_glb_file *file, uint32_t view, const char **bytes) {
-    brio_status status = BRIO_OK;
     const brio_glb_scene *s = &file->scene;
-    BRIO_REQUIRE(file->ctx, view < s->num_views && s->views[view].buffer < s->num_buffers, BRIO_ERR_FORMAT,
-                 "%s: bufferViews[%u]: expected a view of a buffer of the file", file->name, view);
+    BRIO_EXPECT(file->ctx, view < s->num_views && s->views[view].buffer < s->num_buffers, BRIO_ERR_FORMAT,
+                "%s: bufferViews[%u]: expected a view of a buffer of the file", file->name, view);
     const brio_glb_view *v = &s->views[view];
     const brio_glb_buffer *buffer = &s->buffers[v->buffer];
     bool outside = !buffer->bytes && (v->buffer || !file->binary);
-    BRIO_REQUIRE(file->ctx, !outside, BRIO_ERR_FORMAT, "%s: buffers[%u] has no data in the file", file->name,
-                 v->buffer);
+    BRIO_EXPECT(file->ctx, !outside, BRIO_ERR_FORMAT, "%s: buffers[%u] has no data in the file", file->name, v->buffer);
     uint64_t size = buffer->bytes || buffer->size < file->binary_size ? buffer->size : file->binary_size;
-    BRIO_REQUIRE(file->ctx, v->offset <= size && v->size <= size - v->offset, BRIO_ERR_FORMAT,
-                 "%s: bufferViews[%u] has bytes %" PRIu64 " to %" PRIu64 " of buffers[%u], which has %" PRIu64,
-                 file->name, view, v->offset, v->offset + v->size, v->buffer, size);
+    BRIO_EXPECT(file->ctx, v->offset <= size && v->size <= size - v->offset, BRIO_ERR_FORMAT,
+                "%s: bufferViews[%u] has bytes %" PRIu64 " to %" PRIu64 " of buffers[%u], which has %" PRIu64,
+                file->name, view, v->offset, v->offset + v->size, v->buffer, size);
     *bytes = (buffer->bytes ? buffer->bytes : file->binary) + v->offset;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns whether all rows lie in the view. */
@@ -78,29 +75,27 @@ static bool fits(const brio_glb_accessor *a, const brio_glb_view *v, uint64_t st
  *  what  what the accessor is for, for the message.
  *  Returns BRIO_OK or BRIO_ERR_FORMAT. */
 static brio_status glb_column_of(const brio_glb_file *file, uint32_t accessor, const char *what, brio_glb_column *out) {
-    brio_status status = BRIO_OK;
     const brio_glb_scene *s = &file->scene;
     const char *bytes = NULL;
-    BRIO_REQUIRE(file->ctx, accessor < s->num_accessors, BRIO_ERR_FORMAT, "%s: %s: accessor %u, the file has %zu",
-                 file->name, what, accessor, s->num_accessors);
+    BRIO_EXPECT(file->ctx, accessor < s->num_accessors, BRIO_ERR_FORMAT, "%s: %s: accessor %u, the file has %zu",
+                file->name, what, accessor, s->num_accessors);
     const brio_glb_accessor *a = &s->accessors[accessor];
     uint64_t row = (uint64_t)a->components * size_of(a->type);
-    BRIO_REQUIRE(file->ctx, row, BRIO_ERR_FORMAT, "%s: accessors[%u]: expected SCALAR to VEC4 of a componentType",
-                 file->name, accessor);
-    BRIO_REQUIRE(file->ctx, !a->sparse, BRIO_ERR_FORMAT,
-                 "%s: accessors[%u] is sparse, which is not read: export it without", file->name, accessor);
-    BRIO_REQUIRE(file->ctx, a->view != BRIO_GLB_NONE, BRIO_ERR_FORMAT, "%s: accessors[%u] has no bufferView",
-                 file->name, accessor);
-    BRIO_TRY(view_bytes(file, a->view, &bytes));
+    BRIO_EXPECT(file->ctx, row, BRIO_ERR_FORMAT, "%s: accessors[%u]: expected SCALAR to VEC4 of a componentType",
+                file->name, accessor);
+    BRIO_EXPECT(file->ctx, !a->sparse, BRIO_ERR_FORMAT,
+                "%s: accessors[%u] is sparse, which is not read: export it without", file->name, accessor);
+    BRIO_EXPECT(file->ctx, a->view != BRIO_GLB_NONE, BRIO_ERR_FORMAT, "%s: accessors[%u] has no bufferView", file->name,
+                accessor);
+    BRIO_FORWARD(view_bytes(file, a->view, &bytes));
     const brio_glb_view *v = &s->views[a->view];
     uint64_t stride = v->stride ? v->stride : row;
-    BRIO_REQUIRE(file->ctx, fits(a, v, stride, row), BRIO_ERR_FORMAT,
-                 "%s: accessors[%u] has %" PRIu64 " rows of %" PRIu64 " bytes, which are not in its view of %" PRIu64
-                 " bytes",
-                 file->name, accessor, a->count, row, v->size);
+    BRIO_EXPECT(file->ctx, fits(a, v, stride, row), BRIO_ERR_FORMAT,
+                "%s: accessors[%u] has %" PRIu64 " rows of %" PRIu64 " bytes, which are not in its view of %" PRIu64
+                " bytes",
+                file->name, accessor, a->count, row, v->size);
     *out = (brio_glb_column){bytes + a->offset, stride, a->count, a->type, a->components, a->normalized};
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns a number as it is in the file. */
@@ -160,60 +155,48 @@ typedef struct {
 
 /* Returns corner i as a vertex of the mesh. */
 static brio_status corner(const primitive *p, uint64_t i, double *vertex) {
-    brio_status status = BRIO_OK;
     double index = p->indexed ? glb_raw(&p->indices, i, 0) : (double)i;
-    BRIO_REQUIRE(p->file->ctx, index < (double)p->count, BRIO_ERR_FORMAT,
-                 "%s: index %" PRIu64 " (counted from 0) of a primitive: vertex %.17g, it has %" PRIu64, p->file->name,
-                 i, index, p->count);
+    BRIO_EXPECT(p->file->ctx, index < (double)p->count, BRIO_ERR_FORMAT,
+                "%s: index %" PRIu64 " (counted from 0) of a primitive: vertex %.17g, it has %" PRIu64, p->file->name,
+                i, index, p->count);
     *vertex = (double)p->first + index;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status add_triangle(const primitive *p, uint64_t a, uint64_t b, uint64_t c) {
-    brio_status status = BRIO_OK;
     const uint64_t order[3] = {a, p->flip ? c : b, p->flip ? b : c};
     double vertex = 0;
     for (int i = 0; i < 3; i++) {
-        BRIO_TRY(corner(p, order[i], &vertex));
-        BRIO_TRY(brio_builder_corner(p->builder, vertex));
+        BRIO_FORWARD(corner(p, order[i], &vertex));
+        BRIO_FORWARD(brio_builder_corner(p->builder, vertex));
     }
-    BRIO_TRY(brio_builder_face(p->builder));
-done:
-    return status;
+    return brio_builder_face(p->builder);
 }
 
 static brio_status add_edge(const primitive *p, uint64_t a, uint64_t b) {
-    brio_status status = BRIO_OK;
     double ends[2];
-    BRIO_TRY(corner(p, a, &ends[0]));
-    BRIO_TRY(corner(p, b, &ends[1]));
-    BRIO_TRY(brio_builder_edge(p->builder, ends));
-done:
-    return status;
+    BRIO_FORWARD(corner(p, a, &ends[0]));
+    BRIO_FORWARD(corner(p, b, &ends[1]));
+    return brio_builder_edge(p->builder, ends);
 }
 
 static brio_status add_lines(const primitive *p, brio_glb_mode mode, uint64_t n) {
-    brio_status status = BRIO_OK;
     uint64_t step = mode == BRIO_GLB_LINES ? 2 : 1;
-    for (uint64_t i = 0; i + 1 < n; i += step) BRIO_TRY(add_edge(p, i, i + 1));
-    if (mode == BRIO_GLB_LINE_LOOP && n > 1) BRIO_TRY(add_edge(p, n - 1, 0));
-done:
-    return status;
+    for (uint64_t i = 0; i + 1 < n; i += step) BRIO_FORWARD(add_edge(p, i, i + 1));
+    if (mode == BRIO_GLB_LINE_LOOP && n > 1) BRIO_FORWARD(add_edge(p, n - 1, 0));
+    return BRIO_OK;
 }
 
 static brio_status add_triangles(const primitive *p, brio_glb_mode mode, uint64_t n) {
-    brio_status status = BRIO_OK;
     uint64_t step = mode == BRIO_GLB_TRIANGLES ? 3 : 1;
     for (uint64_t i = 0; i + 2 < n; i += step) {
         uint64_t odd = mode == BRIO_GLB_TRIANGLE_STRIP ? i % 2 : 0;
         if (mode == BRIO_GLB_TRIANGLE_FAN)
-            BRIO_TRY(add_triangle(p, 0, i + 1, i + 2));
+            BRIO_FORWARD(add_triangle(p, 0, i + 1, i + 2));
         else
-            BRIO_TRY(add_triangle(p, i, i + 1 + odd, i + 2 - odd));
+            BRIO_FORWARD(add_triangle(p, i, i + 1 + odd, i + 2 - odd));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds the faces and edges of a primitive.
@@ -221,21 +204,18 @@ done:
  *  Returns BRIO_OK, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 static brio_status glb_add_cells(const brio_glb_file *file, brio_builder *b, const brio_glb_primitive *given,
                                  const uint64_t vertices[2], bool flip) {
-    brio_status status = BRIO_OK;
     primitive p = {.file = file, .builder = b, .flip = flip, .first = vertices[0], .count = vertices[1]};
     p.indexed = given->indices != BRIO_GLB_NONE;
-    if (p.indexed) BRIO_TRY(glb_column_of(file, given->indices, "indices", &p.indices));
+    if (p.indexed) BRIO_FORWARD(glb_column_of(file, given->indices, "indices", &p.indices));
     bool whole = !p.indexed || (p.indices.components == 1 && p.indices.type != BRIO_GLB_FLOAT);
-    BRIO_REQUIRE(file->ctx, whole, BRIO_ERR_FORMAT, "%s: accessors[%u]: indices are no whole numbers", file->name,
-                 given->indices);
+    BRIO_EXPECT(file->ctx, whole, BRIO_ERR_FORMAT, "%s: accessors[%u]: indices are no whole numbers", file->name,
+                given->indices);
     uint64_t n = p.indexed ? p.indices.count : p.count;
-    BRIO_REQUIRE(
-        file->ctx, (given->mode != BRIO_GLB_TRIANGLES || n % 3 == 0) && (given->mode != BRIO_GLB_LINES || n % 2 == 0),
-        BRIO_ERR_FORMAT, "%s: a primitive of mode %d has %" PRIu64 " corners", file->name, (int)given->mode, n);
+    BRIO_EXPECT(file->ctx,
+                (given->mode != BRIO_GLB_TRIANGLES || n % 3 == 0) && (given->mode != BRIO_GLB_LINES || n % 2 == 0),
+                BRIO_ERR_FORMAT, "%s: a primitive of mode %d has %" PRIu64 " corners", file->name, (int)given->mode, n);
     if (given->mode == BRIO_GLB_POINTS) return BRIO_OK;
-    BRIO_TRY(given->mode < BRIO_GLB_TRIANGLES ? add_lines(&p, given->mode, n) : add_triangles(&p, given->mode, n));
-done:
-    return status;
+    return given->mode < BRIO_GLB_TRIANGLES ? add_lines(&p, given->mode, n) : add_triangles(&p, given->mode, n);
 }
 
 /* --- places of meshes --- */
@@ -275,33 +255,28 @@ static void multiply(const double *a, const double *b, double *c) {
 
 /* Puts nodes on the stack so that the first one comes first. */
 static brio_status push(walk *w, const double *matrix, const uint32_t *nodes, size_t count) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(w->file->ctx, w->stack, w->capacity, w->size + count));
+    BRIO_FORWARD(BRIO_RESERVE(w->file->ctx, w->stack, w->capacity, w->size + count));
     for (size_t i = count; i > 0; i--) {
         task *t = &w->stack[w->size++];
         memcpy(t->matrix, matrix, sizeof t->matrix);
         t->node = nodes[i - 1];
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Takes a node from the stack, and puts its children there.   out  its mesh and its place. */
 static brio_status visit(walk *w, brio_glb_instance *out) {
-    brio_status status = BRIO_OK;
     const brio_glb_scene *s = &w->file->scene;
     const task t = w->stack[--w->size];
     const brio_glb_node *node = &s->nodes[t.node];
-    BRIO_REQUIRE(w->file->ctx, !w->visited[t.node], BRIO_ERR_FORMAT,
-                 "%s: nodes[%u] is there twice: expected nodes that are a tree", w->file->name, t.node);
+    BRIO_EXPECT(w->file->ctx, !w->visited[t.node], BRIO_ERR_FORMAT,
+                "%s: nodes[%u] is there twice: expected nodes that are a tree", w->file->name, t.node);
     w->visited[t.node] = true;
-    BRIO_REQUIRE(w->file->ctx, node->mesh == BRIO_GLB_NONE || node->mesh < s->num_meshes, BRIO_ERR_FORMAT,
-                 "%s: nodes[%u].mesh: the file has %zu meshes", w->file->name, t.node, s->num_meshes);
+    BRIO_EXPECT(w->file->ctx, node->mesh == BRIO_GLB_NONE || node->mesh < s->num_meshes, BRIO_ERR_FORMAT,
+                "%s: nodes[%u].mesh: the file has %zu meshes", w->file->name, t.node, s->num_meshes);
     multiply(t.matrix, node->matrix, out->matrix);
     out->mesh = node->mesh;
-    BRIO_TRY(push(w, out->matrix, s->children + node->child, node->children));
-done:
-    return status;
+    return push(w, out->matrix, s->children + node->child, node->children);
 }
 
 /* Finds the meshes of the scene, in the order of its tree.   out  owned by the caller (brio_release), also on failure.
@@ -372,17 +347,15 @@ static bool same_attributes(const brio_glb_file *file, const brio_glb_primitive 
 }
 
 static brio_status positions_of(const builder *b, brio_glb_column *out) {
-    brio_status status = BRIO_OK;
     const brio_glb_file *file = b->file;
-    BRIO_REQUIRE(file->ctx, !b->primitive->draco, BRIO_ERR_FORMAT,
-                 "%s: a primitive is compressed by Draco, which is not read: export it without", file->name);
+    BRIO_EXPECT(file->ctx, !b->primitive->draco, BRIO_ERR_FORMAT,
+                "%s: a primitive is compressed by Draco, which is not read: export it without", file->name);
     const brio_glb_attribute *a = attribute_of(file, b->primitive, "POSITION");
-    BRIO_REQUIRE(file->ctx, a, BRIO_ERR_FORMAT, "%s: a primitive without POSITION", file->name);
-    BRIO_TRY(glb_column_of(file, a->accessor, a->name, out));
-    BRIO_REQUIRE(file->ctx, out->components == 3, BRIO_ERR_FORMAT, "%s: accessors[%u]: POSITION is no VEC3", file->name,
-                 a->accessor);
-done:
-    return status;
+    BRIO_EXPECT(file->ctx, a, BRIO_ERR_FORMAT, "%s: a primitive without POSITION", file->name);
+    BRIO_FORWARD(glb_column_of(file, a->accessor, a->name, out));
+    BRIO_EXPECT(file->ctx, out->components == 3, BRIO_ERR_FORMAT, "%s: accessors[%u]: POSITION is no VEC3", file->name,
+                a->accessor);
+    return BRIO_OK;
 }
 
 /* --- properties --- */
@@ -397,7 +370,6 @@ static brio_scalar type_of(const brio_glb_column *c, bool colour, bool normal) {
 }
 
 static brio_status note_column(builder *b, const char *name, const brio_glb_column *c) {
-    brio_status status = BRIO_OK;
     bool colour = !strcmp(name, "COLOR_0"), normal = !strcmp(name, "NORMAL");
     brio_scalar type = type_of(c, colour, normal);
     for (int k = 0; k < c->components; k++) {
@@ -408,14 +380,13 @@ static brio_status note_column(builder *b, const char *name, const brio_glb_colu
             if (p->components < c->components) p->components = c->components;
             continue;
         }
-        BRIO_REQUIRE(b->file->ctx, b->num_properties < MOST_PROPERTIES, BRIO_ERR_FORMAT,
-                     "%s: more than %d numbers a vertex", b->file->name, MOST_PROPERTIES);
+        BRIO_EXPECT(b->file->ctx, b->num_properties < MOST_PROPERTIES, BRIO_ERR_FORMAT,
+                    "%s: more than %d numbers a vertex", b->file->name, MOST_PROPERTIES);
         *p = (property){.component = k, .components = c->components, .type = type, .colour = colour, .normal = normal};
         memcpy(p->attribute, name, strlen(name) + 1);
         b->num_properties++;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* What an attribute that becomes no property is called. */
@@ -432,35 +403,32 @@ static const char *name_of_other(const char *attribute) {
 
 /* Notes the attributes of a primitive that become properties. */
 static brio_status note_primitive(builder *b) {
-    brio_status status = BRIO_OK;
     brio_glb_column positions, c;
     const brio_glb_attribute *a = b->file->scene.attributes + b->primitive->attribute;
-    BRIO_TRY(positions_of(b, &positions));
-    if (b->primitive->targets) BRIO_TRY(brio_builder_leave_out(b->builder, "morph targets"));
+    BRIO_FORWARD(positions_of(b, &positions));
+    if (b->primitive->targets) BRIO_FORWARD(brio_builder_leave_out(b->builder, "morph targets"));
     for (size_t i = 0; i < b->primitive->attributes; i++) {
         bool normal = !strcmp(a[i].name, "NORMAL"), colour = !strcmp(a[i].name, "COLOR_0");
         bool own = a[i].name[0] == '_' && a[i].name[1];
         if (!normal && !colour && !own) {
             if (strcmp(a[i].name, "POSITION") != 0)
-                BRIO_TRY(brio_builder_leave_out(b->builder, name_of_other(a[i].name)));
+                BRIO_FORWARD(brio_builder_leave_out(b->builder, name_of_other(a[i].name)));
             continue;
         }
-        BRIO_TRY(glb_column_of(b->file, a[i].accessor, a[i].name, &c));
-        BRIO_REQUIRE(b->file->ctx,
-                     c.count >= positions.count && (!normal || c.components == 3) && (!colour || c.components >= 3),
-                     BRIO_ERR_FORMAT,
-                     "%s: accessors[%u]: %s has %" PRIu64 " rows of %d numbers, the positions have %" PRIu64 " rows",
-                     b->file->name, a[i].accessor, a[i].name, c.count, c.components, positions.count);
-        BRIO_TRY(note_column(b, a[i].name, &c));
+        BRIO_FORWARD(glb_column_of(b->file, a[i].accessor, a[i].name, &c));
+        BRIO_EXPECT(b->file->ctx,
+                    c.count >= positions.count && (!normal || c.components == 3) && (!colour || c.components >= 3),
+                    BRIO_ERR_FORMAT,
+                    "%s: accessors[%u]: %s has %" PRIu64 " rows of %d numbers, the positions have %" PRIu64 " rows",
+                    b->file->name, a[i].accessor, a[i].name, c.count, c.components, positions.count);
+        BRIO_FORWARD(note_column(b, a[i].name, &c));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the properties of the mesh. A name that is taken gets _2 behind it. */
 static brio_status make_properties(builder *b) {
     static const char *const normal[] = {"nx", "ny", "nz"}, *const colour[] = {"red", "green", "blue", "alpha"};
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < b->num_properties; i++) {
         const property *p = &b->properties[i];
         char name[64];
@@ -469,10 +437,9 @@ static brio_status make_properties(builder *b) {
         else
             brio_builder_component_name(b->builder, p->attribute + 1, (uint64_t)p->component, (uint64_t)p->components,
                                         name);
-        BRIO_TRY(brio_builder_property(b->builder, name, p->type));
+        BRIO_FORWARD(brio_builder_property(b->builder, name, p->type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- vertices --- */
@@ -542,38 +509,34 @@ static void store(const builder *b, const property *p, const brio_glb_column *c,
 }
 
 static brio_status add_vertices(builder *b, uint64_t vertices[2]) {
-    brio_status status = BRIO_OK;
     brio_glb_column positions, c;
-    BRIO_TRY(positions_of(b, &positions));
+    BRIO_FORWARD(positions_of(b, &positions));
     vertices[0] = b->builder->mesh->num_vertices;
     vertices[1] = positions.count;
-    BRIO_TRY(brio_builder_add_vertices(b->builder, (size_t)positions.count));
+    BRIO_FORWARD(brio_builder_add_vertices(b->builder, (size_t)positions.count));
     place_positions(b, &positions, vertices[0]);
     for (size_t i = 0; i < b->num_properties; i++) {
         const brio_glb_attribute *a = attribute_of(b->file, b->primitive, b->properties[i].attribute);
-        if (a) BRIO_TRY(glb_column_of(b->file, a->accessor, a->name, &c));
+        if (a) BRIO_FORWARD(glb_column_of(b->file, a->accessor, a->name, &c));
         store(b, &b->properties[i], a ? &c : NULL, vertices[0], positions.count);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the scene --- */
 
 static brio_status add_instance(builder *b, const brio_glb_instance *instance) {
-    brio_status status = BRIO_OK;
     const brio_glb_mesh *mesh = &b->file->scene.meshes[instance->mesh];
     const brio_glb_primitive *p = b->file->scene.primitives + mesh->primitive;
     uint64_t vertices[2] = {0, 0};
     set_place(b, instance);
-    BRIO_TRY(brio_progress(b->file->ctx, "read", 1));
+    BRIO_FORWARD(brio_progress(b->file->ctx, "read", 1));
     for (size_t i = 0; i < mesh->primitives; i++) {
         b->primitive = &p[i];
-        if (i == 0 || !same_attributes(b->file, &p[i - 1], &p[i])) BRIO_TRY(add_vertices(b, vertices));
-        BRIO_TRY(glb_add_cells(b->file, b->builder, &p[i], vertices, b->flip));
+        if (i == 0 || !same_attributes(b->file, &p[i - 1], &p[i])) BRIO_FORWARD(add_vertices(b, vertices));
+        BRIO_FORWARD(glb_add_cells(b->file, b->builder, &p[i], vertices, b->flip));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* What a mesh is made into at each of its places. */
@@ -584,7 +547,6 @@ typedef struct {
 
 /* Notes the primitives of a mesh, once. */
 static brio_status note_mesh(builder *b, uint32_t number, made *m) {
-    brio_status status = BRIO_OK;
     const brio_glb_scene *s = &b->file->scene;
     const brio_glb_mesh *mesh = &s->meshes[number];
     const brio_glb_primitive *p = s->primitives + mesh->primitive;
@@ -593,13 +555,12 @@ static brio_status note_mesh(builder *b, uint32_t number, made *m) {
     m->noted = true;
     for (size_t i = 0; i < mesh->primitives; i++) {
         b->primitive = &p[i];
-        BRIO_TRY(note_primitive(b));
-        BRIO_TRY(positions_of(b, &positions));
+        BRIO_FORWARD(note_primitive(b));
+        BRIO_FORWARD(positions_of(b, &positions));
         if (i == 0 || !same_attributes(b->file, &p[i - 1], &p[i])) m->vertices += positions.count;
         m->corners += p[i].indices < s->num_accessors ? s->accessors[p[i].indices].count : positions.count;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Refuses a scene that shows meshes, or accessors, so often that a small file becomes a huge mesh. Counts of accessors are

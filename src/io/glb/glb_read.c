@@ -20,55 +20,48 @@ bool brio_glb_starts(const char *bytes, size_t size) {
 
 /* Reads bytes into a new block, with a 0 behind them; it grows as they are read.   most  UINT64_MAX: up to the end. */
 static brio_status read_block(brio_stream *s, uint64_t most, char **out, uint64_t *size) {
-    brio_status status = BRIO_OK;
     size_t capacity = 0;
     *size = 0;
     if (s->size != BRIO_SIZE_UNKNOWN && most != UINT64_MAX) capacity = (size_t)most + 1;
-    BRIO_TRY(BRIO_ALLOC(s->ctx, *out, capacity));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, *out, capacity));
     while (*size < most) {
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
         size_t left = brio_stream_left(s);
         if (left > most - *size) left = (size_t)(most - *size);
         if (!left && most != UINT64_MAX) return brio_stream_truncated(s);
         if (!left) break;
-        BRIO_TRY(BRIO_RESERVE(s->ctx, *out, capacity, *size + left + 1));
+        BRIO_FORWARD(BRIO_RESERVE(s->ctx, *out, capacity, *size + left + 1));
         memcpy(*out + *size, s->buffer + s->begin, left);
         s->begin += left;
         *size += left;
     }
-    BRIO_TRY(BRIO_RESERVE(s->ctx, *out, capacity, *size + 1));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, *out, capacity, *size + 1));
     (*out)[*size] = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_chunk(brio_stream *s, uint32_t type, const char *what, char **out, uint64_t *size) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
     brio_stream_element(s, what, 1);
-    BRIO_TRY(brio_stream_take(s, CHUNK_HEADER, &bytes));
+    BRIO_FORWARD(brio_stream_take(s, CHUNK_HEADER, &bytes));
     uint32_t length = brio_le32(bytes);
-    BRIO_REQUIRE(s->ctx, brio_le32(bytes + 4) == type, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": expected the %s",
-                 s->name, brio_stream_offset(s) - CHUNK_HEADER, what);
-    BRIO_TRY(brio_stream_expect(s, length, 1, what));
-    BRIO_TRY(read_block(s, length, out, size));
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, brio_le32(bytes + 4) == type, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": expected the %s", s->name,
+                brio_stream_offset(s) - CHUNK_HEADER, what);
+    BRIO_FORWARD(brio_stream_expect(s, length, 1, what));
+    return read_block(s, length, out, size);
 }
 
 static brio_status read_container(brio_stream *s, brio_glb_file *file, char **json, uint64_t *json_size) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
     brio_stream_element(s, "header", 1);
-    BRIO_TRY(brio_stream_take(s, HEADER, &bytes));
+    BRIO_FORWARD(brio_stream_take(s, HEADER, &bytes));
     uint32_t version = brio_le32(bytes + 4), length = brio_le32(bytes + 8);
-    BRIO_REQUIRE(s->ctx, version == VERSION, BRIO_ERR_FORMAT, "%s: byte 4: version %u of glTF, expected 2", s->name,
-                 version);
-    BRIO_TRY(read_chunk(s, JSON, "JSON chunk", json, json_size));
+    BRIO_EXPECT(s->ctx, version == VERSION, BRIO_ERR_FORMAT, "%s: byte 4: version %u of glTF, expected 2", s->name,
+                version);
+    BRIO_FORWARD(read_chunk(s, JSON, "JSON chunk", json, json_size));
     if (length >= brio_stream_offset(s) + CHUNK_HEADER)
-        BRIO_TRY(read_chunk(s, BINARY, "binary chunk", &file->binary, &file->binary_size));
-done:
-    return status;
+        BRIO_FORWARD(read_chunk(s, BINARY, "binary chunk", &file->binary, &file->binary_size));
+    return BRIO_OK;
 }
 
 brio_status brio_glb_read(brio_stream *s, brio_builder *b) {

@@ -58,34 +58,30 @@ static bool stays(const char *name) {
 
 /* Makes the path of the file.   out  owned by the caller (brio_release), on failure too. */
 static brio_status make_path(brio_context *ctx, const char *path, const char *uri, size_t number, char **out) {
-    brio_status status = BRIO_OK;
     const char *slash = strrchr(path, '/');
     size_t folder = slash ? (size_t)(slash + 1 - path) : 0, length = strlen(uri);
     bool scheme = memchr(uri, ':', strcspn(uri, "/%")) != NULL;
-    BRIO_TRY(BRIO_ALLOC(ctx, *out, folder + length + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, *out, folder + length + 1));
     memcpy(*out, path, folder);
     memcpy(*out + folder, uri, length + 1);
-    BRIO_REQUIRE(ctx, !scheme && decode(*out + folder) && stays(*out + folder), BRIO_ERR_FORMAT,
-                 "%s: buffers[%zu] is in %s: expected a file in the folder of the glTF file, or below it", path, number,
-                 brio_excerpt_of(uri).text);
-done:
-    return status;
+    BRIO_EXPECT(ctx, !scheme && decode(*out + folder) && stays(*out + folder), BRIO_ERR_FORMAT,
+                "%s: buffers[%zu] is in %s: expected a file in the folder of the glTF file, or below it", path, number,
+                brio_excerpt_of(uri).text);
+    return BRIO_OK;
 }
 
 /* --- the bytes --- */
 
 static brio_status read_all(brio_context *ctx, int file, const char *name, char *bytes, uint64_t size) {
-    brio_status status = BRIO_OK;
     for (uint64_t at = 0; at < size;) {
         size_t want = size - at < PART ? (size_t)(size - at) : PART;
-        BRIO_TRY(brio_progress(ctx, "read", 0));
+        BRIO_FORWARD(brio_progress(ctx, "read", 0));
         ssize_t got = read(file, bytes + at, want);
         if (got < 0 && errno == EINTR) continue;
-        BRIO_REQUIRE(ctx, got > 0, BRIO_ERR_OPEN, "%s: %s", name, got ? strerror(errno) : "ends while it is read");
+        BRIO_EXPECT(ctx, got > 0, BRIO_ERR_OPEN, "%s: %s", name, got ? strerror(errno) : "ends while it is read");
         at += (uint64_t)got;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads the file that a buffer names, whole. The name is a relative URI: it may be in a folder below that of the glTF file,
@@ -211,47 +207,40 @@ static brio_status numbers(const reader *r, const brio_json *object, const char 
 /* --- buffers, views, accessors --- */
 
 static brio_status read_uri(reader *r, const char *uri, brio_glb_buffer *buffer) {
-    brio_status status = BRIO_OK;
     static const char mark[] = ";base64,";
     const char *data = !strncmp(uri, "data:", 5) ? strstr(uri, mark) : NULL;
     size_t size = 0;
     if (!data) {
-        BRIO_TRY(brio_limit_elements(r->ctx, r->name, 0, ++r->files));
+        BRIO_FORWARD(brio_limit_elements(r->ctx, r->name, 0, ++r->files));
         return glb_load(r->ctx, r->name, r->on_disk, uri, r->item, buffer);
     }
     data += strlen(mark);
-    BRIO_TRY(BRIO_ALLOC(r->ctx, buffer->bytes, strlen(data) / 4 * 3));
+    BRIO_FORWARD(BRIO_ALLOC(r->ctx, buffer->bytes, strlen(data) / 4 * 3));
     if (!brio_base64_decode(data, strlen(data), (uint8_t *)buffer->bytes, &size)) return bad(r, "uri", "base64");
     if (size < buffer->size) return bad(r, "uri", "byteLength bytes");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_buffer(reader *r, const brio_json *item) {
-    brio_status status = BRIO_OK;
     brio_glb_buffer *buffer = &r->scene->buffers[r->item];
     const char *uri = brio_json_string(brio_json_get(item, "uri"));
-    BRIO_TRY(whole(r, item, "byteLength", 0, &buffer->size));
-    if (uri) BRIO_TRY(read_uri(r, uri, buffer));
-done:
-    return status;
+    BRIO_FORWARD(whole(r, item, "byteLength", 0, &buffer->size));
+    if (uri) BRIO_FORWARD(read_uri(r, uri, buffer));
+    return BRIO_OK;
 }
 
 static brio_status read_view(reader *r, const brio_json *item) {
-    brio_status status = BRIO_OK;
     brio_glb_view *view = &r->scene->views[r->item];
     const brio_json *extensions = brio_json_get(item, "extensions");
-    BRIO_REQUIRE(r->ctx,
-                 !brio_json_get(extensions, "EXT_meshopt_compression") &&
-                     !brio_json_get(extensions, "KHR_meshopt_compression"),
-                 BRIO_ERR_FORMAT, "%s: bufferViews[%zu] is compressed by meshopt, which is not read: export it without",
-                 r->name, r->item);
-    BRIO_TRY(index_of(r, item, "buffer", &view->buffer));
-    BRIO_TRY(whole(r, item, "byteOffset", 0, &view->offset));
-    BRIO_TRY(whole(r, item, "byteLength", 0, &view->size));
-    BRIO_TRY(whole(r, item, "byteStride", 0, &view->stride));
-done:
-    return status;
+    BRIO_EXPECT(r->ctx,
+                !brio_json_get(extensions, "EXT_meshopt_compression") &&
+                    !brio_json_get(extensions, "KHR_meshopt_compression"),
+                BRIO_ERR_FORMAT, "%s: bufferViews[%zu] is compressed by meshopt, which is not read: export it without",
+                r->name, r->item);
+    BRIO_FORWARD(index_of(r, item, "buffer", &view->buffer));
+    BRIO_FORWARD(whole(r, item, "byteOffset", 0, &view->offset));
+    BRIO_FORWARD(whole(r, item, "byteLength", 0, &view->size));
+    return whole(r, item, "byteStride", 0, &view->stride);
 }
 
 static brio_status read_accessor(reader *r, const brio_json *item) {
@@ -259,27 +248,24 @@ static brio_status read_accessor(reader *r, const brio_json *item) {
         const char *name;
         int components;
     } types[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}};
-    brio_status status = BRIO_OK;
     brio_glb_accessor *a = &r->scene->accessors[r->item];
     const char *type = brio_json_string(brio_json_get(item, "type"));
     uint64_t component = 0;
     for (size_t i = 0; type && i < sizeof types / sizeof *types; i++)
         if (!strcmp(type, types[i].name)) a->components = types[i].components;
-    BRIO_TRY(index_of(r, item, "bufferView", &a->view));
-    BRIO_TRY(whole(r, item, "byteOffset", 0, &a->offset));
-    BRIO_TRY(whole(r, item, "count", 0, &a->count));
-    BRIO_TRY(whole(r, item, "componentType", 0, &component));
+    BRIO_FORWARD(index_of(r, item, "bufferView", &a->view));
+    BRIO_FORWARD(whole(r, item, "byteOffset", 0, &a->offset));
+    BRIO_FORWARD(whole(r, item, "count", 0, &a->count));
+    BRIO_FORWARD(whole(r, item, "componentType", 0, &component));
     a->type = component <= BRIO_GLB_FLOAT ? (int)component : 0;
     a->normalized = brio_json_is_true(brio_json_get(item, "normalized"));
     a->sparse = brio_json_get(item, "sparse") != NULL;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- meshes --- */
 
 static brio_status read_attributes(reader *r, const brio_json *attributes, brio_glb_primitive *p) {
-    brio_status status = BRIO_OK;
     brio_glb_scene *scene = r->scene;
     p->attribute = scene->num_attributes;
     for (const brio_json *item = brio_json_first(attributes); item; item = brio_json_next(item)) {
@@ -289,40 +275,35 @@ static brio_status read_attributes(reader *r, const brio_json *attributes, brio_
         if (!brio_json_number(item, &value) || !(value >= 0 && value < BRIO_GLB_NONE) || value != floor(value))
             return bad(r, "primitives.attributes", "accessors");
         a.accessor = (uint32_t)value;
-        BRIO_TRY(BRIO_RESERVE(r->ctx, scene->attributes, r->attribute_capacity, scene->num_attributes + 1));
+        BRIO_FORWARD(BRIO_RESERVE(r->ctx, scene->attributes, r->attribute_capacity, scene->num_attributes + 1));
         scene->attributes[scene->num_attributes++] = a;
     }
     p->attributes = scene->num_attributes - p->attribute;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_primitive(reader *r, const brio_json *item) {
-    brio_status status = BRIO_OK;
     brio_glb_primitive p = {.mode = BRIO_GLB_TRIANGLES};
     uint64_t mode = 0;
-    BRIO_TRY(whole(r, item, "mode", BRIO_GLB_TRIANGLES, &mode));
+    BRIO_FORWARD(whole(r, item, "mode", BRIO_GLB_TRIANGLES, &mode));
     if (mode >= BRIO_GLB_MODE_END) return bad(r, "primitives.mode", "a number from 0 to 6");
     p.mode = (brio_glb_mode)mode;
-    BRIO_TRY(index_of(r, item, "indices", &p.indices));
+    BRIO_FORWARD(index_of(r, item, "indices", &p.indices));
     p.draco = brio_json_get(brio_json_get(item, "extensions"), "KHR_draco_mesh_compression") != NULL;
     p.targets = brio_json_first(brio_json_get(item, "targets")) != NULL;
-    BRIO_TRY(read_attributes(r, brio_json_get(item, "attributes"), &p));
-    BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->primitives, r->primitive_capacity, r->scene->num_primitives + 1));
+    BRIO_FORWARD(read_attributes(r, brio_json_get(item, "attributes"), &p));
+    BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->scene->primitives, r->primitive_capacity, r->scene->num_primitives + 1));
     r->scene->primitives[r->scene->num_primitives++] = p;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_mesh(reader *r, const brio_json *item) {
-    brio_status status = BRIO_OK;
     brio_glb_mesh *mesh = &r->scene->meshes[r->item];
     mesh->primitive = r->scene->num_primitives;
     const brio_json *p = brio_json_first(brio_json_get(item, "primitives"));
-    for (; p; p = brio_json_next(p)) BRIO_TRY(read_primitive(r, p));
+    for (; p; p = brio_json_next(p)) BRIO_FORWARD(read_primitive(r, p));
     mesh->primitives = r->scene->num_primitives - mesh->primitive;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- nodes --- */
@@ -343,7 +324,6 @@ static void compose(const double *t, const double *q, const double *s, double *m
 }
 
 static brio_status read_children(reader *r, const brio_json *item, brio_glb_node *node) {
-    brio_status status = BRIO_OK;
     brio_glb_scene *scene = r->scene;
     const brio_json *child = brio_json_first(brio_json_get(item, "children"));
     node->child = scene->num_children;
@@ -352,30 +332,26 @@ static brio_status read_children(reader *r, const brio_json *item, brio_glb_node
         if (!brio_json_number(child, &value) || !(value >= 0 && value < (double)scene->num_nodes) ||
             value != floor(value))
             return bad(r, "children", "nodes of the file");
-        BRIO_TRY(BRIO_RESERVE(r->ctx, scene->children, r->child_capacity, scene->num_children + 1));
+        BRIO_FORWARD(BRIO_RESERVE(r->ctx, scene->children, r->child_capacity, scene->num_children + 1));
         scene->children[scene->num_children++] = (uint32_t)value;
     }
     node->children = scene->num_children - node->child;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_node(reader *r, const brio_json *item) {
-    brio_status status = BRIO_OK;
     brio_glb_node *node = &r->scene->nodes[r->item];
     double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
-    BRIO_REQUIRE(r->ctx, !brio_json_get(brio_json_get(item, "extensions"), "EXT_mesh_gpu_instancing"), BRIO_ERR_FORMAT,
-                 "%s: nodes[%zu] has instances of EXT_mesh_gpu_instancing, which are not read: export it without",
-                 r->name, r->item);
-    BRIO_TRY(numbers(r, item, "translation", 3, t));
-    BRIO_TRY(numbers(r, item, "rotation", 4, q));
-    BRIO_TRY(numbers(r, item, "scale", 3, s));
+    BRIO_EXPECT(r->ctx, !brio_json_get(brio_json_get(item, "extensions"), "EXT_mesh_gpu_instancing"), BRIO_ERR_FORMAT,
+                "%s: nodes[%zu] has instances of EXT_mesh_gpu_instancing, which are not read: export it without",
+                r->name, r->item);
+    BRIO_FORWARD(numbers(r, item, "translation", 3, t));
+    BRIO_FORWARD(numbers(r, item, "rotation", 4, q));
+    BRIO_FORWARD(numbers(r, item, "scale", 3, s));
     compose(t, q, s, node->matrix);
-    BRIO_TRY(numbers(r, item, "matrix", 16, node->matrix));
-    BRIO_TRY(index_of(r, item, "mesh", &node->mesh));
-    BRIO_TRY(read_children(r, item, node));
-done:
-    return status;
+    BRIO_FORWARD(numbers(r, item, "matrix", 16, node->matrix));
+    BRIO_FORWARD(index_of(r, item, "mesh", &node->mesh));
+    return read_children(r, item, node);
 }
 
 /* Finds the nodes of the default scene or, without scenes, the nodes that are nobody's children. */
@@ -432,19 +408,17 @@ static brio_status check_extensions(const reader *r) {
 /* Reads a list of the root.   items, count, size  the array that receives them, the number and the size of its items. */
 static brio_status read_list(reader *r, const char *key, void *items, size_t *count,
                              brio_status (*read)(reader *r, const brio_json *item), size_t size) {
-    brio_status status = BRIO_OK;
     const brio_json *list = brio_json_get(r->root, key), *item = brio_json_first(list);
     size_t n = brio_json_is_array(list) ? length_of(list) : 0;
     if (!n) return BRIO_OK;
-    BRIO_TRY(brio_zeroed(r->ctx, items, n, size));
+    BRIO_FORWARD(brio_zeroed(r->ctx, items, n, size));
     *count = n;
     r->list = key;
     for (r->item = 0; item; item = brio_json_next(item), r->item++) {
         if (!brio_json_is_object(item)) return bad(r, "", "an object");
-        BRIO_TRY(read(r, item));
+        BRIO_FORWARD(read(r, item));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Notes the lists of the root that become nothing. */
@@ -453,29 +427,24 @@ static brio_status note_left_out(const reader *r) {
                                            {"images", "textures"},     {"animations", "animations"},
                                            {"skins", "skins"},         {"cameras", "cameras"}};
     static const char *const named[] = {"nodes", "meshes"};
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         if (brio_json_first(brio_json_get(r->root, lists[i][0])))
-            BRIO_TRY(brio_builder_leave_out(r->builder, lists[i][1]));
+            BRIO_FORWARD(brio_builder_leave_out(r->builder, lists[i][1]));
     if (brio_json_get(brio_json_get(r->root, "extensions"), "KHR_lights_punctual"))
-        BRIO_TRY(brio_builder_leave_out(r->builder, "lights"));
+        BRIO_FORWARD(brio_builder_leave_out(r->builder, "lights"));
     for (size_t i = 0; i < sizeof named / sizeof *named; i++) {
         const brio_json *item = brio_json_first(brio_json_get(r->root, named[i]));
         while (item && !brio_json_get(item, "name")) item = brio_json_next(item);
-        if (item) BRIO_TRY(brio_builder_leave_out(r->builder, "names of nodes and meshes"));
+        if (item) BRIO_FORWARD(brio_builder_leave_out(r->builder, "names of nodes and meshes"));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Room in the lists that others point into by a first item and a count, so that none of them is NULL. */
 static brio_status begin_lists(reader *r) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->attributes, r->attribute_capacity, 1));
-    BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->primitives, r->primitive_capacity, 1));
-    BRIO_TRY(BRIO_RESERVE(r->ctx, r->scene->children, r->child_capacity, 1));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->scene->attributes, r->attribute_capacity, 1));
+    BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->scene->primitives, r->primitive_capacity, 1));
+    return BRIO_RESERVE(r->ctx, r->scene->children, r->child_capacity, 1);
 }
 
 brio_status brio_glb_scene_read(brio_builder *b, bool on_disk, const char *text, size_t size, brio_glb_scene *s) {

@@ -307,8 +307,7 @@ static bool is_taken(const brio_glb_layout *l, const brio_property *p) {
 
 static brio_status plan_attributes(brio_context *ctx, brio_glb_layout *l) {
     static const char *const normal[4] = {"nx", "ny", "nz", NULL}, *const colour[4] = {"red", "green", "blue", "alpha"};
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, l->outputs, l->mesh->num_properties + 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, l->outputs, l->mesh->num_properties + 1));
     add_output(l, &(brio_glb_output){.name = "POSITION", .type = BRIO_GLB_FLOAT, .components = 3});
     add_group(l, "NORMAL", normal, true);
     add_group(l, "COLOR_0", colour, false);
@@ -319,8 +318,7 @@ static brio_status plan_attributes(brio_context *ctx, brio_glb_layout *l) {
         strncat(o.name, p->name, sizeof o.name - 2);
         add_output(l, &o);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- indices --- */
@@ -339,20 +337,18 @@ static void plan_indices(brio_glb_layout *l) {
 /* Plans the file.   layout  call glb_layout_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (coordinates beyond single precision, or a file of over 4 GiB), BRIO_ERR_NO_MEMORY. */
 static brio_status glb_layout_make(brio_context *ctx, const char *name, const brio_write_job *job, brio_glb_layout *l) {
-    brio_status status = BRIO_OK;
     *l = (brio_glb_layout){.mesh = job->mesh};
     if (l->mesh->num_vertices) {
         choose_origin(l);
-        BRIO_REQUIRE(ctx, isfinite(l->moved), BRIO_ERR_ARGUMENT, "%s: coordinates do not fit single precision", name);
-        BRIO_TRY(plan_attributes(ctx, l));
+        BRIO_EXPECT(ctx, isfinite(l->moved), BRIO_ERR_ARGUMENT, "%s: coordinates do not fit single precision", name);
+        BRIO_FORWARD(plan_attributes(ctx, l));
         plan_indices(l);
     }
-    BRIO_TRY(glb_json(ctx, job->options->comment, l));
+    BRIO_FORWARD(glb_json(ctx, job->options->comment, l));
     uint64_t size = HEADERS + l->json_size + l->size;
-    BRIO_REQUIRE(ctx, size <= UINT32_MAX, BRIO_ERR_ARGUMENT, "%s: %" PRIu64 " bytes, a GLB file has at most %" PRIu32,
-                 name, size, UINT32_MAX);
-done:
-    return status;
+    BRIO_EXPECT(ctx, size <= UINT32_MAX, BRIO_ERR_ARGUMENT, "%s: %" PRIu64 " bytes, a GLB file has at most %" PRIu32,
+                name, size, UINT32_MAX);
+    return BRIO_OK;
 }
 
 static void glb_layout_free(brio_context *ctx, brio_glb_layout *l) {
@@ -363,25 +359,21 @@ static void glb_layout_free(brio_context *ctx, brio_glb_layout *l) {
 /* --- the file --- */
 
 static brio_status write_words(brio_output *out, const uint32_t *words, size_t count) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < count; i++) {
         char bytes[4];
         brio_put_le32(bytes, words[i]);
-        BRIO_TRY(brio_output_bytes(out, bytes, sizeof bytes));
+        BRIO_FORWARD(brio_output_bytes(out, bytes, sizeof bytes));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_headers(brio_output *out, const brio_glb_layout *l) {
     enum { GLTF = 0x46546c67, JSON = 0x4e4f534a, BINARY = 0x004e4942 };
-    brio_status status = BRIO_OK;
     uint32_t binary = l->size ? 8 + (uint32_t)l->size : 0, json = (uint32_t)l->json_size;
-    BRIO_TRY(write_words(out, (const uint32_t[]){GLTF, 2, 12 + 8 + json + binary, json, JSON}, 5));
-    BRIO_TRY(brio_output_bytes(out, l->json, l->json_size));
-    if (binary) BRIO_TRY(write_words(out, (const uint32_t[]){(uint32_t)l->size, BINARY}, 2));
-done:
-    return status;
+    BRIO_FORWARD(write_words(out, (const uint32_t[]){GLTF, 2, 12 + 8 + json + binary, json, JSON}, 5));
+    BRIO_FORWARD(brio_output_bytes(out, l->json, l->json_size));
+    if (binary) BRIO_FORWARD(write_words(out, (const uint32_t[]){(uint32_t)l->size, BINARY}, 2));
+    return BRIO_OK;
 }
 
 /* Puts a number of an attribute into a row and returns its size. */
@@ -406,29 +398,25 @@ static size_t put_number(char *row, int type, double value) {
 }
 
 static brio_status write_output(brio_output *out, const brio_glb_layout *l, const brio_glb_output *o) {
-    brio_status status = BRIO_OK;
     for (size_t v = 0; v < l->mesh->num_vertices; v++) {
         char row[16] = {0}, *at = row;
         for (int k = 0; k < o->components; k++)
             at += put_number(at, o->type,
                              o->from[0] ? brio_property_value(o->from[k], v)
                                         : l->mesh->vertices[3 * v + (size_t)k] - l->origin[k]);
-        BRIO_TRY(brio_output_bytes(out, row, (size_t)o->stride));
+        BRIO_FORWARD(brio_output_bytes(out, row, (size_t)o->stride));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_triangles(brio_output *out, const brio_mesh *m) {
-    brio_status status = BRIO_OK;
     for (size_t f = 0; f < m->num_faces; f++) {
         const uint32_t *corners = m->face_vertices + m->face_offsets[f];
         uint64_t count = m->face_offsets[f + 1] - m->face_offsets[f];
         for (uint64_t i = 2; i < count; i++)
-            BRIO_TRY(write_words(out, (const uint32_t[]){corners[0], corners[i - 1], corners[i]}, 3));
+            BRIO_FORWARD(write_words(out, (const uint32_t[]){corners[0], corners[i - 1], corners[i]}, 3));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_glb_write(brio_output *out, const brio_write_job *job) {

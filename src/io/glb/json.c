@@ -40,21 +40,19 @@ static extent look_over(const char *text, size_t size) {
 }
 
 brio_status brio_json_parse(brio_json_document *d, const char *text, size_t size) {
-    brio_status status = BRIO_OK;
     char *reserve = NULL;
     const char *end = NULL;
     extent e = look_over(text, size);
-    BRIO_TRY(brio_limit_levels(d->ctx, d->name, "the JSON", e.levels));
+    BRIO_FORWARD(brio_limit_levels(d->ctx, d->name, "the JSON", e.levels));
     /* a value, its key and its string, which together are no longer than the text */
-    BRIO_TRY(BRIO_ALLOC(d->ctx, reserve, e.values * (sizeof(cJSON) + 3 * BLOCK) + size));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, reserve, e.values * (sizeof(cJSON) + 3 * BLOCK) + size));
     d->reserve = reserve;
     errno = 0; /* by which malloc tells, as the parser does not */
     d->root = cJSON_ParseWithLengthOpts(text, size, &end, 0);
-    BRIO_REQUIRE(d->ctx, d->root || errno != ENOMEM, BRIO_ERR_NO_MEMORY, "%s: no memory for the JSON", d->name);
-    BRIO_REQUIRE(d->ctx, d->root, BRIO_ERR_FORMAT, "%s: byte %zu of the JSON: expected JSON", d->name,
-                 end ? (size_t)(end - text) : 0);
-done:
-    return status;
+    BRIO_EXPECT(d->ctx, d->root || errno != ENOMEM, BRIO_ERR_NO_MEMORY, "%s: no memory for the JSON", d->name);
+    BRIO_EXPECT(d->ctx, d->root, BRIO_ERR_FORMAT, "%s: byte %zu of the JSON: expected JSON", d->name,
+                end ? (size_t)(end - text) : 0);
+    return BRIO_OK;
 }
 
 void brio_json_free(brio_json_document *d) {

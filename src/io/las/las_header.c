@@ -42,7 +42,6 @@ static brio_status leave_out(brio_builder *b, const char *bytes, const char *why
 
 /* Adds number `which` of the `count` numbers of one description. */
 static brio_status add_extra(brio_builder *b, brio_las_header *h, const char *bytes, unsigned which, unsigned count) {
-    brio_status status = BRIO_OK;
     unsigned options = (uint8_t)bytes[BRIO_EXTRA_OPTIONS];
     brio_las_extra e = {.type = ((uint8_t)bytes[BRIO_EXTRA_TYPE] - 1u) % TYPES + 1, .scale = 1};
     char name[BRIO_LAS_NAME + 1];
@@ -60,30 +59,28 @@ static brio_status add_extra(brio_builder *b, brio_las_header *h, const char *by
     snprintf(name, sizeof name, "%.32s", bytes + BRIO_EXTRA_NAME);
     brio_utf8_copy(e.name, sizeof e.name, name[0] ? name : "extra_bytes");
     if (count > 1) brio_numbered_name(e.name, sizeof e.name, name[0] ? name : "extra_bytes", which);
-    BRIO_TRY(BRIO_RESERVE(b->ctx, h->extras, h->extra_capacity, h->num_extras + 1));
+    BRIO_FORWARD(BRIO_RESERVE(b->ctx, h->extras, h->extra_capacity, h->num_extras + 1));
     h->extras[h->num_extras++] = e;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Takes descriptions of extra bytes: a record's payload. Several records are one list. */
 static brio_status las_take_extras(brio_builder *b, brio_las_header *h, const char *bytes, size_t size) {
-    brio_status status = BRIO_OK;
     size_t room = h->record - brio_las_record_bytes(h->format);
     for (; size >= BRIO_LAS_EXTRA; size -= BRIO_LAS_EXTRA, bytes += BRIO_LAS_EXTRA) {
         unsigned type = (uint8_t)bytes[BRIO_EXTRA_TYPE], count = type ? (type - 1) / TYPES + 1 : 1;
         size_t width = type ? brio_las_extra_bytes((type - 1) % TYPES + 1) : (uint8_t)bytes[BRIO_EXTRA_OPTIONS];
         h->closed |= type > MOST_TYPE || count * width > room - h->described;
         if (h->closed) {
-            BRIO_TRY(leave_out(b, bytes, type > MOST_TYPE ? "extra bytes of a reserved type" : "not in the records"));
+            BRIO_FORWARD(
+                leave_out(b, bytes, type > MOST_TYPE ? "extra bytes of a reserved type" : "not in the records"));
             continue;
         }
-        for (unsigned i = 0; i < count && type; i++) BRIO_TRY(add_extra(b, h, bytes, i, count));
-        if (!type) BRIO_TRY(leave_out(b, bytes, "extra bytes without a type"));
+        for (unsigned i = 0; i < count && type; i++) BRIO_FORWARD(add_extra(b, h, bytes, i, count));
+        if (!type) BRIO_FORWARD(leave_out(b, bytes, "extra bytes without a type"));
         h->described += count * width;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Names the extra bytes of which nothing was said. */
@@ -112,14 +109,12 @@ static bool is_record(const char *header, const char *user, unsigned first, unsi
 
 static brio_status keep(brio_context *ctx, brio_las_records *records, const char *header, const char *bytes,
                         size_t size) {
-    brio_status status = BRIO_OK;
     size_t need = records->size + BRIO_RECORD_HEADER + size;
-    BRIO_TRY(BRIO_RESERVE(ctx, records->bytes, records->capacity, need));
+    BRIO_FORWARD(BRIO_RESERVE(ctx, records->bytes, records->capacity, need));
     memcpy(records->bytes + records->size, header, BRIO_RECORD_HEADER);
     memcpy(records->bytes + records->size + BRIO_RECORD_HEADER, bytes, size);
     records->size = need;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the name of what a record belongs to that is not kept, or NULL. */
@@ -138,22 +133,20 @@ static size_t length_of(const char *text, size_t size) {
 
 static brio_status take_record(brio_stream *s, brio_builder *b, brio_las_header *h, const char *header,
                                const char *bytes, size_t size) {
-    brio_status status = BRIO_OK;
     if (is_record(header, "laszip encoded", LASZIP, LASZIP)) {
-        if (h->compressed && !h->has_form) BRIO_TRY(brio_laz_form_read(s, h, bytes, size));
+        if (h->compressed && !h->has_form) BRIO_FORWARD(brio_laz_form_read(s, h, bytes, size));
         h->has_form = h->compressed;
     } else if (is_record(header, "LASF_Spec", EXTRA_BYTES, EXTRA_BYTES)) {
-        BRIO_TRY(las_take_extras(b, h, bytes, size));
+        BRIO_FORWARD(las_take_extras(b, h, bytes, size));
     } else if (is_record(header, "LASF_Projection", FIRST_KEYS, LAST_KEYS)) {
-        BRIO_TRY(keep(b->ctx, &h->keys, header, bytes, size));
+        BRIO_FORWARD(keep(b->ctx, &h->keys, header, bytes, size));
     } else if (is_record(header, "LASF_Projection", WKT, WKT) && length_of(bytes, size) &&
                !brio_mesh_metadata(b->mesh, "crs.wkt")) {
-        BRIO_TRY(brio_mesh_set_metadata(b->mesh, "crs.wkt", bytes, length_of(bytes, size)));
+        BRIO_FORWARD(brio_mesh_set_metadata(b->mesh, "crs.wkt", bytes, length_of(bytes, size)));
     } else {
-        BRIO_TRY(keep(b->ctx, &h->others, header, bytes, size));
+        BRIO_FORWARD(keep(b->ctx, &h->others, header, bytes, size));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Names a record that is too large to keep, or whose end is missing. */
@@ -176,22 +169,20 @@ static void lengthen(const char *early, char header[BRIO_RECORD_HEADER]) {
 /* Reads the records before the points. */
 static brio_status las_records_read(brio_stream *s, brio_builder *b, brio_las_header *h, uint32_t count,
                                     uint64_t start) {
-    brio_status status = BRIO_OK;
     brio_stream_element(s, "record of variable length", count);
     for (; s->row < count && brio_stream_offset(s) - start + BRIO_LAS_RECORD_HEADER <= h->data; s->row++) {
         char header[BRIO_RECORD_HEADER];
         const char *bytes = NULL;
-        BRIO_TRY(brio_stream_take(s, BRIO_LAS_RECORD_HEADER, &bytes));
+        BRIO_FORWARD(brio_stream_take(s, BRIO_LAS_RECORD_HEADER, &bytes));
         lengthen(bytes, header);
         size_t size = brio_le16(bytes + BRIO_RECORD_SIZE);
-        BRIO_TRY(brio_stream_take(s, size, &bytes));
+        BRIO_FORWARD(brio_stream_take(s, size, &bytes));
         if (dropped(header))
-            BRIO_TRY(brio_builder_leave_out(b, dropped(header)));
+            BRIO_FORWARD(brio_builder_leave_out(b, dropped(header)));
         else
-            BRIO_TRY(take_record(s, b, h, header, bytes, size));
+            BRIO_FORWARD(take_record(s, b, h, header, bytes, size));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- behind the points --- */
@@ -200,16 +191,14 @@ done:
  *  memory  for a file that is no pipe: owned by the caller (brio_release). */
 static brio_status fetch(brio_stream *s, const brio_las_header *h, uint64_t at, size_t size, char **memory,
                          const char **bytes) {
-    brio_status status = BRIO_OK;
     if (h->late_pending) {
-        BRIO_TRY(brio_stream_skip(s, at - brio_stream_offset(s)));
+        BRIO_FORWARD(brio_stream_skip(s, at - brio_stream_offset(s)));
         return brio_stream_take(s, size, bytes);
     }
-    BRIO_TRY(BRIO_RESIZE(s->ctx, *memory, size + 1));
-    BRIO_TRY(brio_stream_peek(s, at, *memory, size));
+    BRIO_FORWARD(BRIO_RESIZE(s->ctx, *memory, size + 1));
+    BRIO_FORWARD(brio_stream_peek(s, at, *memory, size));
     *bytes = *memory;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Whether a file has the bytes. A pipe is taken to have them. */
@@ -247,25 +236,20 @@ done:
 }
 
 brio_status brio_las_late_records_read(brio_stream *s, brio_builder *b, brio_las_header *h) {
-    brio_status status = BRIO_OK;
     uint64_t at = h->late;
     bool ended = false;
     brio_stream_element(s, "record behind the points", h->num_late);
-    for (uint32_t i = 0; i < h->num_late && !ended; i++) BRIO_TRY(read_late(s, b, h, &at, &ended));
-done:
-    return status;
+    for (uint32_t i = 0; i < h->num_late && !ended; i++) BRIO_FORWARD(read_late(s, b, h, &at, &ended));
+    return BRIO_OK;
 }
 
 /* --- metadata --- */
 
 brio_status brio_las_records_give(brio_builder *b, const brio_las_header *h) {
-    brio_status status = BRIO_OK;
     brio_mesh *m = b->mesh;
-    if (h->keys.size) BRIO_TRY(brio_mesh_set_metadata(m, "crs.geokeys", h->keys.bytes, h->keys.size));
-    if (h->others.size) BRIO_TRY(brio_mesh_set_metadata(m, "las.records", h->others.bytes, h->others.size));
-    BRIO_TRY(brio_crs_describe(m));
-done:
-    return status;
+    if (h->keys.size) BRIO_FORWARD(brio_mesh_set_metadata(m, "crs.geokeys", h->keys.bytes, h->keys.size));
+    if (h->others.size) BRIO_FORWARD(brio_mesh_set_metadata(m, "las.records", h->others.bytes, h->others.size));
+    return brio_crs_describe(m);
 }
 
 /* --- the header --- */
@@ -287,18 +271,16 @@ static bool las_has_waves(unsigned format) {
 /* --- the header --- */
 
 static brio_status check_header(brio_stream *s, const brio_las_header *h) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(s->ctx, h->format < BRIO_LAS_FORMATS, BRIO_ERR_FORMAT,
-                 "%s: byte 104: point format %u, expected 0 to 10", s->name, h->format);
-    BRIO_REQUIRE(s->ctx, h->record >= record_bytes[h->format], BRIO_ERR_FORMAT,
-                 "%s: byte 105: records of %zu bytes, point format %u has %u", s->name, h->record, h->format,
-                 record_bytes[h->format]);
+    BRIO_EXPECT(s->ctx, h->format < BRIO_LAS_FORMATS, BRIO_ERR_FORMAT,
+                "%s: byte 104: point format %u, expected 0 to 10", s->name, h->format);
+    BRIO_EXPECT(s->ctx, h->record >= record_bytes[h->format], BRIO_ERR_FORMAT,
+                "%s: byte 105: records of %zu bytes, point format %u has %u", s->name, h->record, h->format,
+                record_bytes[h->format]);
     for (int k = 0; k < 3; k++)
-        BRIO_REQUIRE(s->ctx, isfinite(h->scale[k]) && isfinite(h->offset[k]) && h->scale[k] != 0, BRIO_ERR_FORMAT,
-                     "%s: byte %d: %c has scale %g and offset %g", s->name, 131 + 8 * k, "xyz"[k], h -> scale[k],
-                     h -> offset[k]);
-done:
-    return status;
+        BRIO_EXPECT(s->ctx, isfinite(h->scale[k]) && isfinite(h->offset[k]) && h->scale[k] != 0, BRIO_ERR_FORMAT,
+                    "%s: byte %d: %c has scale %g and offset %g", s->name, 131 + 8 * k, "xyz"[k], h -> scale[k],
+                    h -> offset[k]);
+    return BRIO_OK;
 }
 
 static void take_fields(brio_las_header *h, const char *bytes, size_t size) {
@@ -342,77 +324,69 @@ static brio_status give_number(brio_mesh *mesh, const char *name, unsigned numbe
 
 /* Gives the mesh what the header says, except what brio itself writes where nothing is known. */
 static brio_status give_facts(brio_mesh *mesh, const char *bytes) {
-    brio_status status = BRIO_OK;
     static const char no_project[16];
     unsigned day = brio_le16(bytes + 90), year = brio_le16(bytes + 92), encoding = brio_le16(bytes + 6);
     char text[40];
     size_t used = 0;
-    BRIO_TRY(give_text(mesh, "las.system", bytes + 26, "OTHER"));
-    BRIO_TRY(give_text(mesh, "las.software", bytes + 58, "brio "));
-    BRIO_TRY(give_number(mesh, "las.source", brio_le16(bytes + 4)));
+    BRIO_FORWARD(give_text(mesh, "las.system", bytes + 26, "OTHER"));
+    BRIO_FORWARD(give_text(mesh, "las.software", bytes + 58, "brio "));
+    BRIO_FORWARD(give_number(mesh, "las.source", brio_le16(bytes + 4)));
     if (day || year) {
         used = (size_t)snprintf(text, sizeof text, "%u-%03u", year, day);
-        BRIO_TRY(brio_mesh_set_metadata(mesh, "las.date", text, used));
+        BRIO_FORWARD(brio_mesh_set_metadata(mesh, "las.date", text, used));
     }
     used = 0;
     for (int i = 0; i < 16; i++)
         used += (size_t)snprintf(text + used, sizeof text - used, "%02x", (uint8_t)bytes[8 + i]);
     if (memcmp(bytes + 8, no_project, sizeof no_project))
-        BRIO_TRY(brio_mesh_set_metadata(mesh, "las.project", text, used));
-    if (encoding & STANDARD_TIME) BRIO_TRY(brio_mesh_set_metadata(mesh, "las.gps_time", "standard", 8));
-    if (encoding & SYNTHETIC_RETURNS) BRIO_TRY(brio_mesh_set_metadata(mesh, "las.returns", "synthetic", 9));
-done:
-    return status;
+        BRIO_FORWARD(brio_mesh_set_metadata(mesh, "las.project", text, used));
+    if (encoding & STANDARD_TIME) BRIO_FORWARD(brio_mesh_set_metadata(mesh, "las.gps_time", "standard", 8));
+    if (encoding & SYNTHETIC_RETURNS) BRIO_FORWARD(brio_mesh_set_metadata(mesh, "las.returns", "synthetic", 9));
+    return BRIO_OK;
 }
 
 /* Reads the fixed part.   num_records  receives the number of records of variable length. */
 static brio_status read_fixed(brio_stream *s, brio_builder *b, brio_las_header *h, uint32_t *num_records) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
     brio_stream_element(s, "header", 1);
-    BRIO_TRY(brio_stream_fill(s, LEAST_HEADER));
+    BRIO_FORWARD(brio_stream_fill(s, LEAST_HEADER));
     bytes = s->buffer + s->begin;
-    BRIO_REQUIRE(s->ctx, brio_stream_left(s) < 4 || !memcmp(bytes, "LASF", 4), BRIO_ERR_FORMAT,
-                 "%s: byte 0: expected LASF: not a LAS or LAZ file", s->name);
+    BRIO_EXPECT(s->ctx, brio_stream_left(s) < 4 || !memcmp(bytes, "LASF", 4), BRIO_ERR_FORMAT,
+                "%s: byte 0: expected LASF: not a LAS or LAZ file", s->name);
     if (brio_stream_left(s) < LEAST_HEADER) return brio_stream_truncated(s);
     size_t size = brio_le16(bytes + 94);
-    BRIO_REQUIRE(s->ctx, bytes[24] == 1 && (uint8_t)bytes[25] <= MOST_MINOR, BRIO_ERR_FORMAT,
-                 "%s: byte 24: version %u.%u, expected 1.0 to 1.5", s->name, (uint8_t)bytes[24], (uint8_t)bytes[25]);
-    BRIO_REQUIRE(s->ctx, size >= LEAST_HEADER, BRIO_ERR_FORMAT, "%s: byte 94: a header of %zu bytes, expected %d",
-                 s->name, size, LEAST_HEADER);
-    BRIO_TRY(brio_stream_take(s, size, &bytes));
+    BRIO_EXPECT(s->ctx, bytes[24] == 1 && (uint8_t)bytes[25] <= MOST_MINOR, BRIO_ERR_FORMAT,
+                "%s: byte 24: version %u.%u, expected 1.0 to 1.5", s->name, (uint8_t)bytes[24], (uint8_t)bytes[25]);
+    BRIO_EXPECT(s->ctx, size >= LEAST_HEADER, BRIO_ERR_FORMAT, "%s: byte 94: a header of %zu bytes, expected %d",
+                s->name, size, LEAST_HEADER);
+    BRIO_FORWARD(brio_stream_take(s, size, &bytes));
     take_fields(h, bytes, size);
     *num_records = brio_le32(bytes + 100);
-    BRIO_REQUIRE(s->ctx, h->data >= size, BRIO_ERR_FORMAT,
-                 "%s: byte 96: the points begin at byte %" PRIu64 ", within the header", s->name, h->data);
-    BRIO_TRY(give_facts(b->mesh, bytes));
-    BRIO_TRY(check_header(s, h));
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, h->data >= size, BRIO_ERR_FORMAT,
+                "%s: byte 96: the points begin at byte %" PRIu64 ", within the header", s->name, h->data);
+    BRIO_FORWARD(give_facts(b->mesh, bytes));
+    return check_header(s, h);
 }
 
 brio_status brio_las_header_read(brio_stream *s, brio_builder *b, brio_las_header *h) {
-    brio_status status = BRIO_OK;
     uint32_t num_records = 0;
     uint64_t start = brio_stream_offset(s);
     *h = (brio_las_header){.minor = 0};
-    BRIO_TRY(read_fixed(s, b, h, &num_records));
-    BRIO_TRY(las_records_read(s, b, h, num_records, start));
+    BRIO_FORWARD(read_fixed(s, b, h, &num_records));
+    BRIO_FORWARD(las_records_read(s, b, h, num_records, start));
     uint64_t at = brio_stream_offset(s) - start;
-    BRIO_REQUIRE(s->ctx, at <= h->data, BRIO_ERR_FORMAT,
-                 "%s: byte 96: the points begin at byte %" PRIu64 ", the records before them end at byte %" PRIu64,
-                 s->name, h->data, at);
-    BRIO_REQUIRE(s->ctx, h->has_form || !h->compressed, BRIO_ERR_FORMAT, "%s: compressed, without LASzip's record",
-                 s->name);
+    BRIO_EXPECT(s->ctx, at <= h->data, BRIO_ERR_FORMAT,
+                "%s: byte 96: the points begin at byte %" PRIu64 ", the records before them end at byte %" PRIu64,
+                s->name, h->data, at);
+    BRIO_EXPECT(s->ctx, h->has_form || !h->compressed, BRIO_ERR_FORMAT, "%s: compressed, without LASzip's record",
+                s->name);
     h->late_pending = s->size == BRIO_SIZE_UNKNOWN && h->num_late;
-    if (!h->late_pending) BRIO_TRY(brio_las_late_records_read(s, b, h));
-    BRIO_TRY(las_end_extras(b, h));
-    if (las_has_waves(h->format)) BRIO_TRY(brio_builder_leave_out(b, "waveforms"));
-    BRIO_TRY(brio_las_records_give(b, h));
+    if (!h->late_pending) BRIO_FORWARD(brio_las_late_records_read(s, b, h));
+    BRIO_FORWARD(las_end_extras(b, h));
+    if (las_has_waves(h->format)) BRIO_FORWARD(brio_builder_leave_out(b, "waveforms"));
+    BRIO_FORWARD(brio_las_records_give(b, h));
     brio_stream_element(s, "byte before the points", h->data);
-    BRIO_TRY(brio_stream_skip(s, h->data - at));
-done:
-    return status;
+    return brio_stream_skip(s, h->data - at);
 }
 
 void brio_las_header_free(brio_context *ctx, brio_las_header *h) {

@@ -143,8 +143,7 @@ static void try_candidates(brio_las_grid *g, int axis, const brio_mesh *block) {
 }
 
 brio_status brio_las_grid_survey(brio_context *ctx, brio_las_grid *g, const brio_mesh *block) {
-    brio_status status = BRIO_OK;
-    if (!g->witnesses) BRIO_TRY(BRIO_ALLOC(ctx, g->witnesses, BRIO_LAS_WITNESSES));
+    if (!g->witnesses) BRIO_FORWARD(BRIO_ALLOC(ctx, g->witnesses, BRIO_LAS_WITNESSES));
     if (g->pass == 0) {
         take_box(g, block);
         take_witnesses(g, block);
@@ -156,8 +155,7 @@ brio_status brio_las_grid_survey(brio_context *ctx, brio_las_grid *g, const brio
             try_candidates(g, k, block);
     }
     g->begun = true;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 bool brio_las_grid_end_pass(brio_las_grid *g) {
@@ -295,18 +293,16 @@ static void widen(brio_las_range *r, const brio_property *p, const char *descrip
 }
 
 brio_status brio_las_layout_see(brio_context *ctx, brio_las_layout *l, const brio_mesh *block) {
-    brio_status status = BRIO_OK;
     size_t n = block->num_properties;
     bool first = !l->ranges;
-    if (first) BRIO_TRY(BRIO_ALLOC(ctx, l->ranges, n + 1));
+    if (first) BRIO_FORWARD(BRIO_ALLOC(ctx, l->ranges, n + 1));
     for (size_t i = 0; i < n; i++) {
         const char *description = description_of(block, block->properties[i].name);
         if (first) l->ranges[i] = (brio_las_range){true, INFINITY, -INFINITY, description != NULL};
         l->ranges[i].described &= description != NULL;
         widen(&l->ranges[i], &block->properties[i], description, block->num_vertices);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- fields --- */
@@ -382,17 +378,16 @@ static void place_extra(brio_las_layout *l, const brio_mesh *m, size_t i) {
 
 brio_status brio_las_layout_make(brio_context *ctx, brio_las_layout *l, const char *name, const brio_mesh *m,
                                  bool late) {
-    brio_status status = BRIO_OK;
     brio_las_field fields[BRIO_LAS_FIELDS];
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, l->places, m->num_properties + 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, l->places, m->num_properties + 1));
     l->format = choose_format(l, m, late);
     l->record = brio_las_record_bytes(l->format);
     size_t count = brio_las_fields_of(l->format, fields);
     for (size_t i = 0; i < m->num_properties; i++) {
         const char *own = m->properties[i].name;
         const brio_las_field *f = field_of(fields, count, m, i, &l->ranges[i]);
-        BRIO_REQUIRE(ctx, f || l->num_extras < MOST_EXTRAS, BRIO_ERR_ARGUMENT,
-                     "%s: a LAS file holds at most %d properties that its format does not know", name, MOST_EXTRAS);
+        BRIO_EXPECT(ctx, f || l->num_extras < MOST_EXTRAS, BRIO_ERR_ARGUMENT,
+                    "%s: a LAS file holds at most %d properties that its format does not know", name, MOST_EXTRAS);
         if (!f) {
             place_extra(l, m, i);
             continue;
@@ -400,8 +395,7 @@ brio_status brio_las_layout_make(brio_context *ctx, brio_las_layout *l, const ch
         l->places[i] = (brio_las_place){
             .at = f->at, .type = f->type, .shift = f->shift, .bits = f->bits, .renamed = strcmp(own, f->name) != 0};
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_las_layout_free(brio_context *ctx, brio_las_layout *l) {

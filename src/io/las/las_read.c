@@ -82,16 +82,14 @@ static brio_status plan_field(brio_las_plan *plan, brio_builder *b, const brio_l
 /* Keeps a description that says more than a name and a type. */
 static brio_status keep_description(brio_las_plan *plan, brio_las_records *kept, const brio_las_extra *e,
                                     const char *name) {
-    brio_status status = BRIO_OK;
     bool more = (uint8_t)e->description[BRIO_EXTRA_OPTIONS] & BRIO_EXTRA_ALL_OPTIONS;
     if (!more && !e->description[BRIO_EXTRA_TEXT] && e->type != UINT64 && e->type != INT64) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(plan->ctx, kept->bytes, kept->capacity, kept->size + BRIO_LAS_EXTRA_ENTRY));
+    BRIO_FORWARD(BRIO_RESERVE(plan->ctx, kept->bytes, kept->capacity, kept->size + BRIO_LAS_EXTRA_ENTRY));
     memset(kept->bytes + kept->size, 0, 64);
     memcpy(kept->bytes + kept->size, name, strlen(name));
     memcpy(kept->bytes + kept->size + 64, e->description, BRIO_LAS_EXTRA);
     kept->size += BRIO_LAS_EXTRA_ENTRY;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Plans an extra number. A name that the format has already, or another extra number, gets "_2", "_3", ... behind
@@ -100,7 +98,6 @@ static brio_status plan_extra(brio_las_plan *plan, brio_builder *b, const brio_l
                               brio_las_records *kept) {
     static const brio_scalar types[] = {
         F64, U8, I8, U16, I16, BRIO_SCALAR_UINT32, BRIO_SCALAR_INT32, F64, F64, BRIO_SCALAR_FLOAT32, F64};
-    brio_status status = BRIO_OK;
     bool wide = e->scaled || e->type == UINT64 || e->type == INT64;
     brio_las_column c = {.property = b->mesh->num_properties,
                          .at = brio_las_record_bytes(h->format) + e->at,
@@ -110,11 +107,9 @@ static brio_status plan_extra(brio_las_plan *plan, brio_builder *b, const brio_l
                          .offset = e->offset};
     char name[64];
     brio_builder_new_name(b, e->name, name);
-    BRIO_TRY(brio_builder_property(b, name, c.type));
+    BRIO_FORWARD(brio_builder_property(b, name, c.type));
     plan->columns[plan->num_columns++] = c;
-    BRIO_TRY(keep_description(plan, kept, e, name));
-done:
-    return status;
+    return keep_description(plan, kept, e, name);
 }
 
 static brio_status begin_plan(brio_las_plan *plan, const brio_builder *b, const brio_las_header *h) {
@@ -142,15 +137,13 @@ done:
 }
 
 brio_status brio_las_plan_colours(brio_las_plan *plan, brio_builder *b, const brio_las_header *h) {
-    brio_status status = BRIO_OK;
     brio_las_field fields[BRIO_LAS_FIELDS];
     size_t count = brio_las_fields_of(h->format, fields);
-    BRIO_TRY(begin_plan(plan, b, h));
+    BRIO_FORWARD(begin_plan(plan, b, h));
     for (size_t i = 0; i < count; i++)
         if (fields[i].at >= places[h->format].colour && fields[i].at < places[h->format].colour + 6)
-            BRIO_TRY(plan_field(plan, b, h, &fields[i]));
-done:
-    return status;
+            BRIO_FORWARD(plan_field(plan, b, h, &fields[i]));
+    return BRIO_OK;
 }
 
 void brio_las_plan_free(brio_las_plan *plan) {
@@ -326,24 +319,22 @@ static uint64_t points_that_are_there(const brio_stream *s, const brio_las_heade
 }
 
 static brio_status read_records(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan) {
-    brio_status status = BRIO_OK;
-    if (s->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(brio_builder_expect_vertices(b, points_that_are_there(s, h)));
+    if (s->size != BRIO_SIZE_UNKNOWN) BRIO_FORWARD(brio_builder_expect_vertices(b, points_that_are_there(s, h)));
     while (s->row < h->num_points) {
-        BRIO_TRY(brio_stream_fill(s, h->record));
+        BRIO_FORWARD(brio_stream_fill(s, h->record));
         size_t rows = brio_stream_left(s) / h->record;
         if (rows > BRIO_BLOCK_ROWS) rows = BRIO_BLOCK_ROWS;
         if (rows > h->num_points - s->row) rows = (size_t)(h->num_points - s->row);
         if (!rows && b->salvage) break;
         if (!rows) return brio_stream_truncated(s);
-        BRIO_TRY(brio_builder_add_vertices(b, rows));
+        BRIO_FORWARD(brio_builder_add_vertices(b, rows));
         block_job job = {plan, b->mesh, s->buffer + s->begin, b->mesh->num_vertices - rows};
-        BRIO_TRY(brio_for(s->ctx, brio_threads(s->ctx, rows, LEAST_ROWS), rows, store_part, &job));
+        BRIO_FORWARD(brio_for(s->ctx, brio_threads(s->ctx, rows, LEAST_ROWS), rows, store_part, &job));
         s->begin += rows * h->record;
         s->row += rows;
     }
     b->missing = h->num_points - s->row;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_las_read_points(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan) {
@@ -358,18 +349,15 @@ static bool can_look_ahead(const brio_stream *s) {
 
 /* What is known only when all points of a pipe have been read: the depth of colours, and records behind the points. */
 static brio_status end_pipe(brio_stream *s, brio_builder *b, brio_las_header *h, bool has_depth) {
-    brio_status status = BRIO_OK;
     brio_las_depth depth = {.deep = false};
     if (!has_depth) {
         las_depth_see(&depth, b->mesh);
-        BRIO_TRY(las_depth_give(&depth, b->mesh));
+        BRIO_FORWARD(las_depth_give(&depth, b->mesh));
     }
-    if (h->late_pending && b->streams) BRIO_TRY(brio_builder_leave_out(b, "records behind the points of a pipe"));
+    if (h->late_pending && b->streams) BRIO_FORWARD(brio_builder_leave_out(b, "records behind the points of a pipe"));
     if (!h->late_pending || b->streams) return BRIO_OK;
-    BRIO_TRY(brio_las_late_records_read(s, b, h));
-    BRIO_TRY(brio_las_records_give(b, h));
-done:
-    return status;
+    BRIO_FORWARD(brio_las_late_records_read(s, b, h));
+    return brio_las_records_give(b, h);
 }
 
 /* A pipe with colours is not handed on in blocks: what the colours are is known at its end. */

@@ -142,30 +142,25 @@ static void make_header(char header[BRIO_RECORD_HEADER], const char *user, unsig
 
 /* Writes a record if it belongs to this side of the points. */
 static brio_status put_record(brio_output *out, bool late, const char header[BRIO_RECORD_HEADER], const char *bytes) {
-    brio_status status = BRIO_OK;
     size_t size = (size_t)brio_le64(header + BRIO_RECORD_SIZE);
     if (late == is_early(size)) return BRIO_OK;
-    BRIO_TRY(brio_output_bytes(out, header, BRIO_RECORD_SIZE + (late ? 8 : 2)));
-    BRIO_TRY(brio_output_bytes(out, header + BRIO_RECORD_TEXT, BRIO_RECORD_HEADER - BRIO_RECORD_TEXT));
-    BRIO_TRY(brio_output_bytes(out, bytes, size));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_bytes(out, header, BRIO_RECORD_SIZE + (late ? 8 : 2)));
+    BRIO_FORWARD(brio_output_bytes(out, header + BRIO_RECORD_TEXT, BRIO_RECORD_HEADER - BRIO_RECORD_TEXT));
+    return brio_output_bytes(out, bytes, size);
 }
 
 /* Writes the records of the metadata on one side of the points. */
 static brio_status put_kept(brio_output *out, bool late, const brio_mesh *mesh) {
-    brio_status status = BRIO_OK;
     char wkt[BRIO_RECORD_HEADER];
     make_header(wkt, "LASF_Projection", WKT_ID, "WKT", wkt_size(mesh));
-    if (wkt_size(mesh)) BRIO_TRY(put_record(out, late, wkt, text_of(mesh, "crs.wkt")));
+    if (wkt_size(mesh)) BRIO_FORWARD(put_record(out, late, wkt, text_of(mesh, "crs.wkt")));
     for (int i = 0; i < LISTS; i++) {
         const brio_metadata *list = brio_mesh_metadata(mesh, lists[i]);
         const char *header = NULL;
         for (size_t at = 0, size = 0; list && brio_record_next(list, &at, &header, &size);)
-            BRIO_TRY(put_record(out, late, header, header + BRIO_RECORD_HEADER));
+            BRIO_FORWARD(put_record(out, late, header, header + BRIO_RECORD_HEADER));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status put_extras(brio_output *out, const brio_las_facts *f) {
@@ -212,7 +207,6 @@ static uint32_t early_records(const brio_las_facts *f, uint64_t *bytes) {
 
 /* Writes the header and the records before the points.   Returns BRIO_OK, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
 static brio_status las_facts_write(brio_output *out, brio_las_facts *f) {
-    brio_status status = BRIO_OK;
     char header[HEADER_1_4] = "LASF";
     const brio_las_layout *l = f->layout;
     uint32_t late = las_late_records(f->mesh);
@@ -220,8 +214,8 @@ static brio_status las_facts_write(brio_output *out, brio_las_facts *f) {
     size_t size = is_1_4 ? HEADER_1_4 : HEADER;
     uint64_t records = 0;
     brio_put_le32(header + 100, early_records(f, &records));
-    BRIO_REQUIRE(out->ctx, size + records <= UINT32_MAX, BRIO_ERR_ARGUMENT,
-                 "%s: records of 4 GiB before the points, more than LAS holds", out->name);
+    BRIO_EXPECT(out->ctx, size + records <= UINT32_MAX, BRIO_ERR_ARGUMENT,
+                "%s: records of 4 GiB before the points, more than LAS holds", out->name);
     put_origin(f, header);
     put_limits(f->grid, header);
     put_counts(f, header, is_1_4);
@@ -237,12 +231,10 @@ static brio_status las_facts_write(brio_output *out, brio_las_facts *f) {
         brio_put_le64(header + BRIO_LAS_LATE_PLACE, f->late); /* of compressed points: put in its place at the end */
         brio_put_le32(header + BRIO_LAS_LATE_PLACE + 8, late);
     }
-    BRIO_TRY(brio_output_bytes(out, header, size));
-    BRIO_TRY(put_form(out, f));
-    BRIO_TRY(put_kept(out, false, f->mesh));
-    BRIO_TRY(put_extras(out, f));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_bytes(out, header, size));
+    BRIO_FORWARD(put_form(out, f));
+    BRIO_FORWARD(put_kept(out, false, f->mesh));
+    return put_extras(out, f);
 }
 
 /* Writes the records behind the points. */
@@ -284,21 +276,19 @@ static void encode(void *user, size_t begin, size_t end, int thread) {
 }
 
 static brio_status write_records(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     las_writer *w = state;
     size_t n = job->mesh->num_vertices, record = w->layout.record;
     w->block = job->mesh;
-    if (!w->rows) BRIO_TRY(BRIO_ALLOC(out->ctx, w->rows, CHUNK * record));
+    if (!w->rows) BRIO_FORWARD(BRIO_ALLOC(out->ctx, w->rows, CHUNK * record));
     for (w->first = 0; w->first < n; w->first += CHUNK) {
         size_t count = n - w->first < CHUNK ? n - w->first : CHUNK;
-        BRIO_TRY(brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode, w));
+        BRIO_FORWARD(brio_for(out->ctx, brio_threads(out->ctx, count, ROWS_A_THREAD), count, encode, w));
         if (w->facts.compressed)
-            BRIO_TRY(brio_laz_write_rows(&w->laz, out, (uint8_t *)w->rows, count));
+            BRIO_FORWARD(brio_laz_write_rows(&w->laz, out, (uint8_t *)w->rows, count));
         else
-            BRIO_TRY(brio_output_bytes(out, w->rows, count * record));
+            BRIO_FORWARD(brio_output_bytes(out, w->rows, count * record));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- what must be known before --- */
@@ -312,15 +302,12 @@ static void count_returns(las_writer *w, const brio_mesh *block) {
 }
 
 static brio_status survey(brio_context *ctx, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     las_writer *w = state;
     if (w->grid.pass == 0) {
-        BRIO_TRY(brio_las_layout_see(ctx, &w->layout, job->mesh));
+        BRIO_FORWARD(brio_las_layout_see(ctx, &w->layout, job->mesh));
         count_returns(w, job->mesh);
     }
-    BRIO_TRY(brio_las_grid_survey(ctx, &w->grid, job->mesh));
-done:
-    return status;
+    return brio_las_grid_survey(ctx, &w->grid, job->mesh);
 }
 
 static bool surveyed(void *state) {
@@ -352,26 +339,23 @@ static double moved(const void *state, const brio_mesh *block) {
 
 /* Keeps the metadata that stand behind the points: the blocks are gone by then. */
 static brio_status keep_late(brio_context *ctx, las_writer *w, const brio_mesh *block) {
-    brio_status status = BRIO_OK;
     if (!las_late_records(block)) return BRIO_OK;
-    BRIO_TRY(brio_mesh_new(ctx, &w->late));
+    BRIO_FORWARD(brio_mesh_new(ctx, &w->late));
     for (size_t i = 0; i < block->num_metadata; i++) {
         const brio_metadata *m = &block->metadata[i];
-        BRIO_TRY(brio_mesh_set_metadata(w->late, m->name, m->bytes, m->size));
+        BRIO_FORWARD(brio_mesh_set_metadata(w->late, m->name, m->bytes, m->size));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status begin(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     las_writer *w = state;
     const brio_property *numbers = brio_mesh_property(job->mesh, "return_number");
     brio_las_facts *f = &w->facts;
     w->block = job->mesh;
     /* the formats before version 1.4 count points in 32 bits */
-    BRIO_TRY(brio_las_layout_make(out->ctx, &w->layout, out->name, job->mesh, w->grid.points > UINT32_MAX));
-    BRIO_TRY(keep_late(out->ctx, w, job->mesh));
+    BRIO_FORWARD(brio_las_layout_make(out->ctx, &w->layout, out->name, job->mesh, w->grid.points > UINT32_MAX));
+    BRIO_FORWARD(keep_late(out->ctx, w, job->mesh));
     if (numbers && w->layout.places[numbers - job->mesh->properties].extra) memset(f->returns, 0, sizeof f->returns);
     f->mesh = job->mesh;
     f->layout = &w->layout;
@@ -382,9 +366,7 @@ static brio_status begin(brio_output *out, const brio_write_job *job, void *stat
         const brio_laz_form form = brio_laz_form_of(w->layout.format, w->layout.record);
         f->chunk = brio_laz_chunk_points(&form);
     }
-    BRIO_TRY(las_facts_write(out, f));
-done:
-    return status;
+    return las_facts_write(out, f);
 }
 
 static brio_status end(brio_output *out, const brio_write_job *job, void *state) {
@@ -394,29 +376,23 @@ static brio_status end(brio_output *out, const brio_write_job *job, void *state)
 }
 
 static brio_status begin_compressed(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     las_writer *w = state;
     w->facts.compressed = true;
-    BRIO_REQUIRE(out->ctx, !las_late_records(job->mesh) || brio_output_can_patch(out), BRIO_ERR_ARGUMENT,
-                 "%s: a record of more than 65535 bytes stands behind compressed points: that needs a file, no pipe",
-                 out->name);
-    BRIO_TRY(begin(out, job, state));
+    BRIO_EXPECT(out->ctx, !las_late_records(job->mesh) || brio_output_can_patch(out), BRIO_ERR_ARGUMENT,
+                "%s: a record of more than 65535 bytes stands behind compressed points: that needs a file, no pipe",
+                out->name);
+    BRIO_FORWARD(begin(out, job, state));
     const brio_laz_form form = brio_laz_form_of(w->layout.format, w->layout.record);
-    BRIO_TRY(brio_laz_write_begin(&w->laz, out, &form));
-done:
-    return status;
+    return brio_laz_write_begin(&w->laz, out, &form);
 }
 
 static brio_status end_compressed(brio_output *out, const brio_write_job *job, void *state) {
-    brio_status status = BRIO_OK;
     las_writer *w = state;
     char place[8];
-    BRIO_TRY(brio_laz_write_end(&w->laz, out));
+    BRIO_FORWARD(brio_laz_write_end(&w->laz, out));
     brio_put_le64(place, brio_output_offset(out));
-    if (w->late) BRIO_TRY(brio_output_patch(out, BRIO_LAS_LATE_PLACE, place, sizeof place));
-    BRIO_TRY(end(out, job, state));
-done:
-    return status;
+    if (w->late) BRIO_FORWARD(brio_output_patch(out, BRIO_LAS_LATE_PLACE, place, sizeof place));
+    return end(out, job, state);
 }
 
 static void free_state(brio_context *ctx, void *state) {

@@ -50,54 +50,49 @@ brio_laz_form brio_laz_form_of(unsigned format, size_t record) {
 /* --- reading --- */
 
 static brio_status check_items(brio_stream *s, brio_las_header *h, const char *bytes, size_t count) {
-    brio_status status = BRIO_OK;
     laz_item items[MOST_ITEMS];
     size_t expected = items_of(h->format, h->record, items);
     bool layered = h->format >= 6, own_colours = false;
-    BRIO_REQUIRE(s->ctx, expected, BRIO_ERR_FORMAT, "%s: compressed points of format %u: waveforms are not read",
-                 s->name, h->format);
-    BRIO_REQUIRE(s->ctx, count == expected, BRIO_ERR_FORMAT,
-                 "%s: LASzip's record lists %zu items, point format %u has %zu", s->name, count, h->format, expected);
+    BRIO_EXPECT(s->ctx, expected, BRIO_ERR_FORMAT, "%s: compressed points of format %u: waveforms are not read",
+                s->name, h->format);
+    BRIO_EXPECT(s->ctx, count == expected, BRIO_ERR_FORMAT,
+                "%s: LASzip's record lists %zu items, point format %u has %zu", s->name, count, h->format, expected);
     for (size_t i = 0; i < count; i++, bytes += ITEM) {
         unsigned type = brio_le16(bytes), size = brio_le16(bytes + 2), version = brio_le16(bytes + 4);
-        BRIO_REQUIRE(s->ctx, type == items[i].type && size == items[i].size, BRIO_ERR_FORMAT,
-                     "%s: LASzip's record: item %zu has type %u and %u bytes, expected type %u and %u bytes", s->name,
-                     i, type, size, items[i].type, items[i].size);
-        BRIO_REQUIRE(s->ctx, version != 1, BRIO_ERR_FORMAT,
-                     "%s: compressed by LASzip 1, whose form of points is not read: decompress the file with LASzip or "
-                     "LAStools first",
-                     s->name);
-        BRIO_REQUIRE(s->ctx, layered ? version == 3 || version == 4 : version == 2, BRIO_ERR_FORMAT,
-                     "%s: LASzip's record: item %zu has version %u, expected %s", s->name, i, version,
-                     layered ? "3 or 4" : "2");
+        BRIO_EXPECT(s->ctx, type == items[i].type && size == items[i].size, BRIO_ERR_FORMAT,
+                    "%s: LASzip's record: item %zu has type %u and %u bytes, expected type %u and %u bytes", s->name, i,
+                    type, size, items[i].type, items[i].size);
+        BRIO_EXPECT(s->ctx, version != 1, BRIO_ERR_FORMAT,
+                    "%s: compressed by LASzip 1, whose form of points is not read: decompress the file with LASzip or "
+                    "LAStools first",
+                    s->name);
+        BRIO_EXPECT(s->ctx, layered ? version == 3 || version == 4 : version == 2, BRIO_ERR_FORMAT,
+                    "%s: LASzip's record: item %zu has version %u, expected %s", s->name, i, version,
+                    layered ? "3 or 4" : "2");
         own_colours = version == 4;
     }
     h->form = brio_laz_form_of(h->format, h->record);
     h->form.own_colours = own_colours;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_laz_form_read(brio_stream *s, brio_las_header *h, const char *bytes, size_t size) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(s->ctx, size >= HEAD, BRIO_ERR_FORMAT, "%s: LASzip's record has %zu bytes, expected %d or more",
-                 s->name, size, (int)HEAD);
+    BRIO_EXPECT(s->ctx, size >= HEAD, BRIO_ERR_FORMAT, "%s: LASzip's record has %zu bytes, expected %d or more",
+                s->name, size, (int)HEAD);
     unsigned compressor = brio_le16(bytes), coder = brio_le16(bytes + 2);
     size_t count = brio_le16(bytes + 32);
-    BRIO_REQUIRE(s->ctx,
-                 coder == 0 && compressor == (h->format >= 6    ? 3
-                                              : compressor == 1 ? 1
-                                                                : 2),
-                 BRIO_ERR_FORMAT, "%s: LASzip's record: compressor %u with coder %u for point format %u is not known",
-                 s->name, compressor, coder, h->format);
-    BRIO_REQUIRE(s->ctx, size >= HEAD + ITEM * count, BRIO_ERR_FORMAT,
-                 "%s: LASzip's record has %zu bytes, %zu items need %zu", s->name, size, count, HEAD + ITEM * count);
+    BRIO_EXPECT(s->ctx,
+                coder == 0 && compressor == (h->format >= 6    ? 3
+                                             : compressor == 1 ? 1
+                                                               : 2),
+                BRIO_ERR_FORMAT, "%s: LASzip's record: compressor %u with coder %u for point format %u is not known",
+                s->name, compressor, coder, h->format);
+    BRIO_EXPECT(s->ctx, size >= HEAD + ITEM * count, BRIO_ERR_FORMAT,
+                "%s: LASzip's record has %zu bytes, %zu items need %zu", s->name, size, count, HEAD + ITEM * count);
     h->chunked = compressor != 1;
     h->chunk = brio_le32(bytes + 12);
     if (!h->chunk) h->chunk = UINT32_MAX; /* so LAStools writes COPC */
-    BRIO_TRY(check_items(s, h, bytes + HEAD, count));
-done:
-    return status;
+    return check_items(s, h, bytes + HEAD, count);
 }
 
 /* --- writing --- */

@@ -28,16 +28,14 @@ enum { HEAD = 8, POINTS = 0, BYTES = 1 /* contexts */, MOST_ENTRY = 16 /* bytes 
 
 /* Finds the table of a file whose writer could not go back to say where it is: the last 8 bytes say it. */
 static brio_status find_table(brio_stream *s, uint64_t *at) {
-    brio_status status = BRIO_OK;
     char bytes[8];
     uint64_t here = brio_stream_offset(s);
     if (*at <= here && s->size >= here + sizeof bytes) {
-        BRIO_TRY(brio_stream_peek(s, s->size - sizeof bytes, bytes, sizeof bytes));
+        BRIO_FORWARD(brio_stream_peek(s, s->size - sizeof bytes, bytes, sizeof bytes));
         *at = brio_le64(bytes);
     }
     if (*at <= here || *at + HEAD > s->size || *at > s->size) *at = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Decodes the table.   has_points  whether each entry has its number of points, too. */
@@ -61,26 +59,24 @@ done:
 
 /* Checks the table against the file, and sets the numbers of points of chunks of fixed size. */
 static brio_status check(brio_stream *s, const brio_las_header *h, uint64_t at, brio_laz_chunk *chunks, size_t count) {
-    brio_status status = BRIO_OK;
     uint64_t bytes = 0, points = 0, room = at - brio_stream_offset(s);
     for (size_t i = 0; i < count; i++) {
         if (h->chunk != UINT32_MAX)
             chunks[i].points = h->num_points - points < h->chunk ? (uint32_t)(h->num_points - points) : h->chunk;
-        BRIO_REQUIRE(s->ctx, chunks[i].points / BRIO_LAZ_MOST_DENSE <= chunks[i].bytes, BRIO_ERR_FORMAT,
-                     "%s: byte %" PRIu64 ": chunk %zu (counted from 0) cannot have %" PRIu32 " points in %" PRIu32
-                     " bytes",
-                     s->name, at, i, chunks[i].points, chunks[i].bytes);
+        BRIO_EXPECT(s->ctx, chunks[i].points / BRIO_LAZ_MOST_DENSE <= chunks[i].bytes, BRIO_ERR_FORMAT,
+                    "%s: byte %" PRIu64 ": chunk %zu (counted from 0) cannot have %" PRIu32 " points in %" PRIu32
+                    " bytes",
+                    s->name, at, i, chunks[i].points, chunks[i].bytes);
         points += chunks[i].points;
         bytes += chunks[i].bytes;
     }
-    BRIO_REQUIRE(s->ctx, bytes <= room, BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": the table of chunks lists %" PRIu64 " bytes, there are %" PRIu64, s->name, at,
-                 bytes, room);
-    BRIO_REQUIRE(s->ctx, points == h->num_points, BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": the table of chunks lists %" PRIu64 " points, the header %" PRIu64, s->name, at,
-                 points, h->num_points);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, bytes <= room, BRIO_ERR_FORMAT,
+                "%s: byte %" PRIu64 ": the table of chunks lists %" PRIu64 " bytes, there are %" PRIu64, s->name, at,
+                bytes, room);
+    BRIO_EXPECT(s->ctx, points == h->num_points, BRIO_ERR_FORMAT,
+                "%s: byte %" PRIu64 ": the table of chunks lists %" PRIu64 " points, the header %" PRIu64, s->name, at,
+                points, h->num_points);
+    return BRIO_OK;
 }
 
 /* Reads the table of a regular file. The chunks lie one after the other from the stream's position on.
@@ -165,21 +161,19 @@ static size_t block_rows(const brio_las_header *h) {
 }
 
 static brio_status make_workers(laz_reader *r, size_t chunks) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = r->stream->ctx;
     const brio_las_header *h = r->header;
     r->threads = brio_threads(ctx, chunks, 1);
     size_t count = (size_t)r->threads, bytes = brio_laz_decoder_bytes(&h->form);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r->workers, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, r->batch, CHUNKS_A_THREAD * count));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, r->workers, count));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, r->batch, CHUNKS_A_THREAD * count));
     for (size_t i = 0; i < count; i++) {
         char *memory;
-        BRIO_TRY(BRIO_ALLOC(ctx, memory, bytes));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, memory, bytes));
         r->workers[i].decoder = brio_laz_decoder_make(memory, &h->form);
-        BRIO_TRY(BRIO_ALLOC(ctx, r->workers[i].rows, block_rows(h) * h->record));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, r->workers[i].rows, block_rows(h) * h->record));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void free_workers(laz_reader *r) {
@@ -235,7 +229,6 @@ static void decode_part(void *user, size_t begin, size_t end, int thread) {
 
 /* Reads and decodes as many of the chunks as fit in a batch, and returns their number in *used. */
 static brio_status read_batch(laz_reader *r, const brio_laz_chunk *chunks, size_t count, size_t *used) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     size_t bytes = 0, points = 0, n = 0, most = r->threads > 1 ? CHUNKS_A_THREAD * (size_t)r->threads : 1;
     uint64_t offset = brio_stream_offset(s);
@@ -247,45 +240,40 @@ static brio_status read_batch(laz_reader *r, const brio_laz_chunk *chunks, size_
         bytes += chunks[n].bytes;
         points += chunks[n].points;
     }
-    BRIO_TRY(brio_stream_take(s, bytes, &data));
-    BRIO_TRY(brio_builder_add_vertices(r->builder, points));
+    BRIO_FORWARD(brio_stream_take(s, bytes, &data));
+    BRIO_FORWARD(brio_builder_add_vertices(r->builder, points));
     size_t base = r->builder->mesh->num_vertices - points;
     for (size_t i = 0; i < n; data += r->batch[i++].size) {
         r->batch[i].bytes = (const uint8_t *)data;
         r->batch[i].first += base;
     }
-    BRIO_TRY(brio_for_chunks(s->ctx, r->threads, n, 1, decode_part, r));
+    BRIO_FORWARD(brio_for_chunks(s->ctx, r->threads, n, 1, decode_part, r));
     for (size_t i = 0; i < n; offset += r->batch[i++].size)
         if (r->batch[i].damaged) return damaged(r, &r->batch[i], offset);
     s->row += points;
     *used = n;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_with_table(laz_reader *r, const brio_laz_chunk *chunks, size_t count) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
-    BRIO_TRY(make_workers(r, count));
+    BRIO_FORWARD(make_workers(r, count));
     if (r->header->num_points / DENSE <= s->size)
-        BRIO_TRY(brio_builder_expect_vertices(r->builder, r->header->num_points));
-    for (size_t i = 0, used = 0; i < count; i += used) BRIO_TRY(read_batch(r, chunks + i, count - i, &used));
-done:
-    return status;
+        BRIO_FORWARD(brio_builder_expect_vertices(r->builder, r->header->num_points));
+    for (size_t i = 0, used = 0; i < count; i += used) BRIO_FORWARD(read_batch(r, chunks + i, count - i, &used));
+    return BRIO_OK;
 }
 
 /* --- one chunk after the other --- */
 
 /* Reads until the buffer has `need` bytes or the file ends. The buffer never grows to more than twice what it has. */
 static brio_status gather(brio_stream *s, uint64_t need) {
-    brio_status status = BRIO_OK;
     while (brio_stream_left(s) < need && !s->ended) {
         uint64_t step = 2 * (uint64_t)brio_stream_left(s);
         if (step < WINDOW) step = WINDOW;
-        BRIO_TRY(brio_stream_fill(s, (size_t)(step < need ? step : need)));
+        BRIO_FORWARD(brio_stream_fill(s, (size_t)(step < need ? step : need)));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Refuses a chunk of more points than its bytes can stand for, before memory is made for them.
@@ -301,72 +289,66 @@ static brio_status check_points(const laz_reader *r, size_t points, uint64_t byt
 
 /* Decodes the chunk of layers that follows. It says how many bytes it has. */
 static brio_status next_layers(laz_reader *r, loaded_chunk *c) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     const brio_laz_form *form = &r->header->form;
     uint32_t points = 0;
-    BRIO_TRY(gather(s, brio_laz_layers_head(form)));
+    BRIO_FORWARD(gather(s, brio_laz_layers_head(form)));
     uint64_t size = brio_laz_layers_bytes(form, (uint8_t *)s->buffer + s->begin, brio_stream_left(s), &points);
     c->missing = !size;
     if (c->missing) return r->builder->salvage ? BRIO_OK : brio_stream_truncated(s);
     bool fits = r->header->chunk == UINT32_MAX ? points && points <= c->points : points == c->points;
-    BRIO_REQUIRE(s->ctx, fits, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": a chunk of %" PRIu32 " points, expected %s%zu",
-                 s->name, brio_stream_offset(s), points, r->header->chunk == UINT32_MAX ? "1 to " : "", c->points);
+    BRIO_EXPECT(s->ctx, fits, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": a chunk of %" PRIu32 " points, expected %s%zu",
+                s->name, brio_stream_offset(s), points, r->header->chunk == UINT32_MAX ? "1 to " : "", c->points);
     c->points = points;
-    BRIO_TRY(gather(s, size));
+    BRIO_FORWARD(gather(s, size));
     c->missing = brio_stream_left(s) < size;
     if (c->missing) return r->builder->salvage ? BRIO_OK : brio_stream_truncated(s);
-    BRIO_TRY(check_points(r, points, size));
-    BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
+    BRIO_FORWARD(check_points(r, points, size));
+    BRIO_FORWARD(brio_builder_add_vertices(r->builder, c->points));
     c->first = r->builder->mesh->num_vertices - c->points;
     c->bytes = (uint8_t *)s->buffer + s->begin;
     c->size = (size_t)size;
     decode_chunk(r, r->workers, c);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Decodes the chunk that follows, whose end only its decoder finds. */
 static brio_status next_stream(laz_reader *r, loaded_chunk *c) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
-    BRIO_TRY(check_points(r, c->points, s->size == BRIO_SIZE_UNKNOWN ? s->size : s->size - brio_stream_offset(s)));
-    BRIO_TRY(brio_builder_add_vertices(r->builder, c->points));
+    BRIO_FORWARD(check_points(r, c->points, s->size == BRIO_SIZE_UNKNOWN ? s->size : s->size - brio_stream_offset(s)));
+    BRIO_FORWARD(brio_builder_add_vertices(r->builder, c->points));
     c->first = r->builder->mesh->num_vertices - c->points;
     for (uint64_t window = WINDOW;; window *= 2) {
-        BRIO_TRY(gather(s, window));
+        BRIO_FORWARD(gather(s, window));
         c->bytes = (uint8_t *)s->buffer + s->begin;
         c->size = brio_stream_left(s);
         decode_chunk(r, r->workers, c);
         if (!c->damaged || s->ended) break;
     }
     if (!c->damaged) c->size = brio_laz_used(r->workers->decoder);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_without_table(laz_reader *r) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     const brio_las_header *h = r->header;
     bool fixed = h->chunked && h->chunk != UINT32_MAX;
-    BRIO_REQUIRE(s->ctx, fixed || !h->chunked || h->form.layered, BRIO_ERR_FORMAT,
-                 "%s: chunks of different numbers of points need their table, which is missing or, in a pipe, not "
-                 "there yet",
-                 s->name);
-    BRIO_TRY(make_workers(r, 1));
+    BRIO_EXPECT(s->ctx, fixed || !h->chunked || h->form.layered, BRIO_ERR_FORMAT,
+                "%s: chunks of different numbers of points need their table, which is missing or, in a pipe, not "
+                "there yet",
+                s->name);
+    BRIO_FORWARD(make_workers(r, 1));
     while (s->row < h->num_points) {
         loaded_chunk c = {.row = s->row, .points = (size_t)(h->num_points - s->row)};
         if (fixed && c.points > h->chunk) c.points = h->chunk;
-        BRIO_TRY(h->form.layered ? next_layers(r, &c) : next_stream(r, &c));
+        BRIO_FORWARD(h->form.layered ? next_layers(r, &c) : next_stream(r, &c));
         if (c.damaged && r->builder->salvage && s->ended) salvage_chunk(r, &c);
         if (c.missing || (c.damaged && r->builder->salvage && s->ended)) break;
         if (c.damaged) return damaged(r, &c, brio_stream_offset(s));
         s->begin += c.size;
         s->row += c.points;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_laz_read(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan) {

@@ -181,25 +181,22 @@ static uint64_t chunks_of(const brio_laz_writer *w) {
 }
 
 brio_status brio_laz_write_begin(brio_laz_writer *w, brio_output *out, const brio_laz_form *form) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = out->ctx;
     char place[8];
     w->form = *form;
     w->chunk = brio_laz_chunk_points(form);
     w->threads = brio_threads(ctx, SIZE_MAX, 1);
     size_t count = (size_t)w->threads, bytes = brio_laz_packer_bytes(form);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, w->workers, count));
-    BRIO_TRY(BRIO_ALLOC(ctx, w->rows, count * w->chunk * form->record));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, w->workers, count));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, w->rows, count * w->chunk * form->record));
     for (size_t i = 0; i < count; i++) {
         char *memory;
-        BRIO_TRY(BRIO_ALLOC(ctx, memory, bytes));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, memory, bytes));
         w->workers[i].packer = laz_packer_make(memory, form);
     }
     w->place = brio_output_offset(out);
     brio_put_le64(place, UINT64_MAX);
-    BRIO_TRY(brio_output_bytes(out, place, sizeof place));
-done:
-    return status;
+    return brio_output_bytes(out, place, sizeof place);
 }
 
 static void pack_part(void *user, size_t begin, size_t end, int thread) {
@@ -214,21 +211,18 @@ static void pack_part(void *user, size_t begin, size_t end, int thread) {
 
 /* Encodes and writes what was collected. */
 static brio_status flush(brio_laz_writer *w, brio_output *out) {
-    brio_status status = BRIO_OK;
     size_t n = (size_t)chunks_of(w);
-    BRIO_TRY(BRIO_RESERVE(out->ctx, w->sizes, w->chunk_capacity, w->num_chunks + n));
-    BRIO_TRY(brio_for_chunks(out->ctx, brio_threads(out->ctx, n, 1), n, 1, pack_part, w));
+    BRIO_FORWARD(BRIO_RESERVE(out->ctx, w->sizes, w->chunk_capacity, w->num_chunks + n));
+    BRIO_FORWARD(brio_for_chunks(out->ctx, brio_threads(out->ctx, n, 1), n, 1, pack_part, w));
     for (size_t i = 0; i < n; i++) {
-        BRIO_TRY(brio_output_bytes(out, w->workers[i].bytes, w->workers[i].size));
+        BRIO_FORWARD(brio_output_bytes(out, w->workers[i].bytes, w->workers[i].size));
         w->sizes[w->num_chunks++] = (uint32_t)w->workers[i].size;
     }
     w->num_rows = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_laz_write_rows(brio_laz_writer *w, brio_output *out, const uint8_t *rows, size_t count) {
-    brio_status status = BRIO_OK;
     size_t record = w->form.record, most = (size_t)w->threads * w->chunk;
     while (count) {
         size_t taken = most - w->num_rows < count ? most - w->num_rows : count;
@@ -236,10 +230,9 @@ brio_status brio_laz_write_rows(brio_laz_writer *w, brio_output *out, const uint
         w->num_rows += taken;
         rows += taken * record;
         count -= taken;
-        if (w->num_rows == most) BRIO_TRY(flush(w, out));
+        if (w->num_rows == most) BRIO_FORWARD(flush(w, out));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Writes the table: compressed integers, each predicted by the last one. */
@@ -267,17 +260,15 @@ done:
 }
 
 brio_status brio_laz_write_end(brio_laz_writer *w, brio_output *out) {
-    brio_status status = BRIO_OK;
     char place[8];
-    if (w->num_rows) BRIO_TRY(flush(w, out));
+    if (w->num_rows) BRIO_FORWARD(flush(w, out));
     brio_put_le64(place, brio_output_offset(out));
-    BRIO_TRY(write_table(w, out));
+    BRIO_FORWARD(write_table(w, out));
     if (brio_output_can_patch(out))
-        BRIO_TRY(brio_output_patch(out, w->place, place, sizeof place));
+        BRIO_FORWARD(brio_output_patch(out, w->place, place, sizeof place));
     else
-        BRIO_TRY(brio_output_bytes(out, place, sizeof place));
-done:
-    return status;
+        BRIO_FORWARD(brio_output_bytes(out, place, sizeof place));
+    return BRIO_OK;
 }
 
 void brio_laz_write_free(brio_laz_writer *w, brio_context *ctx) {

@@ -70,13 +70,11 @@ done:
 /* Reads the headers of all arrays. Call npz_close even if this fails.   s  must outlive it.
  *  Returns as brio_zip_open. */
 static brio_status npz_open(brio_npz *n, brio_stream *s) {
-    brio_status status = BRIO_OK;
     *n = (brio_npz){.rows = 0};
-    BRIO_TRY(brio_zip_open(&n->zip, s));
-    BRIO_TRY(BRIO_ALLOC(s->ctx, n->arrays, n->zip.num_entries));
-    for (size_t i = 0; i < n->zip.num_entries; i++) BRIO_TRY(read_header(n, &n->zip.entries[i]));
-done:
-    return status;
+    BRIO_FORWARD(brio_zip_open(&n->zip, s));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, n->arrays, n->zip.num_entries));
+    for (size_t i = 0; i < n->zip.num_entries; i++) BRIO_FORWARD(read_header(n, &n->zip.entries[i]));
+    return BRIO_OK;
 }
 
 static void npz_close(brio_npz *n) {
@@ -215,7 +213,6 @@ bool brio_npz_starts(const char *bytes, size_t size) {
 /* --- one array --- */
 
 static brio_status put_index(npz_reader *r, const brio_npz_array *a, uint64_t row, uint64_t column, double value) {
-    brio_status status = BRIO_OK;
     uint64_t last = a->header.shape[1] - 1;
     if (a->header.fortran) {
         r->table[row * (last + 1) + column] = value;
@@ -225,10 +222,9 @@ static brio_status put_index(npz_reader *r, const brio_npz_array *a, uint64_t ro
         r->table[column] = value;
         return column == last ? brio_builder_tetrahedron(r->builder, r->table) : BRIO_OK;
     }
-    BRIO_TRY(brio_builder_corner(r->builder, value));
-    if (column == last) BRIO_TRY(brio_builder_face(r->builder));
-done:
-    return status;
+    BRIO_FORWARD(brio_builder_corner(r->builder, value));
+    if (column == last) BRIO_FORWARD(brio_builder_face(r->builder));
+    return BRIO_OK;
 }
 
 /* Stores the number in a row and column of an array where it belongs. */
@@ -246,7 +242,6 @@ static brio_status put(npz_reader *r, const brio_npz_array *a, uint64_t row, uin
 
 /* Takes all numbers of an array, in the order of the file. */
 static brio_status read_numbers(npz_reader *r, const brio_npz_array *a, brio_stream *s) {
-    brio_status status = BRIO_OK;
     const brio_npy_array *h = &a->header;
     size_t size = brio_npy_size(&h->element);
     uint64_t outer = h->shape[h->fortran], inner = h->shape[!h->fortran];
@@ -254,21 +249,19 @@ static brio_status read_numbers(npz_reader *r, const brio_npz_array *a, brio_str
     brio_stream_element(s, h->fortran ? "column" : "row", outer);
     for (; s->row < outer; s->row++)
         for (uint64_t j = 0; j < inner; j++) {
-            BRIO_TRY(brio_stream_take(s, size, &bytes));
+            BRIO_FORWARD(brio_stream_take(s, size, &bytes));
             double value = brio_npy_load(&h->element, bytes);
             if (brio_npy_is_rounded(&h->element, bytes))
-                BRIO_TRY(brio_builder_leave_out(r->builder, "integers beyond 2^53"));
-            BRIO_TRY(h->fortran ? put(r, a, j, s->row, value) : put(r, a, s->row, j, value));
+                BRIO_FORWARD(brio_builder_leave_out(r->builder, "integers beyond 2^53"));
+            BRIO_FORWARD(h->fortran ? put(r, a, j, s->row, value) : put(r, a, s->row, j, value));
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds the properties of an array: one of its name, or one for each column. */
 static brio_status add_properties(npz_reader *r, const brio_npz_array *a) {
     static const char *const components[][4] = {{"nx", "ny", "nz"}, {"red", "green", "blue", "alpha"}};
     static const char *const names[][4] = {{"normals", "normal"}, {"colors", "colours", "rgb", "color"}};
-    brio_status status = BRIO_OK;
     uint64_t columns = a->header.shape[1];
     int known = -1;
     for (int i = 0; i < 8; i++)
@@ -280,45 +273,40 @@ static brio_status add_properties(npz_reader *r, const brio_npz_array *a) {
         char name[64];
         brio_builder_component_name(r->builder, a->name, i, columns, name);
         const brio_npy_field *e = &a->header.element;
-        BRIO_TRY(brio_builder_property(r->builder, known >= 0 ? components[known][i] : name,
-                                       e->wide ? BRIO_SCALAR_FLOAT64 : e->type));
+        BRIO_FORWARD(brio_builder_property(r->builder, known >= 0 ? components[known][i] : name,
+                                           e->wide ? BRIO_SCALAR_FLOAT64 : e->type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes the faces or tetrahedra of an array in Fortran's order. */
 static brio_status take_table(npz_reader *r, const brio_npz_array *a) {
-    brio_status status = BRIO_OK;
     uint64_t columns = a->header.shape[1];
     for (uint64_t row = 0; row < a->header.shape[0]; row++) {
         const double *indices = r->table + row * columns;
         if (a->use == BRIO_NPZ_TETRAHEDRA) {
-            BRIO_TRY(brio_builder_tetrahedron(r->builder, indices));
+            BRIO_FORWARD(brio_builder_tetrahedron(r->builder, indices));
             continue;
         }
-        for (uint64_t i = 0; i < columns; i++) BRIO_TRY(brio_builder_corner(r->builder, indices[i]));
-        BRIO_TRY(brio_builder_face(r->builder));
+        for (uint64_t i = 0; i < columns; i++) BRIO_FORWARD(brio_builder_corner(r->builder, indices[i]));
+        BRIO_FORWARD(brio_builder_face(r->builder));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes room for what an array becomes, whose numbers have been held against the size of the file. */
 static brio_status make_room(npz_reader *r, const brio_npz_array *a) {
-    brio_status status = BRIO_OK;
     const brio_npy_array *h = &a->header;
     if (a->use == BRIO_NPZ_PROPERTY) return add_properties(r, a);
     if (a->use == BRIO_NPZ_X) {
-        BRIO_TRY(brio_builder_expect_vertices(r->builder, h->shape[0]));
+        BRIO_FORWARD(brio_builder_expect_vertices(r->builder, h->shape[0]));
         return brio_builder_add_vertices(r->builder, (size_t)h->shape[0]);
     }
-    if (a->use == BRIO_NPZ_FACES) BRIO_TRY(brio_builder_expect_faces(r->builder, h->shape[0]));
-    if (a->use == BRIO_NPZ_TETRAHEDRA) BRIO_TRY(brio_builder_expect_tetrahedra(r->builder, h->shape[0]));
+    if (a->use == BRIO_NPZ_FACES) BRIO_FORWARD(brio_builder_expect_faces(r->builder, h->shape[0]));
+    if (a->use == BRIO_NPZ_TETRAHEDRA) BRIO_FORWARD(brio_builder_expect_tetrahedra(r->builder, h->shape[0]));
     uint64_t rows = h->fortran ? h->shape[0] : 1;
-    if (a->use >= BRIO_NPZ_FACES) BRIO_TRY(BRIO_ALLOC(r->builder->ctx, r->table, rows * h->shape[1]));
-done:
-    return status;
+    if (a->use >= BRIO_NPZ_FACES) BRIO_FORWARD(BRIO_ALLOC(r->builder->ctx, r->table, rows * h->shape[1]));
+    return BRIO_OK;
 }
 
 static brio_status read_array(npz_reader *r, const brio_npz_array *a) {

@@ -53,21 +53,20 @@ done:
 
 /* Finds where the table is, its bytes and its entries, by the record at the end or by the one for large archives. */
 static brio_status find_table(brio_zip *z, uint64_t *bytes, uint64_t *count) {
-    brio_status status = BRIO_OK;
     brio_stream *s = z->stream;
     char end[END] = {0}, place[END64_PLACE], large[END64];
     uint64_t at = 0;
-    BRIO_TRY(find_end(s, end, &at));
+    BRIO_FORWARD(find_end(s, end, &at));
     *count = brio_le16(end + 10);
     *bytes = brio_le32(end + 12);
     z->table = brio_le32(end + 16);
     if (at >= END64_PLACE) {
-        BRIO_TRY(brio_stream_peek(s, at - END64_PLACE, place, END64_PLACE));
+        BRIO_FORWARD(brio_stream_peek(s, at - END64_PLACE, place, END64_PLACE));
         if (!memcmp(place, "PK\6\7", 4)) {
             uint64_t there = brio_le64(place + 8);
             if (there > at || at - there < END64)
                 return damaged(s, at, "the record of the large archive is out of place");
-            BRIO_TRY(brio_stream_peek(s, there, large, END64));
+            BRIO_FORWARD(brio_stream_peek(s, there, large, END64));
             if (memcmp(large, "PK\6\6", 4) != 0) return damaged(s, there, "expected the record of a large archive");
             *count = brio_le64(large + 32);
             *bytes = brio_le64(large + 40);
@@ -76,8 +75,7 @@ static brio_status find_table(brio_zip *z, uint64_t *bytes, uint64_t *count) {
     }
     if (z->table > at || *bytes > at - z->table) return damaged(s, at, "the table of the archive is out of place");
     if (*count > *bytes / ENTRY) return damaged(s, at, "the table of the archive has no room for its entries");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Takes the numbers of 64 bits from the extra field, for those that are all ones. Returns false if they are not there. */
@@ -176,61 +174,55 @@ void brio_zip_close(brio_zip *z) {
 
 /* Checks what the table says of an entry against the archive, and returns where its bytes begin. */
 static brio_status find_bytes(const brio_zip *z, const brio_zip_entry *e, const char *name, uint64_t *at) {
-    brio_status status = BRIO_OK;
     brio_stream *s = z->stream;
     char own[OWN_HEADER];
-    BRIO_REQUIRE(s->ctx, !(e->flags & ENCRYPTED), BRIO_ERR_FORMAT, "%s: is encrypted", name);
-    BRIO_REQUIRE(s->ctx, e->method == STORED || e->method == DEFLATED, BRIO_ERR_FORMAT,
-                 "%s: compressed by method %u of zip, expected 0 (stored) or 8 (deflate)", name, e->method);
+    BRIO_EXPECT(s->ctx, !(e->flags & ENCRYPTED), BRIO_ERR_FORMAT, "%s: is encrypted", name);
+    BRIO_EXPECT(s->ctx, e->method == STORED || e->method == DEFLATED, BRIO_ERR_FORMAT,
+                "%s: compressed by method %u of zip, expected 0 (stored) or 8 (deflate)", name, e->method);
     bool possible = e->method == STORED ? e->packed == e->size : e->size / MOST_DENSE <= e->packed;
-    BRIO_REQUIRE(s->ctx, possible, BRIO_ERR_FORMAT, "%s: %" PRIu64 " bytes cannot stand for %" PRIu64, name, e->packed,
-                 e->size);
+    BRIO_EXPECT(s->ctx, possible, BRIO_ERR_FORMAT, "%s: %" PRIu64 " bytes cannot stand for %" PRIu64, name, e->packed,
+                e->size);
     if (z->table < OWN_HEADER || e->header > z->table - OWN_HEADER)
         return damaged(s, z->table, "an entry of the archive is out of place");
-    BRIO_TRY(brio_stream_peek(s, e->header, own, OWN_HEADER));
+    BRIO_FORWARD(brio_stream_peek(s, e->header, own, OWN_HEADER));
     if (memcmp(own, "PK\3\4", 4) != 0) return damaged(s, e->header, "expected the header of an entry of the archive");
     *at = e->header + OWN_HEADER + brio_le16(own + 26) + brio_le16(own + 28);
     if (*at > z->table || e->packed > z->table - *at)
         return damaged(s, e->header, "an entry of the archive runs over its end");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_zip_part_open(brio_zip_part *p, const brio_zip *z, const brio_zip_entry *e) {
-    brio_status status = BRIO_OK;
     brio_context *ctx = z->stream->ctx;
     brio_stream *s = &p->stream;
     size_t length = strlen(z->stream->name) + strlen(e->name) + 3;
     p->entry = e;
     p->name = NULL;
     *s = (brio_stream){.ctx = ctx, .file = -1, .outer = z->stream, .size = e->size, .part_left = e->packed};
-    BRIO_TRY(BRIO_ALLOC(ctx, p->name, length));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, p->name, length));
     snprintf(p->name, length, "%s: %s", z->stream->name, e->name);
     s->name = p->name;
-    BRIO_TRY(find_bytes(z, e, p->name, &s->part_at));
+    BRIO_FORWARD(find_bytes(z, e, p->name, &s->part_at));
     brio_crc32_begin(&p->crc);
     s->crc = &p->crc;
     size_t capacity = e->size < BUFFER ? (size_t)e->size + 1 : BUFFER;
-    BRIO_TRY(BRIO_ALLOC(ctx, s->buffer, capacity + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, s->buffer, capacity + 1));
     s->capacity = capacity;
-    if (e->method == DEFLATED) BRIO_TRY(brio_unpack_deflate(s));
-done:
-    return status;
+    if (e->method == DEFLATED) BRIO_FORWARD(brio_unpack_deflate(s));
+    return BRIO_OK;
 }
 
 brio_status brio_zip_part_finish(brio_zip_part *p) {
-    brio_status status = BRIO_OK;
     brio_stream *s = &p->stream;
     do {
         s->begin = s->end;
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
     } while (brio_stream_left(s));
     uint64_t size = s->base + s->end;
-    BRIO_REQUIRE(s->ctx, size == s->size && brio_crc32_end(&p->crc) == p->entry->crc, BRIO_ERR_FORMAT,
-                 "%s: is damaged: %" PRIu64 " bytes of %" PRIu64 ", checksum %08" PRIx32 ", expected %08" PRIx32,
-                 s->name, size, s->size, brio_crc32_end(&p->crc), p->entry->crc);
-done:
-    return status;
+    BRIO_EXPECT(s->ctx, size == s->size && brio_crc32_end(&p->crc) == p->entry->crc, BRIO_ERR_FORMAT,
+                "%s: is damaged: %" PRIu64 " bytes of %" PRIu64 ", checksum %08" PRIx32 ", expected %08" PRIx32,
+                s->name, size, s->size, brio_crc32_end(&p->crc), p->entry->crc);
+    return BRIO_OK;
 }
 
 void brio_zip_part_close(brio_zip_part *p) {

@@ -120,34 +120,30 @@ brio_axes_result brio_pair_of_names(const char (*names)[64], size_t count, size_
 /* --- names that the caller gives --- */
 
 static brio_status take_name(brio_context *ctx, const char *columns, const char *word, size_t length, char name[64]) {
-    brio_status status = BRIO_OK;
     while (length && isspace((unsigned char)*word)) word++, length--;
     while (length && isspace((unsigned char)word[length - 1])) length--;
-    BRIO_REQUIRE(ctx, length > 0 && length < 64, BRIO_ERR_ARGUMENT,
-                 "columns \"%s\": a name of %zu characters, expected 1 to 63, or - for a column to leave out", columns,
-                 length);
+    BRIO_EXPECT(ctx, length > 0 && length < 64, BRIO_ERR_ARGUMENT,
+                "columns \"%s\": a name of %zu characters, expected 1 to 63, or - for a column to leave out", columns,
+                length);
     bool skipped = length == 1 && (*word == '-' || *word == '_');
     memset(name, 0, 64);
     if (!skipped) memcpy(name, word, length);
     if (length == 1 && strchr("XYZ", *word)) name[0] = (char)tolower((unsigned char)*word);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status check_names(brio_context *ctx, const char *columns, bool flat, const char (*names)[64],
                                size_t count) {
-    brio_status status = BRIO_OK;
     unsigned axes = flat ? 4 : 0;
     for (size_t i = 0; i < count; i++) {
         for (size_t k = 0; k < i && names[i][0]; k++)
-            BRIO_REQUIRE(ctx, strcmp(names[i], names[k]) != 0, BRIO_ERR_ARGUMENT, "columns \"%s\": %s is there twice",
-                         columns, names[i]);
+            BRIO_EXPECT(ctx, strcmp(names[i], names[k]) != 0, BRIO_ERR_ARGUMENT, "columns \"%s\": %s is there twice",
+                        columns, names[i]);
         if (names[i][0] >= 'x' && names[i][0] <= 'z' && !names[i][1]) axes |= 1u << (names[i][0] - 'x');
     }
-    BRIO_REQUIRE(ctx, axes == 7, BRIO_ERR_ARGUMENT, "columns \"%s\": %c is missing; x, y and z have to be there",
-                 columns, "xyxzxyx"[axes]);
-done:
-    return status;
+    BRIO_EXPECT(ctx, axes == 7, BRIO_ERR_ARGUMENT, "columns \"%s\": %c is missing; x, y and z have to be there",
+                columns, "xyxzxyx"[axes]);
+    return BRIO_OK;
 }
 
 brio_status brio_columns_parse(brio_context *ctx, const char *columns, bool flat, char (**names)[64], size_t *count) {
@@ -207,13 +203,11 @@ static bool ends_word(const char *p) {
 
 /* Makes room for one more field of a row. */
 static brio_status room(brio_fields *f) {
-    brio_status status = BRIO_OK;
     if (f->count < f->capacity) return BRIO_OK;
-    BRIO_TRY(brio_limit_numbers(f->stream->ctx, f->stream->name, f->stream->line, f->count + 1));
-    BRIO_TRY(BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1));
+    BRIO_FORWARD(brio_limit_numbers(f->stream->ctx, f->stream->name, f->stream->line, f->count + 1));
+    BRIO_FORWARD(BRIO_RESERVE(f->stream->ctx, f->at, f->capacity, f->count + 1));
     if (f->capacity > BRIO_MOST_NUMBERS) f->capacity = BRIO_MOST_NUMBERS; /* so that the next one too many comes here */
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status add_field(brio_fields *f, brio_field field) {
@@ -312,12 +306,11 @@ static bool is_unit(const brio_fields *f, const char *p) {
 
 /* prose  whether words after BRIO_MOST_NUMBERS are left out, as in a long comment; otherwise they are an error. */
 static brio_status split(brio_fields *f, const char *p, size_t columns, bool prose, gaps *g) {
-    brio_status status = BRIO_OK;
     bool comma = false;
     f->count = 0;
     for (p = skip_blanks(p); *p && (!brio_starts_comment(p) || is_unit(f, p));) {
         if (prose && f->count == BRIO_MOST_NUMBERS) break;
-        BRIO_TRY(room(f));
+        BRIO_FORWARD(room(f));
         brio_field *field = &f->at[f->count++];
         const char *end = scan_field(p, field);
         p = skip_blanks(end);
@@ -326,9 +319,8 @@ static brio_status split(brio_fields *f, const char *p, size_t columns, bool pro
         if (comma) p = skip_blanks(p + 1);
     }
     if (g->words) join_words(f);
-    if (comma && f->count < columns) BRIO_TRY(add_field(f, (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0}));
-done:
-    return status;
+    if (comma && f->count < columns) BRIO_FORWARD(add_field(f, (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0}));
+    return BRIO_OK;
 }
 
 brio_status brio_fields_of_words(brio_fields *f, const char *line) {
@@ -363,7 +355,6 @@ static bool parse_decimal_comma(const char *p, const char *end, double *value) {
 }
 
 static brio_status split_decimal(brio_fields *f, const char *p, size_t columns) {
-    brio_status status = BRIO_OK;
     bool separator = false, words = false;
     f->count = 0;
     for (;;) {
@@ -372,16 +363,15 @@ static brio_status split_decimal(brio_fields *f, const char *p, size_t columns) 
         const char *end = skip_word(p, ends_word);
         brio_field field = {BRIO_FIELD_EMPTY, (double)NAN, p, (size_t)(end - p)};
         if (end > p) field.kind = parse_decimal_comma(p, end, &field.value) ? BRIO_FIELD_NUMBER : BRIO_FIELD_WORD;
-        BRIO_TRY(add_field(f, field));
+        BRIO_FORWARD(add_field(f, field));
         p = skip_blanks(end);
         separator = *p == ';';
         words |= field.kind == BRIO_FIELD_WORD && !separator;
         p += separator;
     }
     if (words) join_words(f);
-    if (separator && f->count < columns) BRIO_TRY(add_field(f, (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0}));
-done:
-    return status;
+    if (separator && f->count < columns) BRIO_FORWARD(add_field(f, (brio_field){BRIO_FIELD_EMPTY, (double)NAN, p, 0}));
+    return BRIO_OK;
 }
 
 /* --- which of both --- */
@@ -460,18 +450,16 @@ static bool has_point(brio_fields *f) {
 }
 
 brio_status brio_fields_of_line(brio_fields *f, const char *line, size_t columns) {
-    brio_status status = BRIO_OK;
     gaps g = {0};
     if (f->comma == BRIO_COMMA_DECIMAL) return split_decimal(f, line, columns);
-    BRIO_TRY(split(f, line, columns, false, &g));
+    BRIO_FORWARD(split(f, line, columns, false, &g));
     if (g.tight && g.other) {
         brio_comma comma = judge(line);
         if (comma == BRIO_COMMA_UNKNOWN) return unclear(f, line);
-        BRIO_TRY(decide(f, comma));
-        if (comma == BRIO_COMMA_DECIMAL) BRIO_TRY(split_decimal(f, line, columns));
+        BRIO_FORWARD(decide(f, comma));
+        if (comma == BRIO_COMMA_DECIMAL) BRIO_FORWARD(split_decimal(f, line, columns));
     } else if (f->comma == BRIO_COMMA_UNKNOWN && (g.comma || has_point(f))) {
-        BRIO_TRY(decide(f, BRIO_COMMA_SEPARATES));
+        BRIO_FORWARD(decide(f, BRIO_COMMA_SEPARATES));
     }
-done:
-    return status;
+    return BRIO_OK;
 }

@@ -129,14 +129,12 @@ static brio_axes_result axes_of(const xyz_reader *r, const name_list *list, size
 
 /* Takes the fields as names for a try. */
 static brio_status try_names(xyz_reader *r, brio_axes_result *result, size_t axes[3]) {
-    brio_status status = BRIO_OK;
     name_list *t = &r->tried;
-    BRIO_TRY(BRIO_RESERVE(r->stream->ctx, t->at, t->capacity, r->fields.count));
+    BRIO_FORWARD(BRIO_RESERVE(r->stream->ctx, t->at, t->capacity, r->fields.count));
     t->count = r->fields.count;
     for (size_t i = 0; i < t->count; i++) copy_name(t->at[i], &r->fields.at[i]);
     *result = axes_of(r, t, axes);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void keep_tried_names(xyz_reader *r, names_source source) {
@@ -167,35 +165,31 @@ static size_t find_tracks(const xyz_reader *r) {
 /* Reads a comment before the first row as a line of names if x, y and z, or angles, are among its words. Behind x, y and z
  * a number is a name, too. */
 static brio_status try_comment(xyz_reader *r, const char *comment) {
-    brio_status status = BRIO_OK;
     brio_axes_result result;
     size_t axes[3];
     if (r->num_columns || r->source > NAMES_COMMENT) return BRIO_OK;
-    BRIO_TRY(brio_fields_of_words(&r->fields, comment + strspn(comment, "#/;% \t")));
+    BRIO_FORWARD(brio_fields_of_words(&r->fields, comment + strspn(comment, "#/;% \t")));
     size_t all = r->fields.count;
     r->fields.count = find_tracks(r);
-    BRIO_TRY(try_names(r, &result, axes));
+    BRIO_FORWARD(try_names(r, &result, axes));
     bool words = count_words(r) == r->fields.count;
     if (!words && (result != BRIO_AXES_FOUND || !are_first(axes))) return BRIO_OK;
     bool clear = result == BRIO_AXES_FOUND || result == BRIO_AXES_ANGLES;
     bool first = result == BRIO_AXES_SEVERAL && r->source == NAMES_NONE;
     if (clear || first) keep_tried_names(r, NAMES_COMMENT);
     if (clear || first) r->tracks = r->fields.count < all;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Whether the line before the first row is one of names: words alone, or words that give x, y and z. */
 static brio_status try_plain_names(xyz_reader *r, bool *are_names) {
-    brio_status status = BRIO_OK;
     brio_axes_result result;
     size_t words = count_words(r), count = r->fields.count, axes[3];
     *are_names = false;
     if (!words || r->source == NAMES_PLAIN || r->header_passed) return BRIO_OK;
-    BRIO_TRY(try_names(r, &result, axes));
+    BRIO_FORWARD(try_names(r, &result, axes));
     *are_names = words == count || result == BRIO_AXES_FOUND;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- columns, from the names and the first row --- */
@@ -322,7 +316,6 @@ static brio_status name_by_extension(xyz_reader *r) {
                       both[][64] = {"", "", "", "intensity", "red", "green", "blue"},
                       colour[][64] = {"", "", "", "red", "green", "blue"},
                       normal[][64] = {"", "", "", "nx", "ny", "nz"};
-    brio_status status = BRIO_OK;
     size_t found = r->fields.count;
     const char(*names)[64] = NULL, *file = r->stream->name;
     if (has_extension(file, ".pts") && found == 4) names = intensity;
@@ -331,34 +324,31 @@ static brio_status name_by_extension(xyz_reader *r) {
     if (has_extension(file, ".xyzrgb") && found == 6) names = colour;
     if (has_extension(file, ".xyzn") && found == 6) names = normal;
     if (r->source != NAMES_NONE || !names) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(r->stream->ctx, r->names.at, r->names.capacity, found));
+    BRIO_FORWARD(BRIO_RESERVE(r->stream->ctx, r->names.at, r->names.capacity, found));
     memcpy(r->names.at, names, found * sizeof *names);
     r->names.count = found;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status plan_columns(xyz_reader *r) {
-    brio_status status = BRIO_OK;
     size_t found = r->fields.count;
-    BRIO_TRY(refuse_nameless(r));
-    BRIO_TRY(place_axes(r));
-    BRIO_TRY(name_by_extension(r));
-    if (r->tracks && found > r->names.count) BRIO_TRY(brio_builder_leave_out(r->builder, "tracks"));
+    BRIO_FORWARD(refuse_nameless(r));
+    BRIO_FORWARD(place_axes(r));
+    BRIO_FORWARD(name_by_extension(r));
+    if (r->tracks && found > r->names.count) BRIO_FORWARD(brio_builder_leave_out(r->builder, "tracks"));
     size_t count = r->names.count > found ? r->names.count : found;
-    BRIO_TRY(BRIO_ALLOC_ZERO(r->stream->ctx, r->columns, count));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(r->stream->ctx, r->columns, count));
     r->num_columns = count;
     for (size_t k = 0; k < 3; k++)
         if (r->axes[k] != NO_COLUMN) r->columns[r->axes[k]] = (column){COLUMN_AXIS, k};
     for (size_t i = 0; i < found; i++) {
         if (r->columns[i].role != COLUMN_IGNORED) continue;
         if (is_property(r, i))
-            BRIO_TRY(add_property(r, i));
+            BRIO_FORWARD(add_property(r, i));
         else
-            BRIO_TRY(name_left_out(r, i));
+            BRIO_FORWARD(name_left_out(r, i));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- what a user may not expect --- */
@@ -432,15 +422,14 @@ static brio_status read_point(const xyz_reader *r, double point[3]) {
 }
 
 static brio_status read_row(xyz_reader *r) {
-    brio_status status = BRIO_OK;
     double point[3];
-    BRIO_TRY(read_point(r, point));
+    BRIO_FORWARD(read_point(r, point));
     count_numbered(r, point[0]);
-    BRIO_TRY(brio_builder_vertex(r->builder, point));
+    BRIO_FORWARD(brio_builder_vertex(r->builder, point));
     brio_mesh *mesh = r->builder->mesh;
     r->there += r->fields.count;
     if (r->fields.count < r->num_columns) r->lacking += r->num_columns - r->fields.count;
-    BRIO_TRY(brio_limit_lacking(r->stream->ctx, r->stream->name, r->stream->line, r->lacking, r->there));
+    BRIO_FORWARD(brio_limit_lacking(r->stream->ctx, r->stream->name, r->stream->line, r->lacking, r->there));
     for (size_t i = 0; i < r->num_columns; i++) {
         const column *c = &r->columns[i];
         if (i < r->fields.count && c->role != COLUMN_IGNORED && fabs(r->fields.at[i].value) >= 0x1p53)
@@ -451,13 +440,11 @@ static brio_status read_row(xyz_reader *r) {
         if (f && f->kind == BRIO_FIELD_WORD && !brio_field_is_missing(f)) return bad_field(r, i);
         ((double *)mesh->properties[c->target].data)[mesh->num_vertices - 1] = f ? f->value : NAN;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads a line before the first row: the number of rows, names, or the first row itself. */
 static brio_status read_first(xyz_reader *r) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     bool are_names;
     double first = r->fields.at[0].kind == BRIO_FIELD_NUMBER ? r->fields.at[0].value : -1;
@@ -469,18 +456,16 @@ static brio_status read_first(xyz_reader *r) {
         return BRIO_OK;
     }
     size_t least = r->builder->flat ? 2 : 3;
-    BRIO_REQUIRE(s->ctx, r->fields.count >= least, BRIO_ERR_FORMAT, "%s: line %zu: expected %zu numbers, found %zu",
-                 s->name, s->line, least, r->fields.count - count_words(r));
-    BRIO_TRY(try_plain_names(r, &are_names));
+    BRIO_EXPECT(s->ctx, r->fields.count >= least, BRIO_ERR_FORMAT, "%s: line %zu: expected %zu numbers, found %zu",
+                s->name, s->line, least, r->fields.count - count_words(r));
+    BRIO_FORWARD(try_plain_names(r, &are_names));
     if (are_names && r->source == NAMES_GIVEN)
         r->header_passed = true;
     else if (are_names)
         keep_tried_names(r, NAMES_PLAIN);
     if (are_names) return BRIO_OK;
-    BRIO_TRY(plan_columns(r));
-    BRIO_TRY(read_row(r));
-done:
-    return status;
+    BRIO_FORWARD(plan_columns(r));
+    return read_row(r);
 }
 
 /* Whether the line is the one that tells Excel the separator; other separators than those that are known are refused. */
@@ -514,23 +499,20 @@ static bool begins_block(xyz_reader *r) {
 }
 
 static brio_status read_line(xyz_reader *r, char *line) {
-    brio_status status = BRIO_OK;
     bool separator;
     if (!r->num_columns && r->source == NAMES_NONE) r->tabs |= has_single_tabs(line);
     while (brio_is_blank(*line) && !(r->tabs && *line == '\t')) line++;
     if (!*line) return BRIO_OK;
     if (r->num_shown < 2) show_line(r, line);
-    BRIO_TRY(read_separator(r, line, &separator));
+    BRIO_FORWARD(read_separator(r, line, &separator));
     if (separator) return BRIO_OK;
     if (*line == ';' || brio_starts_comment(line)) return try_comment(r, line);
     if (r->tabs)
         for (char *tab = line; (tab = strchr(tab, '\t'));) *tab = ';';
     size_t columns = r->num_columns ? r->num_columns : r->source > NAMES_COMMENT ? r->names.count : 0;
-    BRIO_TRY(brio_fields_of_line(&r->fields, line, columns));
+    BRIO_FORWARD(brio_fields_of_line(&r->fields, line, columns));
     if (r->num_columns && begins_block(r)) return BRIO_OK;
-    BRIO_TRY(r->num_columns ? read_row(r) : read_first(r));
-done:
-    return status;
+    return r->num_columns ? read_row(r) : read_first(r);
 }
 
 /* Whether the last line has no end, and fewer fields than the rows before. */

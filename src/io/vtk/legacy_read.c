@@ -55,11 +55,10 @@ static brio_status expected(const legacy_reader *r, const char *what) {
 
 /* Reads the next word; at the end of the file it is empty. What stands behind it stays. */
 static brio_status next_word(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     size_t length = 0;
     for (;; s->begin++) {
-        if (!brio_stream_left(s)) BRIO_TRY(brio_stream_fill(s, 1));
+        if (!brio_stream_left(s)) BRIO_FORWARD(brio_stream_fill(s, 1));
         if (!brio_stream_left(s)) break;
         char c = s->buffer[s->begin];
         if (brio_is_blank(c) && length) break;
@@ -69,40 +68,34 @@ static brio_status next_word(legacy_reader *r) {
         r->word[length++] = c;
     }
     r->word[length] = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Moves behind the end of the line.   blank  NULL, or receives whether it has only blanks. */
 static brio_status end_line(legacy_reader *r, bool *blank) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     if (blank) *blank = true;
     for (bool ended = false; !ended;) {
-        if (!brio_stream_left(s)) BRIO_TRY(brio_stream_fill(s, 1));
+        if (!brio_stream_left(s)) BRIO_FORWARD(brio_stream_fill(s, 1));
         if (!brio_stream_left(s)) return BRIO_OK;
         char c = s->buffer[s->begin++];
         ended = c == '\n';
         if (blank && !brio_is_blank(c)) *blank = false;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status take_count(legacy_reader *r, uint64_t *count) {
-    brio_status status = BRIO_OK;
     const char *at = r->word;
-    BRIO_TRY(next_word(r));
+    BRIO_FORWARD(next_word(r));
     if (!brio_parse_count(&at, count) || *at || *count > UINT64_MAX >> 8) return expected(r, "a number of rows");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads a name, in which %20 stands for a blank. */
 static brio_status take_name(legacy_reader *r, char name[BRIO_XML_VALUE]) {
-    brio_status status = BRIO_OK;
     size_t length = 0;
-    BRIO_TRY(next_word(r));
+    BRIO_FORWARD(next_word(r));
     for (const char *c = r->word; *c && length < BRIO_XML_VALUE - 1; c++) {
         unsigned code = 0;
         int used = 0;
@@ -111,8 +104,7 @@ static brio_status take_name(legacy_reader *r, char name[BRIO_XML_VALUE]) {
         c += coded ? 2 : 0;
     }
     name[length] = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status take_type(legacy_reader *r, int *type) {
@@ -136,79 +128,68 @@ static brio_status take_type(legacy_reader *r, int *type) {
                  {"bit", BITS},
                  {"string", WORDS},
                  {"utf8_string", WORDS}};
-    brio_status status = BRIO_OK;
-    BRIO_TRY(next_word(r));
+    BRIO_FORWARD(next_word(r));
     *type = UNKNOWN;
     for (size_t i = 0; i < sizeof types / sizeof *types; i++)
         if (!strcasecmp(r->word, types[i].name)) *type = types[i].type;
     if (*type == UNKNOWN) return expected(r, "a type of numbers, such as float");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- arrays --- */
 
 static brio_status take_part(legacy_reader *r, int type, size_t count, char *to) {
-    brio_status status = BRIO_OK;
     size_t size = brio_vtk_type_size(type);
     const char *bytes = NULL;
     if (!r->text) {
-        BRIO_TRY(brio_stream_take(r->stream, count * size, &bytes));
+        BRIO_FORWARD(brio_stream_take(r->stream, count * size, &bytes));
         brio_scalar_gather(to, bytes, count, size, size, brio_host_is_little());
         return BRIO_OK;
     }
     for (size_t i = 0; i < count; i++) {
-        BRIO_TRY(next_word(r));
+        BRIO_FORWARD(next_word(r));
         if (!brio_vtk_parse(r->word, type, to + i * size)) return expected(r, brio_vtk_type_name(type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads `count` numbers behind the end of this line.   out  owned by the caller (brio_release of its bytes), on failure too. */
 static brio_status take_values(legacy_reader *r, int type, uint64_t count, brio_vtk_values *out) {
-    brio_status status = BRIO_OK;
     size_t size = brio_vtk_type_size(type), capacity = 0;
     *out = (brio_vtk_values){.type = type, .count = count};
-    BRIO_TRY(end_line(r, NULL));
-    BRIO_TRY(brio_stream_expect(r->stream, count, r->text ? 1 : size, "a line before"));
-    BRIO_TRY(BRIO_RESERVE(r->stream->ctx, out->bytes, capacity, 1));
+    BRIO_FORWARD(end_line(r, NULL));
+    BRIO_FORWARD(brio_stream_expect(r->stream, count, r->text ? 1 : size, "a line before"));
+    BRIO_FORWARD(BRIO_RESERVE(r->stream->ctx, out->bytes, capacity, 1));
     for (uint64_t i = 0; i < count;) {
         size_t part = count - i < PART ? (size_t)(count - i) : PART;
-        BRIO_TRY(BRIO_RESERVE(r->stream->ctx, out->bytes, capacity, (size_t)(i + part) * size));
-        BRIO_TRY(take_part(r, type, part, out->bytes + i * size));
+        BRIO_FORWARD(BRIO_RESERVE(r->stream->ctx, out->bytes, capacity, (size_t)(i + part) * size));
+        BRIO_FORWARD(take_part(r, type, part, out->bytes + i * size));
         i += part;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Passes over a text with its length before it: the first two bits say how many bytes the length has. */
 static brio_status skip_text(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     const char *bytes = NULL;
-    BRIO_TRY(brio_stream_take(r->stream, 1, &bytes));
+    BRIO_FORWARD(brio_stream_take(r->stream, 1, &bytes));
     unsigned first = (uint8_t)bytes[0], more = (unsigned[]){7, 3, 1, 0}[first >> 6];
     uint64_t length = first & 63;
-    BRIO_TRY(brio_stream_take(r->stream, more, &bytes));
+    BRIO_FORWARD(brio_stream_take(r->stream, more, &bytes));
     for (unsigned i = 0; i < more; i++) length = length << 8 | (uint8_t)bytes[i];
-    BRIO_TRY(brio_stream_skip(r->stream, length));
-done:
-    return status;
+    return brio_stream_skip(r->stream, length);
 }
 
 /* Passes over an array of bits or texts. */
 static brio_status skip_others(legacy_reader *r, int type, uint64_t count) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(end_line(r, NULL));
+    BRIO_FORWARD(end_line(r, NULL));
     if (type == BITS && !r->text) return brio_stream_skip(r->stream, count / 8 + (count % 8 > 0));
     for (uint64_t i = 0; i < count; i++) {
-        if (!brio_stream_left(r->stream)) BRIO_TRY(brio_stream_fill(r->stream, 1));
+        if (!brio_stream_left(r->stream)) BRIO_FORWARD(brio_stream_fill(r->stream, 1));
         if (!brio_stream_left(r->stream)) return brio_stream_truncated(r->stream);
-        BRIO_TRY(type == BITS ? next_word(r) : r->text ? end_line(r, NULL) : skip_text(r));
+        BRIO_FORWARD(type == BITS ? next_word(r) : r->text ? end_line(r, NULL) : skip_text(r));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Takes an array of rows: it becomes properties, or is named as left out. */
@@ -263,154 +244,132 @@ done:
 
 /* Turns a list of cells with the number of corners before each into corners and offsets. */
 static brio_status split(legacy_reader *r, brio_vtk_cells *cells, uint64_t num_cells) {
-    brio_status status = BRIO_OK;
     int32_t *list = (int32_t *)(void *)cells->connectivity.bytes;
     uint64_t at = 0, to = 0, count = cells->connectivity.count;
     int64_t *ends = NULL;
-    BRIO_TRY(BRIO_ALLOC(r->stream->ctx, ends, num_cells));
+    BRIO_FORWARD(BRIO_ALLOC(r->stream->ctx, ends, num_cells));
     cells->offsets = (brio_vtk_values){(char *)ends, num_cells, BRIO_VTK_INT64};
     for (uint64_t i = 0; i < num_cells; i++) {
         uint64_t corners = at < count && list[at] >= 0 ? (uint64_t)list[at] : UINT64_MAX;
-        BRIO_REQUIRE(r->stream->ctx, at < count && corners <= count - at - 1, BRIO_ERR_FORMAT,
-                     "%s: cell %" PRIu64 " (counted from 0) does not end within the list of cells", r->stream->name, i);
+        BRIO_EXPECT(r->stream->ctx, at < count && corners <= count - at - 1, BRIO_ERR_FORMAT,
+                    "%s: cell %" PRIu64 " (counted from 0) does not end within the list of cells", r->stream->name, i);
         memmove(list + to, list + at + 1, corners * sizeof *list);
         at += corners + 1;
         to += corners;
         ends[i] = (int64_t)to;
     }
-    BRIO_REQUIRE(r->stream->ctx, at == count, BRIO_ERR_FORMAT,
-                 "%s: %" PRIu64 " cells of %" PRIu64 " numbers, the list has %" PRIu64, r->stream->name, num_cells, at,
-                 count);
+    BRIO_EXPECT(r->stream->ctx, at == count, BRIO_ERR_FORMAT,
+                "%s: %" PRIu64 " cells of %" PRIu64 " numbers, the list has %" PRIu64, r->stream->name, num_cells, at,
+                count);
     cells->connectivity.count = to;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads OFFSETS or CONNECTIVITY with its type and numbers. */
 static brio_status take_named(legacy_reader *r, const char *name, uint64_t count, brio_vtk_values *values) {
-    brio_status status = BRIO_OK;
     int type = 0;
-    BRIO_TRY(next_word(r));
+    BRIO_FORWARD(next_word(r));
     if (strcasecmp(r->word, name) != 0) return expected(r, name);
-    BRIO_TRY(take_type(r, &type));
+    BRIO_FORWARD(take_type(r, &type));
     if (type >= BRIO_VTK_TYPE_END) return expected(r, "numbers of cells");
-    BRIO_TRY(take_values(r, type, count, values));
-done:
-    return status;
+    return take_values(r, type, count, values);
 }
 
 static brio_status take_cells(legacy_reader *r, brio_vtk_section section) {
-    brio_status status = BRIO_OK;
     brio_vtk_cells *cells = &r->cells[section];
     uint64_t first, second;
-    BRIO_TRY(take_count(r, &first));
-    BRIO_TRY(take_count(r, &second));
+    BRIO_FORWARD(take_count(r, &first));
+    BRIO_FORWARD(take_count(r, &second));
     if (cells->connectivity.bytes) return expected(r, "each kind of cells once");
     cells->section = section;
     cells->piece = &r->piece;
     if (!r->offsets) {
         if (first > second) return expected(r, "at least one number for each cell");
-        BRIO_TRY(take_values(r, BRIO_SCALAR_INT32, second, &cells->connectivity));
-        BRIO_TRY(split(r, cells, first));
+        BRIO_FORWARD(take_values(r, BRIO_SCALAR_INT32, second, &cells->connectivity));
+        BRIO_FORWARD(split(r, cells, first));
         r->piece.num_cells[section] = first;
     } else if (first) {
         size_t size = 0;
-        BRIO_TRY(take_named(r, "OFFSETS", first, &cells->offsets));
-        BRIO_TRY(take_named(r, "CONNECTIVITY", second, &cells->connectivity));
+        BRIO_FORWARD(take_named(r, "OFFSETS", first, &cells->offsets));
+        BRIO_FORWARD(take_named(r, "CONNECTIVITY", second, &cells->connectivity));
         size = brio_vtk_type_size(cells->offsets.type);
         memmove(cells->offsets.bytes, cells->offsets.bytes + size, (size_t)(first - 1) * size); /* the first one is 0 */
         r->piece.num_cells[section] = cells->offsets.count = first - 1;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status take_cell_types(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     uint64_t count;
-    BRIO_TRY(take_count(r, &count));
+    BRIO_FORWARD(take_count(r, &count));
     if (r->cells[BRIO_VTK_CELLS].types.bytes || count != r->piece.num_cells[BRIO_VTK_CELLS])
         return expected(r, "one type for each cell");
-    BRIO_TRY(take_values(r, BRIO_SCALAR_INT32, count, &r->cells[BRIO_VTK_CELLS].types));
-done:
-    return status;
+    return take_values(r, BRIO_SCALAR_INT32, count, &r->cells[BRIO_VTK_CELLS].types);
 }
 
 static brio_status add_cells(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     for (int k = BRIO_VTK_CELLS; k < BRIO_VTK_SECTION_END; k++) {
         if (!r->piece.num_cells[k]) continue;
-        BRIO_REQUIRE(r->stream->ctx, k != BRIO_VTK_CELLS || r->cells[k].types.bytes, BRIO_ERR_FORMAT,
-                     "%s: cells without CELL_TYPES", r->stream->name);
-        BRIO_TRY(brio_vtk_add_cells(r->builder, &r->cells[k], &r->rows_of_faces));
+        BRIO_EXPECT(r->stream->ctx, k != BRIO_VTK_CELLS || r->cells[k].types.bytes, BRIO_ERR_FORMAT,
+                    "%s: cells without CELL_TYPES", r->stream->name);
+        BRIO_FORWARD(brio_vtk_add_cells(r->builder, &r->cells[k], &r->rows_of_faces));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- keywords --- */
 
 /* Passes over a block that ends with an empty line. */
 static brio_status skip_metadata(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     bool blank = false;
-    BRIO_TRY(end_line(r, NULL));
-    while (!blank) BRIO_TRY(end_line(r, &blank));
-done:
-    return status;
+    BRIO_FORWARD(end_line(r, NULL));
+    while (!blank) BRIO_FORWARD(end_line(r, &blank));
+    return BRIO_OK;
 }
 
 static brio_status take_field(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     char name[BRIO_XML_VALUE];
     uint64_t arrays, components, rows;
     int type = 0;
-    BRIO_TRY(next_word(r));
-    BRIO_TRY(take_count(r, &arrays));
+    BRIO_FORWARD(next_word(r));
+    BRIO_FORWARD(take_count(r, &arrays));
     while (arrays--) {
-        BRIO_TRY(take_name(r, name));
+        BRIO_FORWARD(take_name(r, name));
         while (!strcmp(name, "METADATA")) {
-            BRIO_TRY(skip_metadata(r));
-            BRIO_TRY(take_name(r, name));
+            BRIO_FORWARD(skip_metadata(r));
+            BRIO_FORWARD(take_name(r, name));
         }
-        BRIO_TRY(take_count(r, &components));
-        BRIO_TRY(take_count(r, &rows));
-        BRIO_TRY(take_type(r, &type));
-        BRIO_TRY(take_array(r, name, components, rows, type));
+        BRIO_FORWARD(take_count(r, &components));
+        BRIO_FORWARD(take_count(r, &rows));
+        BRIO_FORWARD(take_type(r, &type));
+        BRIO_FORWARD(take_array(r, name, components, rows, type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Reads what stands behind SCALARS: its number of components may be missing; a line with a table of colours follows. */
 static brio_status take_scalars(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     char name[BRIO_XML_VALUE];
     const char *at = r->word;
     uint64_t components = 1;
     int type = 0;
-    BRIO_TRY(take_name(r, name));
-    BRIO_TRY(take_type(r, &type));
-    BRIO_TRY(next_word(r));
-    if (brio_parse_count(&at, &components) && !*at) BRIO_TRY(next_word(r));
+    BRIO_FORWARD(take_name(r, name));
+    BRIO_FORWARD(take_type(r, &type));
+    BRIO_FORWARD(next_word(r));
+    if (brio_parse_count(&at, &components) && !*at) BRIO_FORWARD(next_word(r));
     if (strcasecmp(r->word, "LOOKUP_TABLE") != 0) return expected(r, "LOOKUP_TABLE");
-    BRIO_TRY(next_word(r));
-    BRIO_TRY(take_array(r, name, components, r->rows, type));
-done:
-    return status;
+    BRIO_FORWARD(next_word(r));
+    return take_array(r, name, components, r->rows, type);
 }
 
 /* Colours: bytes, or numbers from 0 to 1 in a text. */
 static brio_status take_colours(legacy_reader *r) {
-    brio_status status = BRIO_OK;
     char name[BRIO_XML_VALUE];
     uint64_t components;
-    BRIO_TRY(take_name(r, name));
-    BRIO_TRY(take_count(r, &components));
+    BRIO_FORWARD(take_name(r, name));
+    BRIO_FORWARD(take_count(r, &components));
     if (components == 3 || components == 4) strcpy(name, components == 3 ? "RGB" : "RGBA");
-    BRIO_TRY(take_array(r, name, components, r->rows, r->text ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_UINT8));
-done:
-    return status;
+    return take_array(r, name, components, r->rows, r->text ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_UINT8);
 }
 
 static brio_status take_table(legacy_reader *r) {
@@ -428,25 +387,20 @@ done:
 
 /* Reads an array of a kind that has always the same number of components.   components  0: they stand before the type. */
 static brio_status take_attribute(legacy_reader *r, uint64_t components) {
-    brio_status status = BRIO_OK;
     bool normals = !strcasecmp(r->word, "NORMALS");
     char name[BRIO_XML_VALUE];
     int type = 0;
-    BRIO_TRY(take_name(r, name));
-    if (!components) BRIO_TRY(take_count(r, &components));
-    BRIO_TRY(take_type(r, &type));
-    BRIO_TRY(take_array(r, normals ? "Normals" : name, components, r->rows, type));
-done:
-    return status;
+    BRIO_FORWARD(take_name(r, name));
+    if (!components) BRIO_FORWARD(take_count(r, &components));
+    BRIO_FORWARD(take_type(r, &type));
+    return take_array(r, normals ? "Normals" : name, components, r->rows, type);
 }
 
 static brio_status take_dataset(legacy_reader *r) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(next_word(r));
+    BRIO_FORWARD(next_word(r));
     r->known = !strcasecmp(r->word, "POLYDATA") || !strcasecmp(r->word, "UNSTRUCTURED_GRID");
     if (!r->known) return expected(r, "a data set POLYDATA or UNSTRUCTURED_GRID");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status take_owner(legacy_reader *r, owner whose) {
@@ -497,20 +451,18 @@ static brio_status take_keyword(legacy_reader *r) {
 }
 
 static brio_status take_header(legacy_reader *r) {
-    brio_status status = BRIO_OK;
-    for (int i = 0; i < 5; i++) BRIO_TRY(next_word(r)); /* # vtk DataFile Version 3.0 */
+    for (int i = 0; i < 5; i++) BRIO_FORWARD(next_word(r)); /* # vtk DataFile Version 3.0 */
     const char *at = r->word;
     uint64_t version;
     if (!brio_parse_count(&at, &version) || version < 1 || version > 5) return expected(r, "a version from 1.0 to 5.1");
     r->offsets = version == 5;
     snprintf(r->builder->version, sizeof r->builder->version, "%.8s", r->word);
-    BRIO_TRY(end_line(r, NULL));
-    BRIO_TRY(end_line(r, NULL)); /* the title */
-    BRIO_TRY(next_word(r));
+    BRIO_FORWARD(end_line(r, NULL));
+    BRIO_FORWARD(end_line(r, NULL)); /* the title */
+    BRIO_FORWARD(next_word(r));
     r->text = !strcasecmp(r->word, "ASCII");
     if (!r->text && strcasecmp(r->word, "BINARY") != 0) return expected(r, "ASCII or BINARY");
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_vtk_legacy_read(brio_stream *s, brio_builder *b) {

@@ -38,28 +38,23 @@ static brio_status put_integer(const legacy_writer *w, char before, uint64_t num
 /* --- cells --- */
 
 static brio_status put_cell(const legacy_writer *w, const uint32_t *corners, uint64_t count) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(put_integer(w, 0, count));
-    for (uint64_t i = 0; i < count; i++) BRIO_TRY(put_integer(w, ' ', corners[i]));
-    if (w->text) BRIO_TRY(brio_output_string(w->out, "\n"));
-done:
-    return status;
+    BRIO_FORWARD(put_integer(w, 0, count));
+    for (uint64_t i = 0; i < count; i++) BRIO_FORWARD(put_integer(w, ' ', corners[i]));
+    if (w->text) BRIO_FORWARD(brio_output_string(w->out, "\n"));
+    return BRIO_OK;
 }
 
 static brio_status put_cells(const legacy_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = w->mesh;
-    for (size_t t = 0; t < m->num_tetrahedra; t++) BRIO_TRY(put_cell(w, m->tetrahedra + 4 * t, 4));
+    for (size_t t = 0; t < m->num_tetrahedra; t++) BRIO_FORWARD(put_cell(w, m->tetrahedra + 4 * t, 4));
     for (size_t f = 0; f < m->num_faces; f++)
-        BRIO_TRY(put_cell(w, m->face_vertices + m->face_offsets[f], m->face_offsets[f + 1] - m->face_offsets[f]));
-    for (size_t e = 0; e < m->num_edges; e++) BRIO_TRY(put_cell(w, m->edges + 2 * e, 2));
-    for (uint32_t v = 0; v < w->num_verts; v++) BRIO_TRY(put_cell(w, &v, 1));
-done:
-    return status;
+        BRIO_FORWARD(put_cell(w, m->face_vertices + m->face_offsets[f], m->face_offsets[f + 1] - m->face_offsets[f]));
+    for (size_t e = 0; e < m->num_edges; e++) BRIO_FORWARD(put_cell(w, m->edges + 2 * e, 2));
+    for (uint32_t v = 0; v < w->num_verts; v++) BRIO_FORWARD(put_cell(w, &v, 1));
+    return BRIO_OK;
 }
 
 static brio_status put_types(const legacy_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = w->mesh;
     const char *end = w->text ? "\n" : "";
     for (uint64_t i = 0; i < w->num_cells; i++) {
@@ -69,11 +64,10 @@ static brio_status put_types(const legacy_writer *w) {
             uint64_t corners = m->face_offsets[f + 1] - m->face_offsets[f];
             type = corners == 3 ? TRIANGLE : corners == 4 ? QUAD : POLYGON;
         }
-        BRIO_TRY(put_integer(w, 0, (uint64_t)type));
-        BRIO_TRY(brio_output_string(w->out, end));
+        BRIO_FORWARD(put_integer(w, 0, (uint64_t)type));
+        BRIO_FORWARD(brio_output_string(w->out, end));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- properties --- */
@@ -85,17 +79,14 @@ static brio_status put_array_line(const legacy_writer *w, const char *name, int 
                                         [BRIO_SCALAR_INT16] = "short",   [BRIO_SCALAR_UINT16] = "unsigned_short",
                                         [BRIO_SCALAR_INT32] = "int",     [BRIO_SCALAR_UINT32] = "unsigned_int",
                                         [BRIO_SCALAR_FLOAT32] = "float", [BRIO_SCALAR_FLOAT64] = "double"};
-    brio_status status = BRIO_OK;
     for (; *name; name++) {
         unsigned char c = (unsigned char)*name;
         if (c <= ' ' || c == '%' || c == '"' || c > 126)
-            BRIO_TRY(brio_output_format(w->out, "%%%02X", c));
+            BRIO_FORWARD(brio_output_format(w->out, "%%%02X", c));
         else
-            BRIO_TRY(brio_output_bytes(w->out, name, 1));
+            BRIO_FORWARD(brio_output_bytes(w->out, name, 1));
     }
-    BRIO_TRY(brio_output_format(w->out, " %d %" PRIu64 " %s\n", components, rows, types[type]));
-done:
-    return status;
+    return brio_output_format(w->out, " %d %" PRIu64 " %s\n", components, rows, types[type]);
 }
 
 /* The properties of points or of faces, given as those of points, and the rows of 0 round them. */
@@ -105,32 +96,26 @@ typedef struct {
 } owner;
 
 static brio_status put_row(const legacy_writer *w, const brio_property *const *of, int count, const uint64_t *row) {
-    brio_status status = BRIO_OK;
     static const char zero[8];
     const brio_property none = {.type = of[0]->type, .data = (void *)(uintptr_t)zero};
-    for (int k = 0; k < count; k++) BRIO_TRY(put(w, k ? ' ' : 0, row ? of[k] : &none, row ? (size_t)*row : 0));
-    if (w->text) BRIO_TRY(brio_output_string(w->out, "\n"));
-done:
-    return status;
+    for (int k = 0; k < count; k++) BRIO_FORWARD(put(w, k ? ' ' : 0, row ? of[k] : &none, row ? (size_t)*row : 0));
+    if (w->text) BRIO_FORWARD(brio_output_string(w->out, "\n"));
+    return BRIO_OK;
 }
 
 /* Writes properties as one array.   name  NULL: that of the property. */
 static brio_status put_array(const legacy_writer *w, const owner *o, const char *name, const brio_property *const *of,
                              int count) {
-    brio_status status = BRIO_OK;
     uint64_t rows = o->of->num_vertices;
-    BRIO_TRY(put_array_line(w, name ? name : of[0]->name, count, o->before + rows + o->behind, of[0]->type));
-    for (uint64_t i = 0; i < o->before; i++) BRIO_TRY(put_row(w, of, count, NULL));
-    for (uint64_t i = 0; i < rows; i++) BRIO_TRY(put_row(w, of, count, &i));
-    for (uint64_t i = 0; i < o->behind; i++) BRIO_TRY(put_row(w, of, count, NULL));
-    BRIO_TRY(brio_output_string(w->out, "\n"));
-done:
-    return status;
+    BRIO_FORWARD(put_array_line(w, name ? name : of[0]->name, count, o->before + rows + o->behind, of[0]->type));
+    for (uint64_t i = 0; i < o->before; i++) BRIO_FORWARD(put_row(w, of, count, NULL));
+    for (uint64_t i = 0; i < rows; i++) BRIO_FORWARD(put_row(w, of, count, &i));
+    for (uint64_t i = 0; i < o->behind; i++) BRIO_FORWARD(put_row(w, of, count, NULL));
+    return brio_output_string(w->out, "\n");
 }
 
 /* Writes properties under a title. Colours of bytes and normals are one array each, unless its name is taken. */
 static brio_status put_properties(const legacy_writer *w, const char *title, const owner *o) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = o->of;
     brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
     const char *name = colour.count == 4 ? "RGBA" : "RGB";
@@ -139,52 +124,44 @@ static brio_status put_properties(const legacy_writer *w, const char *title, con
     size_t arrays =
         m->num_properties + 2 - (size_t)(colour.count ? colour.count : 1) - (size_t)(normal.count ? normal.count : 1);
     if (!m->num_properties) return BRIO_OK;
-    BRIO_TRY(brio_output_format(w->out, "%s %" PRIu64 "\nFIELD FieldData %zu\n", title,
-                                o->before + m->num_vertices + o->behind, arrays));
+    BRIO_FORWARD(brio_output_format(w->out, "%s %" PRIu64 "\nFIELD FieldData %zu\n", title,
+                                    o->before + m->num_vertices + o->behind, arrays));
     for (size_t i = 0; i < m->num_properties; i++) {
         const brio_property *p = &m->properties[i];
         if (colour.count && p == colour.of[0])
-            BRIO_TRY(put_array(w, o, name, colour.of, colour.count));
+            BRIO_FORWARD(put_array(w, o, name, colour.of, colour.count));
         else if (normal.count && p == normal.of[0])
-            BRIO_TRY(put_array(w, o, "Normals", normal.of, normal.count));
+            BRIO_FORWARD(put_array(w, o, "Normals", normal.of, normal.count));
         else if (!brio_channels_have(&colour, p) && !brio_channels_have(&normal, p))
-            BRIO_TRY(put_array(w, o, NULL, &p, 1));
+            BRIO_FORWARD(put_array(w, o, NULL, &p, 1));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the file --- */
 
 static brio_status put_points(const legacy_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = w->mesh;
-    BRIO_TRY(brio_output_format(w->out, "POINTS %zu %s\n", m->num_vertices, w->single ? "float" : "double"));
+    BRIO_FORWARD(brio_output_format(w->out, "POINTS %zu %s\n", m->num_vertices, w->single ? "float" : "double"));
     for (size_t i = 0; i < 3 * m->num_vertices; i++) {
         float single = w->single ? (float)m->vertices[i] : 0;
         double wide = m->vertices[i];
         brio_property number = {.type = w->single ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_FLOAT64,
                                 .data = w->single ? (void *)&single : (void *)&wide};
-        BRIO_TRY(put(w, i % 3 ? ' ' : i ? '\n' : 0, &number, 0));
+        BRIO_FORWARD(put(w, i % 3 ? ' ' : i ? '\n' : 0, &number, 0));
     }
-    BRIO_TRY(brio_output_string(w->out, "\n"));
-done:
-    return status;
+    return brio_output_string(w->out, "\n");
 }
 
 /* The title is one line of at most 255 characters. */
 static brio_status put_header(const legacy_writer *w, const char *comment) {
-    brio_status status = BRIO_OK;
     size_t length = comment ? strcspn(comment, "\r\n") : 0;
-    BRIO_TRY(brio_output_string(w->out, "# vtk DataFile Version 3.0\n"));
-    BRIO_TRY(brio_output_bytes(w->out, length ? comment : "brio", length ? (length < 255 ? length : 255) : 4));
-    BRIO_TRY(brio_output_format(w->out, "\n%s\nDATASET UNSTRUCTURED_GRID\n", w->text ? "ASCII" : "BINARY"));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_string(w->out, "# vtk DataFile Version 3.0\n"));
+    BRIO_FORWARD(brio_output_bytes(w->out, length ? comment : "brio", length ? (length < 255 ? length : 255) : 4));
+    return brio_output_format(w->out, "\n%s\nDATASET UNSTRUCTURED_GRID\n", w->text ? "ASCII" : "BINARY");
 }
 
 brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = job->mesh, faces = brio_mesh_faces_as_points(m);
     legacy_writer w = {.out = out, .mesh = m, .text = job->options->ascii, .single = job->options->float32};
     uint64_t corners = (m->num_faces ? m->face_offsets[m->num_faces] : 0) + 4 * (uint64_t)m->num_tetrahedra +
@@ -192,18 +169,17 @@ brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job) {
     w.num_verts = m->num_faces || m->num_edges || m->num_tetrahedra ? 0 : m->num_vertices;
     w.num_cells = m->num_faces + m->num_edges + m->num_tetrahedra + w.num_verts;
     uint64_t numbers = corners + w.num_verts + w.num_cells;
-    BRIO_REQUIRE(out->ctx, numbers <= INT32_MAX && m->num_vertices <= INT32_MAX, BRIO_ERR_ARGUMENT,
-                 "%s: cells of %" PRIu64 " numbers, a VTK file has at most %d: write .vtu", out->name, numbers,
-                 INT32_MAX);
-    BRIO_TRY(put_header(&w, job->options->comment));
-    BRIO_TRY(put_points(&w));
-    BRIO_TRY(brio_output_format(out, "CELLS %" PRIu64 " %" PRIu64 "\n", w.num_cells, numbers));
-    BRIO_TRY(put_cells(&w));
-    BRIO_TRY(brio_output_format(out, "\nCELL_TYPES %" PRIu64 "\n", w.num_cells));
-    BRIO_TRY(put_types(&w));
-    BRIO_TRY(brio_output_string(out, "\n"));
-    BRIO_TRY(put_properties(&w, "POINT_DATA", &(owner){m, 0, 0}));
-    if (m->num_faces) BRIO_TRY(put_properties(&w, "CELL_DATA", &(owner){&faces, m->num_tetrahedra, m->num_edges}));
-done:
-    return status;
+    BRIO_EXPECT(out->ctx, numbers <= INT32_MAX && m->num_vertices <= INT32_MAX, BRIO_ERR_ARGUMENT,
+                "%s: cells of %" PRIu64 " numbers, a VTK file has at most %d: write .vtu", out->name, numbers,
+                INT32_MAX);
+    BRIO_FORWARD(put_header(&w, job->options->comment));
+    BRIO_FORWARD(put_points(&w));
+    BRIO_FORWARD(brio_output_format(out, "CELLS %" PRIu64 " %" PRIu64 "\n", w.num_cells, numbers));
+    BRIO_FORWARD(put_cells(&w));
+    BRIO_FORWARD(brio_output_format(out, "\nCELL_TYPES %" PRIu64 "\n", w.num_cells));
+    BRIO_FORWARD(put_types(&w));
+    BRIO_FORWARD(brio_output_string(out, "\n"));
+    BRIO_FORWARD(put_properties(&w, "POINT_DATA", &(owner){m, 0, 0}));
+    if (m->num_faces) BRIO_FORWARD(put_properties(&w, "CELL_DATA", &(owner){&faces, m->num_tetrahedra, m->num_edges}));
+    return BRIO_OK;
 }

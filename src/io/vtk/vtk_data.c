@@ -40,17 +40,17 @@ brio_status brio_vtk_expect_rows(const brio_vtk_decoder *d, uint64_t bytes, uint
 }
 
 brio_status brio_vtk_read_values(brio_vtk_decoder *d, uint64_t bytes, uint64_t count, brio_vtk_values *out) {
-    brio_status status = BRIO_OK;
     brio_stream *s = d->stream;
     size_t size = brio_vtk_type_size(d->array->type), capacity = 0, used = 0, got = 0;
     *out = (brio_vtk_values){.type = d->array->type};
-    BRIO_TRY(brio_vtk_expect_rows(d, bytes, count, size));
+    BRIO_FORWARD(brio_vtk_expect_rows(d, bytes, count, size));
     if (s->size != BRIO_SIZE_UNKNOWN && bytes != UINT64_MAX) capacity = (size_t)bytes;
     if (!capacity) capacity = 1; /* a place for no values, too */
-    BRIO_TRY(BRIO_ALLOC(s->ctx, out->bytes, capacity));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, out->bytes, capacity));
     do {
-        BRIO_TRY(BRIO_RESERVE(s->ctx, out->bytes, capacity, bytes == used ? used : used + PART));
-        BRIO_TRY(brio_vtk_decoder_take(d, out->bytes + used, capacity - used < PART ? capacity - used : PART, &got));
+        BRIO_FORWARD(BRIO_RESERVE(s->ctx, out->bytes, capacity, bytes == used ? used : used + PART));
+        BRIO_FORWARD(
+            brio_vtk_decoder_take(d, out->bytes + used, capacity - used < PART ? capacity - used : PART, &got));
         if (d->swap) brio_scalar_gather(out->bytes + used, out->bytes + used, got / size, size, size, true);
         used += got;
         s->row = used / size;
@@ -58,8 +58,7 @@ brio_status brio_vtk_read_values(brio_vtk_decoder *d, uint64_t bytes, uint64_t c
     } while (got);
     out->count = used / size;
     if (count != UINT64_MAX && out->count != count) return brio_vtk_bad_rows(d, out->count, count);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- data of points --- */
@@ -88,19 +87,17 @@ static brio_vtk_column *find(const brio_vtk_data *data, const brio_vtk_array *a)
 }
 
 static brio_status add_columns(brio_vtk_data *data, const brio_vtk_decoder *d) {
-    brio_status status = BRIO_OK;
     const brio_vtk_array *a = d->array;
-    BRIO_REQUIRE(d->stream->ctx, data->num_columns + a->components <= BRIO_MOST_NUMBERS, BRIO_ERR_FORMAT,
-                 "%s: more than %d numbers a point", d->stream->name, BRIO_MOST_NUMBERS);
-    BRIO_TRY(BRIO_RESERVE(d->stream->ctx, data->columns, data->capacity, data->num_columns + a->components));
+    BRIO_EXPECT(d->stream->ctx, data->num_columns + a->components <= BRIO_MOST_NUMBERS, BRIO_ERR_FORMAT,
+                "%s: more than %d numbers a point", d->stream->name, BRIO_MOST_NUMBERS);
+    BRIO_FORWARD(BRIO_RESERVE(d->stream->ctx, data->columns, data->capacity, data->num_columns + a->components));
     for (uint64_t k = 0; k < a->components; k++) {
         brio_vtk_column *c = &data->columns[data->num_columns++];
         *c = (brio_vtk_column){.component = k, .components = a->components, .file_type = a->type};
         memcpy(c->source, a->name, sizeof c->source);
         c->type = a->type < BRIO_SCALAR_END ? (brio_scalar)a->type : BRIO_SCALAR_FLOAT64;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Names an array that becomes nothing. */
@@ -133,11 +130,10 @@ static bool convert_wide(char *to, const char *from, size_t rows, const brio_vtk
 }
 
 static brio_status append(brio_vtk_column *columns, const brio_vtk_decoder *d, const char *chunk, size_t rows) {
-    brio_status status = BRIO_OK;
     size_t size = brio_vtk_type_size(d->array->type), row = size * (size_t)d->array->components;
     for (size_t k = 0; k < d->array->components; k++) {
         brio_vtk_column *c = &columns[k];
-        BRIO_TRY(BRIO_RESERVE(d->stream->ctx, c->data, c->capacity, (c->rows + rows) * brio_scalar_size(c->type)));
+        BRIO_FORWARD(BRIO_RESERVE(d->stream->ctx, c->data, c->capacity, (c->rows + rows) * brio_scalar_size(c->type)));
         char *to = c->data + c->rows * brio_scalar_size(c->type);
         if (d->array->type < BRIO_SCALAR_END)
             brio_scalar_gather(to, chunk + k * size, rows, row, size, d->swap);
@@ -145,63 +141,55 @@ static brio_status append(brio_vtk_column *columns, const brio_vtk_decoder *d, c
             c->rounded |= convert_wide(to, chunk + k * size, rows, d);
         c->rows += rows;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Makes room for all rows at once. Their number was held against the file. */
 static brio_status reserve(brio_vtk_column *columns, const brio_vtk_decoder *d, uint64_t rows) {
-    brio_status status = BRIO_OK;
     for (size_t k = 0; k < d->array->components; k++) {
         brio_vtk_column *c = &columns[k];
         size_t need = (size_t)rows * brio_scalar_size(c->type);
         if (c->rows || c->capacity >= need) continue;
-        BRIO_TRY(BRIO_RESIZE(d->stream->ctx, c->data, need));
+        BRIO_FORWARD(BRIO_RESIZE(d->stream->ctx, c->data, need));
         c->capacity = need;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_vtk_read_data(brio_vtk_data *data, brio_builder *b, brio_vtk_decoder *d, uint64_t bytes,
                                uint64_t first, uint64_t rows) {
-    brio_status status = BRIO_OK;
     brio_vtk_column *columns = find(data, d->array);
     size_t row = (size_t)d->array->components * brio_vtk_type_size(d->array->type), got;
     uint64_t end = first + rows;
     if (!columns && first) return vtk_leave_out(data, b, d->array->name);
-    if (!columns) BRIO_TRY(add_columns(data, d));
+    if (!columns) BRIO_FORWARD(add_columns(data, d));
     if (!columns) columns = &data->columns[data->num_columns - d->array->components];
     if (columns->components != d->array->components || columns->file_type != d->array->type) return BRIO_OK;
     if (columns->rows == end && rows)
         return brio_fail(d->stream->ctx, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": two arrays %s", d->stream->name,
                          brio_stream_offset(d->stream), d->array->name);
     if (columns->rows != first) return BRIO_OK;
-    BRIO_TRY(brio_vtk_expect_rows(d, bytes, rows, row));
-    if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN) BRIO_TRY(reserve(columns, d, rows));
-    if (!data->chunk) BRIO_TRY(BRIO_ALLOC(d->stream->ctx, data->chunk, CHUNK));
+    BRIO_FORWARD(brio_vtk_expect_rows(d, bytes, rows, row));
+    if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN) BRIO_FORWARD(reserve(columns, d, rows));
+    if (!data->chunk) BRIO_FORWARD(BRIO_ALLOC(d->stream->ctx, data->chunk, CHUNK));
     for (;;) {
-        BRIO_TRY(brio_vtk_decoder_take(d, data->chunk, CHUNK / row * row, &got));
+        BRIO_FORWARD(brio_vtk_decoder_take(d, data->chunk, CHUNK / row * row, &got));
         if (!got) break;
         if (columns->rows + got / row > end || got % row)
             return brio_vtk_bad_rows(d, columns->rows - first + got / row, rows);
-        BRIO_TRY(append(columns, d, data->chunk, got / row));
+        BRIO_FORWARD(append(columns, d, data->chunk, got / row));
         d->stream->row = columns->rows - first;
     }
     if (columns->rows != end) return brio_vtk_bad_rows(d, columns->rows - first, rows);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_vtk_keep_array(brio_vtk_data *data, brio_stream *s, const brio_vtk_array *array,
                                 const brio_vtk_values *values) {
-    brio_status status = BRIO_OK;
     const brio_vtk_decoder d = {.stream = s, .array = array};
-    BRIO_TRY(add_columns(data, &d));
-    BRIO_TRY(append(&data->columns[data->num_columns - array->components], &d, values->bytes,
-                    (size_t)(values->count / array->components)));
-done:
-    return status;
+    BRIO_FORWARD(add_columns(data, &d));
+    return append(&data->columns[data->num_columns - array->components], &d, values->bytes,
+                  (size_t)(values->count / array->components));
 }
 
 /* --- properties --- */
@@ -234,25 +222,23 @@ static void vtk_choose_name(const brio_vtk_data *data, brio_builder *b, const br
 }
 
 brio_status brio_vtk_finish_point_data(brio_vtk_data *data, brio_builder *b) {
-    brio_status status = BRIO_OK;
     char name[64];
     for (size_t i = 0; i < data->num_columns; i++) {
         brio_vtk_column *c = &data->columns[i];
         if (c->rows != b->mesh->num_vertices) {
-            BRIO_TRY(vtk_leave_out(data, b, c->source));
+            BRIO_FORWARD(vtk_leave_out(data, b, c->source));
             continue;
         }
-        if (c->rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
+        if (c->rounded) BRIO_FORWARD(brio_builder_leave_out(b, "integers beyond 2^53"));
         vtk_choose_name(data, b, c, name);
         void *block = c->data;
         c->data = NULL;
         if (block)
-            BRIO_TRY(brio_builder_adopt_property(b, name, c->type, block));
+            BRIO_FORWARD(brio_builder_adopt_property(b, name, c->type, block));
         else
-            BRIO_TRY(brio_builder_property(b, name, c->type));
+            BRIO_FORWARD(brio_builder_property(b, name, c->type));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 void brio_vtk_data_free(brio_context *ctx, brio_vtk_data *data) {
@@ -280,18 +266,16 @@ static bool has_others(const brio_vtk_column *c, const uint8_t *taken) {
 
 static brio_status make_property(brio_vtk_data *data, brio_builder *b, const brio_vtk_face_rows *rows,
                                  brio_vtk_column *c) {
-    brio_status status = BRIO_OK;
     char name[64];
     size_t size = brio_scalar_size(c->type);
     vtk_choose_name(data, b, c, name);
-    BRIO_TRY(brio_builder_face_property(b, name, c->type));
+    BRIO_FORWARD(brio_builder_face_property(b, name, c->type));
     char *to = b->mesh->face_properties[b->mesh->num_face_properties - 1].data;
     for (size_t f = 0; f < rows->count; f++) memcpy(to + f * size, c->data + rows->row[f] * size, size);
-    if (c->rounded) BRIO_TRY(brio_builder_leave_out(b, "integers beyond 2^53"));
+    if (c->rounded) BRIO_FORWARD(brio_builder_leave_out(b, "integers beyond 2^53"));
     brio_release(b->ctx, c->data);
     c->data = NULL;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_vtk_finish_cell_data(brio_vtk_data *data, brio_builder *b, const brio_vtk_face_rows *rows,

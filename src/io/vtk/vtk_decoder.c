@@ -149,12 +149,11 @@ static brio_status bad(const brio_vtk_decoder *d, const char *what) {
 /* --- bytes as they are in the file --- */
 
 static brio_status take_encoded(brio_vtk_decoder *d, void *to, size_t size) {
-    brio_status status = BRIO_OK;
     char *out = to;
     brio_stream *s = d->stream;
     if (d->encoding == BRIO_VTK_BASE64) return brio_base64_take(&d->base64, s, to, size);
     while (size) {
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
         size_t part = brio_stream_left(s) < size ? brio_stream_left(s) : size;
         if (!part) return brio_stream_truncated(s);
         memcpy(out, s->buffer + s->begin, part);
@@ -162,8 +161,7 @@ static brio_status take_encoded(brio_vtk_decoder *d, void *to, size_t size) {
         out += part;
         size -= part;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status take_word(brio_vtk_decoder *d, uint64_t *word) {
@@ -196,19 +194,16 @@ static brio_status expect(const brio_vtk_decoder *d, uint64_t bytes) {
 
 /* Reads the sizes of the blocks. Their number is held against the file before there is memory for them. */
 static brio_status take_sizes(brio_vtk_decoder *d, uint64_t *packed) {
-    brio_status status = BRIO_OK;
     brio_vtk_blocks *b = &d->blocks;
     uint64_t bytes;
     if (__builtin_mul_overflow(b->count, d->header->word, &bytes)) bytes = UINT64_MAX;
-    BRIO_TRY(expect(d, bytes));
+    BRIO_FORWARD(expect(d, bytes));
     for (uint64_t i = 0; i < b->count; i++) {
-        BRIO_TRY(BRIO_RESERVE(d->stream->ctx, b->packed, b->capacity, i + 1));
-        BRIO_TRY(take_word(d, &b->packed[i]));
+        BRIO_FORWARD(BRIO_RESERVE(d->stream->ctx, b->packed, b->capacity, i + 1));
+        BRIO_FORWARD(take_word(d, &b->packed[i]));
         if (__builtin_add_overflow(*packed, b->packed[i], packed)) return bad(d, "has blocks of over 2^64 bytes");
     }
-    BRIO_TRY(expect(d, *packed));
-done:
-    return status;
+    return expect(d, *packed);
 }
 
 static brio_status open_blocks(brio_vtk_decoder *d, uint64_t *bytes) {
@@ -251,28 +246,26 @@ static brio_status begin_block(brio_vtk_decoder *d) {
 
 /* Finds compressed bytes of the present block. */
 static brio_status find_input(brio_vtk_decoder *d, brio_vtk_span *span) {
-    brio_status status = BRIO_OK;
     brio_stream *s = d->stream;
     uint64_t left = d->blocks.in_left;
     span->in_left = 0;
     if (!left) return BRIO_OK;
     if (d->encoding == BRIO_VTK_RAW) {
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
         if (!brio_stream_left(s)) return brio_stream_truncated(s);
         span->in = s->buffer + s->begin;
         span->in_left = brio_stream_left(s) < left ? brio_stream_left(s) : (size_t)left;
         return BRIO_OK;
     }
-    if (!d->input) BRIO_TRY(BRIO_ALLOC(s->ctx, d->input, INPUT));
+    if (!d->input) BRIO_FORWARD(BRIO_ALLOC(s->ctx, d->input, INPUT));
     if (d->input_begin == d->input_end) {
         d->input_begin = 0;
         d->input_end = left < INPUT ? (size_t)left : INPUT;
-        BRIO_TRY(brio_base64_take(&d->base64, s, d->input, d->input_end));
+        BRIO_FORWARD(brio_base64_take(&d->base64, s, d->input, d->input_end));
     }
     span->in = d->input + d->input_begin;
     span->in_left = d->input_end - d->input_begin;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Marks compressed bytes as used. */
@@ -316,24 +309,21 @@ done:
 }
 
 static brio_status take_inflated(brio_vtk_decoder *d, void *to, size_t size) {
-    brio_status status = BRIO_OK;
     brio_vtk_span span = {.out = to, .out_left = size};
     while (span.out_left) {
-        if (!d->blocks.open) BRIO_TRY(begin_block(d));
-        BRIO_TRY(inflate_some(d, &span));
+        if (!d->blocks.open) BRIO_FORWARD(begin_block(d));
+        BRIO_FORWARD(inflate_some(d, &span));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- text --- */
 
 /* Reads the next word. Its length is 0 where the text ends. */
 static brio_status next_word(brio_stream *s, char word[MOST_DIGITS + 1], size_t *length) {
-    brio_status status = BRIO_OK;
     *length = 0;
     for (;;) {
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
         if (!brio_stream_left(s)) return brio_stream_truncated(s);
         char c = s->buffer[s->begin];
         if (c == '<' || (brio_is_blank(c) && *length)) break;
@@ -342,8 +332,7 @@ static brio_status next_word(brio_stream *s, char word[MOST_DIGITS + 1], size_t 
         s->begin++;
     }
     word[*length] = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Parses an integer of 64 bits exactly. */
@@ -369,19 +358,17 @@ bool brio_vtk_parse(const char *word, int type, void *to) {
 }
 
 static brio_status take_text(brio_vtk_decoder *d, char *to, size_t size, size_t *got) {
-    brio_status status = BRIO_OK;
     char word[MOST_DIGITS + 1];
     size_t length, number = brio_vtk_type_size(d->array->type);
     for (*got = 0; *got + number <= size; *got += number) {
-        BRIO_TRY(next_word(d->stream, word, &length));
+        BRIO_FORWARD(next_word(d->stream, word, &length));
         if (!length) return BRIO_OK;
-        BRIO_REQUIRE(d->stream->ctx, brio_vtk_parse(word, d->array->type, to + *got), BRIO_ERR_FORMAT,
-                     "%s: byte %" PRIu64 ": array %s: expected a number of type %s, found \"%s\"", d->stream->name,
-                     brio_stream_offset(d->stream), d->array->name, brio_vtk_type_name(d->array->type),
-                     brio_excerpt_of(word).text);
+        BRIO_EXPECT(d->stream->ctx, brio_vtk_parse(word, d->array->type, to + *got), BRIO_ERR_FORMAT,
+                    "%s: byte %" PRIu64 ": array %s: expected a number of type %s, found \"%s\"", d->stream->name,
+                    brio_stream_offset(d->stream), d->array->name, brio_vtk_type_name(d->array->type),
+                    brio_excerpt_of(word).text);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- arrays --- */
@@ -392,7 +379,6 @@ static bool has_no_content(const brio_vtk_array *array) {
 
 brio_status brio_vtk_decoder_open(brio_vtk_decoder *d, const brio_vtk_array *array, brio_vtk_encoding encoding,
                                   uint64_t *bytes) {
-    brio_status status = BRIO_OK;
     d->array = array;
     d->encoding = encoding;
     d->base64 = (brio_base64){.used = 0};
@@ -400,12 +386,11 @@ brio_status brio_vtk_decoder_open(brio_vtk_decoder *d, const brio_vtk_array *arr
     d->swap = encoding != BRIO_VTK_TEXT && d->header->swap;
     *bytes = encoding == BRIO_VTK_TEXT ? UINT64_MAX : 0;
     if (encoding != BRIO_VTK_TEXT && !has_no_content(array)) {
-        BRIO_TRY(d->header->compressed ? open_blocks(d, bytes) : take_word(d, bytes));
-        if (!d->header->compressed) BRIO_TRY(expect(d, *bytes));
+        BRIO_FORWARD(d->header->compressed ? open_blocks(d, bytes) : take_word(d, bytes));
+        if (!d->header->compressed) BRIO_FORWARD(expect(d, *bytes));
     }
     d->left = *bytes;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_vtk_decoder_take(brio_vtk_decoder *d, void *to, size_t size, size_t *got) {

@@ -24,26 +24,23 @@ brio_status brio_xml_bad(brio_stream *s, const char *expected) {
 }
 
 brio_status brio_xml_skip_to(brio_stream *s, char mark, const char *expected) {
-    brio_status status = BRIO_OK;
     for (;;) {
-        BRIO_TRY(brio_stream_fill(s, 1));
+        BRIO_FORWARD(brio_stream_fill(s, 1));
         size_t left = brio_stream_left(s);
         if (!left) return brio_xml_bad(s, expected);
         const char *start = s->buffer + s->begin, *found = memchr(start, mark, left);
         s->begin += found ? (size_t)(found - start) : left;
         if (found) return BRIO_OK;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Finds the length of the tag that begins here, up to its '>', which does not count between quotes. The tag of a
  * comment ends with "-->". */
 static brio_status tag_length(brio_stream *s, size_t *length) {
-    brio_status status = BRIO_OK;
     char quote = 0;
     for (size_t n = 1;; n++) {
-        if (brio_stream_left(s) <= n) BRIO_TRY(brio_stream_fill(s, n + 1));
+        if (brio_stream_left(s) <= n) BRIO_FORWARD(brio_stream_fill(s, n + 1));
         if (brio_stream_left(s) <= n || n > MAX_TAG) return brio_xml_bad(s, "a tag with its end");
         const char *tag = s->buffer + s->begin;
         bool comment = n >= 3 && !memcmp(tag, "<!--", 4);
@@ -56,21 +53,18 @@ static brio_status tag_length(brio_stream *s, size_t *length) {
         *length = n;
         return BRIO_OK;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_xml_next_tag(brio_stream *s, const char *expected, const char **tag) {
-    brio_status status = BRIO_OK;
     size_t length = 0;
-    BRIO_TRY(brio_xml_skip_to(s, '<', expected));
-    BRIO_TRY(tag_length(s, &length));
+    BRIO_FORWARD(brio_xml_skip_to(s, '<', expected));
+    BRIO_FORWARD(tag_length(s, &length));
     char *start = s->buffer + s->begin;
     start[length] = 0;
     *tag = start + 1;
     s->begin += length + 1;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 bool brio_xml_is(const char *tag, const char *name) {
@@ -181,7 +175,6 @@ static brio_status read_piece(brio_stream *s, brio_vtk_header *h, const char *ta
                                                              [BRIO_VTK_LINES] = "NumberOfLines",
                                                              [BRIO_VTK_STRIPS] = "NumberOfStrips",
                                                              [BRIO_VTK_POLYS] = "NumberOfPolys"};
-    brio_status status = BRIO_OK;
     char value[BRIO_XML_VALUE];
     brio_vtk_piece piece = {.first_point = 0};
     uint64_t cells = 0;
@@ -192,19 +185,18 @@ static brio_status read_piece(brio_stream *s, brio_vtk_header *h, const char *ta
             return brio_xml_bad(s, "fewer than 2^64 points");
         cells = piece.first_cell = last->first_cell + brio_vtk_cells_of(last);
     }
-    BRIO_TRY(xml_count(s, tag, "NumberOfPoints", &piece.num_points));
+    BRIO_FORWARD(xml_count(s, tag, "NumberOfPoints", &piece.num_points));
     for (int k = 0; k < BRIO_VTK_SECTION_END; k++) {
         if (!counts[k]) continue;
         bool needed = k == BRIO_VTK_CELLS && !h->polygonal;
         if (needed || (h->polygonal && brio_xml_attribute(tag, counts[k], value)))
-            BRIO_TRY(xml_count(s, tag, counts[k], &piece.num_cells[k]));
+            BRIO_FORWARD(xml_count(s, tag, counts[k], &piece.num_cells[k]));
         if (__builtin_add_overflow(cells, piece.num_cells[k], &cells)) return brio_xml_bad(s, "fewer than 2^64 cells");
     }
-    BRIO_TRY(BRIO_RESERVE(s->ctx, h->pieces, h->piece_capacity, h->num_pieces + 1));
+    BRIO_FORWARD(BRIO_RESERVE(s->ctx, h->pieces, h->piece_capacity, h->num_pieces + 1));
     h->pieces[h->num_pieces++] = piece;
     h->section = BRIO_VTK_OTHER;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Sets the section of the arrays that follow, if the tag begins or ends one. */
@@ -239,7 +231,6 @@ static brio_status read_encoding(brio_stream *s, const char *tag, brio_vtk_array
 }
 
 brio_status brio_vtk_header_array(brio_stream *s, const brio_vtk_header *h, const char *tag, brio_vtk_array *a) {
-    brio_status status = BRIO_OK;
     char value[BRIO_XML_VALUE];
     *a = (brio_vtk_array){.section = h->section, .components = 1, .empty = xml_is_empty(tag)};
     if (!brio_xml_attribute(tag, "Name", a->name)) a->name[0] = 0;
@@ -251,10 +242,8 @@ brio_status brio_vtk_header_array(brio_stream *s, const brio_vtk_header *h, cons
         return BRIO_OK; /* words, or bits */
     if (a->type == BRIO_VTK_TYPE_END) return brio_xml_bad(s, "a DataArray of type Int8 to UInt64, Float32 or Float64");
     if (brio_xml_attribute(tag, "NumberOfComponents", value))
-        BRIO_TRY(xml_count(s, tag, "NumberOfComponents", &a->components));
-    BRIO_TRY(read_encoding(s, tag, a));
-done:
-    return status;
+        BRIO_FORWARD(xml_count(s, tag, "NumberOfComponents", &a->components));
+    return read_encoding(s, tag, a);
 }
 
 void brio_vtk_header_free(brio_context *ctx, brio_vtk_header *header) {

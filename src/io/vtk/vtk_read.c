@@ -66,58 +66,46 @@ static inline double number_of(const brio_vtk_values *values, uint64_t i) {
 
 /* Reads corner i of the cell, a vertex of the mesh. */
 static brio_status corner(const cell *c, uint64_t i, double *vertex) {
-    brio_status status = BRIO_OK;
     const brio_vtk_piece *piece = c->cells->piece;
     double index = number_of(&c->cells->connectivity, c->from + i);
-    BRIO_REQUIRE(
+    BRIO_EXPECT(
         c->builder->ctx, index >= 0 && index < (double)piece->num_points && index == floor(index), BRIO_ERR_FORMAT,
         "%s: cell %" PRIu64 " (counted from 0): point %.17g, expected one of the %" PRIu64 " points, counted from 0",
         c->builder->name, c->number, index, piece->num_points);
     *vertex = index + (double)piece->first_point;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Adds a polygon.   order  the places of its corners in the cell; NULL for all of them, as they come. */
 static brio_status add_face(const cell *c, const uint64_t *order, uint64_t count) {
-    brio_status status = BRIO_OK;
     double vertex = 0;
     for (uint64_t i = 0; i < count; i++) {
-        BRIO_TRY(corner(c, order ? order[i] : i, &vertex));
-        BRIO_TRY(brio_builder_corner(c->builder, vertex));
+        BRIO_FORWARD(corner(c, order ? order[i] : i, &vertex));
+        BRIO_FORWARD(brio_builder_corner(c->builder, vertex));
     }
-    BRIO_TRY(brio_builder_face(c->builder));
-done:
-    return status;
+    return brio_builder_face(c->builder);
 }
 
 static brio_status add_tetrahedron(const cell *c) {
-    brio_status status = BRIO_OK;
     double corners[4];
-    for (uint64_t i = 0; i < 4; i++) BRIO_TRY(corner(c, i, &corners[i]));
-    BRIO_TRY(brio_builder_tetrahedron(c->builder, corners));
-done:
-    return status;
+    for (uint64_t i = 0; i < 4; i++) BRIO_FORWARD(corner(c, i, &corners[i]));
+    return brio_builder_tetrahedron(c->builder, corners);
 }
 
 static brio_status add_strip(const cell *c) {
-    brio_status status = BRIO_OK;
     for (uint64_t i = 0; i + 2 < c->count; i++)
-        BRIO_TRY(add_face(c, (const uint64_t[3]){i, i + 1 + i % 2, i + 2 - i % 2}, 3));
-done:
-    return status;
+        BRIO_FORWARD(add_face(c, (const uint64_t[3]){i, i + 1 + i % 2, i + 2 - i % 2}, 3));
+    return BRIO_OK;
 }
 
 static brio_status add_line(const cell *c) {
-    brio_status status = BRIO_OK;
     double ends[2] = {0, 0};
     for (uint64_t i = 0; i + 1 < c->count; i++) {
-        BRIO_TRY(corner(c, i, &ends[0]));
-        BRIO_TRY(corner(c, i + 1, &ends[1]));
-        BRIO_TRY(brio_builder_edge(c->builder, ends));
+        BRIO_FORWARD(corner(c, i, &ends[0]));
+        BRIO_FORWARD(corner(c, i + 1, &ends[1]));
+        BRIO_FORWARD(brio_builder_edge(c->builder, ends));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Returns the corners that a cell of this type has at least. */
@@ -141,11 +129,9 @@ static uint64_t least_corners(int type) {
 }
 
 static brio_status add_typed(const cell *c, int type) {
-    brio_status status = BRIO_OK;
-    BRIO_REQUIRE(c->builder->ctx, c->count >= least_corners(type), BRIO_ERR_FORMAT,
-                 "%s: cell %" PRIu64 " (counted from 0): %" PRIu64 " corners, expected %" PRIu64
-                 " of a cell of type %d",
-                 c->builder->name, c->number, c->count, least_corners(type), type);
+    BRIO_EXPECT(c->builder->ctx, c->count >= least_corners(type), BRIO_ERR_FORMAT,
+                "%s: cell %" PRIu64 " (counted from 0): %" PRIu64 " corners, expected %" PRIu64 " of a cell of type %d",
+                c->builder->name, c->number, c->count, least_corners(type), type);
     switch (type) {
     case LINE:
     case POLY_LINE:
@@ -159,13 +145,13 @@ static brio_status add_typed(const cell *c, int type) {
     case QUAD:
         return add_face(c, NULL, c->count);
     case QUADRATIC_TRIANGLE:
-        BRIO_TRY(brio_builder_leave_out(c->builder, "curved sides of cells"));
+        BRIO_FORWARD(brio_builder_leave_out(c->builder, "curved sides of cells"));
         return add_face(c, NULL, 3);
     case QUADRATIC_QUAD:
-        BRIO_TRY(brio_builder_leave_out(c->builder, "curved sides of cells"));
+        BRIO_FORWARD(brio_builder_leave_out(c->builder, "curved sides of cells"));
         return add_face(c, NULL, 4);
     case QUADRATIC_TETRAHEDRON:
-        BRIO_TRY(brio_builder_leave_out(c->builder, "curved sides of cells"));
+        BRIO_FORWARD(brio_builder_leave_out(c->builder, "curved sides of cells"));
         return add_tetrahedron(c);
     case TETRAHEDRON:
         return add_tetrahedron(c);
@@ -175,8 +161,7 @@ static brio_status add_typed(const cell *c, int type) {
     default:
         return brio_builder_leave_out(c->builder, "cells of other types");
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status add_cell(const cell *c) {
@@ -193,25 +178,23 @@ static brio_status add_cell(const cell *c) {
 }
 
 brio_status brio_vtk_add_cells(brio_builder *b, const brio_vtk_cells *cells, brio_vtk_face_rows *rows) {
-    brio_status status = BRIO_OK;
     cell c = {.builder = b, .cells = cells};
     uint64_t first_row = brio_vtk_first_row(cells->piece, cells->section);
     for (; c.number < cells->piece->num_cells[cells->section]; c.number++) {
         double to = number_of(&cells->offsets, c.number);
-        if (c.number % BETWEEN_REPORTS == 0) BRIO_TRY(brio_progress(b->ctx, "read", 1));
-        BRIO_REQUIRE(b->ctx, to >= (double)c.from && to <= (double)cells->connectivity.count, BRIO_ERR_FORMAT,
-                     "%s: cell %" PRIu64 " (counted from 0): offset %.17g, expected %" PRIu64 " to %" PRIu64, b->name,
-                     c.number, to, c.from, cells->connectivity.count);
+        if (c.number % BETWEEN_REPORTS == 0) BRIO_FORWARD(brio_progress(b->ctx, "read", 1));
+        BRIO_EXPECT(b->ctx, to >= (double)c.from && to <= (double)cells->connectivity.count, BRIO_ERR_FORMAT,
+                    "%s: cell %" PRIu64 " (counted from 0): offset %.17g, expected %" PRIu64 " to %" PRIu64, b->name,
+                    c.number, to, c.from, cells->connectivity.count);
         c.count = (uint64_t)to - c.from;
-        BRIO_TRY(add_cell(&c));
+        BRIO_FORWARD(add_cell(&c));
         c.from += c.count;
         while (rows && rows->count < b->mesh->num_faces) {
-            BRIO_TRY(BRIO_RESERVE(b->ctx, rows->row, rows->capacity, rows->count + 1));
+            BRIO_FORWARD(BRIO_RESERVE(b->ctx, rows->row, rows->capacity, rows->count + 1));
             rows->row[rows->count++] = first_row + c.number;
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the file --- */
@@ -267,83 +250,75 @@ static void convert_points(const vtk_reader *r, double *to, size_t rows) {
 }
 
 static brio_status read_points(vtk_reader *r, uint64_t bytes, const brio_vtk_piece *piece) {
-    brio_status status = BRIO_OK;
     brio_vtk_decoder *d = &r->decoder;
     brio_mesh *m = r->builder->mesh;
     size_t row = 3 * brio_vtk_type_size(d->array->type), got;
-    BRIO_REQUIRE(d->stream->ctx, d->array->components == 3 && m->num_vertices == piece->first_point, BRIO_ERR_FORMAT,
-                 "%s: byte %" PRIu64 ": expected one array of points with 3 components for each piece, in their order",
-                 d->stream->name, brio_stream_offset(d->stream));
-    BRIO_TRY(brio_vtk_expect_rows(d, bytes, piece->num_points, row));
+    BRIO_EXPECT(d->stream->ctx, d->array->components == 3 && m->num_vertices == piece->first_point, BRIO_ERR_FORMAT,
+                "%s: byte %" PRIu64 ": expected one array of points with 3 components for each piece, in their order",
+                d->stream->name, brio_stream_offset(d->stream));
+    BRIO_FORWARD(brio_vtk_expect_rows(d, bytes, piece->num_points, row));
     /* the array's size was held against that of the file */
     if (bytes != UINT64_MAX && d->stream->size != BRIO_SIZE_UNKNOWN && !piece->first_point)
-        BRIO_TRY(brio_builder_expect_vertices(r->builder, piece->num_points));
-    if (!r->rows) BRIO_TRY(BRIO_ALLOC(d->stream->ctx, r->rows, ROWS * 3 * sizeof(double)));
+        BRIO_FORWARD(brio_builder_expect_vertices(r->builder, piece->num_points));
+    if (!r->rows) BRIO_FORWARD(BRIO_ALLOC(d->stream->ctx, r->rows, ROWS * 3 * sizeof(double)));
     for (;;) {
         uint64_t found = m->num_vertices - piece->first_point;
-        BRIO_TRY(brio_vtk_decoder_take(d, r->rows, ROWS * row, &got));
+        BRIO_FORWARD(brio_vtk_decoder_take(d, r->rows, ROWS * row, &got));
         if (!got) break;
         if (got % row || found + got / row > piece->num_points)
             return brio_vtk_bad_rows(d, found + got / row, piece->num_points);
-        BRIO_TRY(brio_builder_add_vertices(r->builder, got / row));
+        BRIO_FORWARD(brio_builder_add_vertices(r->builder, got / row));
         convert_points(r, m->vertices + 3 * (m->num_vertices - got / row), got / row);
         d->stream->row = found + got / row;
     }
     uint64_t found = m->num_vertices - piece->first_point;
     if (found != piece->num_points) return brio_vtk_bad_rows(d, found, piece->num_points);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- cells --- */
 
 /* Finds the arrays of a section of a piece, or makes them. The last sections are the likely ones. */
 static brio_status find_cells(vtk_reader *r, const brio_vtk_array *a, brio_vtk_cells **out) {
-    brio_status status = BRIO_OK;
     size_t first = a->piece * BRIO_VTK_SECTION_END, need = first + BRIO_VTK_SECTION_END;
     if (need > r->num_cells) {
-        BRIO_TRY(BRIO_RESERVE(r->stream->ctx, r->cells, r->cells_capacity, need));
+        BRIO_FORWARD(BRIO_RESERVE(r->stream->ctx, r->cells, r->cells_capacity, need));
         memset(r->cells + r->num_cells, 0, (need - r->num_cells) * sizeof *r->cells);
         r->num_cells = need;
     }
     *out = &r->cells[first + a->section];
     (*out)->section = a->section;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status read_cells(vtk_reader *r, uint64_t bytes, const brio_vtk_array *a) {
-    brio_status status = BRIO_OK;
     brio_vtk_cells *cells = NULL;
-    BRIO_TRY(find_cells(r, a, &cells));
+    BRIO_FORWARD(find_cells(r, a, &cells));
     bool connectivity = !strcmp(a->name, "connectivity");
     brio_vtk_values *target = connectivity                  ? &cells->connectivity
                               : !strcmp(a->name, "offsets") ? &cells->offsets
                                                             : &cells->types;
-    BRIO_REQUIRE(r->stream->ctx, !target->bytes, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": two arrays %s",
-                 r->stream->name, brio_stream_offset(r->stream), a->name);
+    BRIO_EXPECT(r->stream->ctx, !target->bytes, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": two arrays %s", r->stream->name,
+                brio_stream_offset(r->stream), a->name);
     uint64_t count = connectivity ? UINT64_MAX : r->header.pieces[a->piece].num_cells[a->section];
-    BRIO_TRY(brio_vtk_read_values(&r->decoder, bytes, count, target));
-done:
-    return status;
+    return brio_vtk_read_values(&r->decoder, bytes, count, target);
 }
 
 static brio_status add_cells(vtk_reader *r) {
-    brio_status status = BRIO_OK;
     for (size_t p = 0; p < r->header.num_pieces; p++)
         for (int k = BRIO_VTK_CELLS; k < BRIO_VTK_SECTION_END; k++) {
             size_t i = p * BRIO_VTK_SECTION_END + (size_t)k;
             if (!r->header.pieces[p].num_cells[k]) continue;
-            BRIO_REQUIRE(r->stream->ctx,
-                         i < r->num_cells && r->cells[i].connectivity.bytes && r->cells[i].offsets.bytes &&
-                             (k != BRIO_VTK_CELLS || r->cells[i].types.bytes),
-                         BRIO_ERR_FORMAT, "%s: expected arrays connectivity and offsets of the cells%s",
-                         r->stream->name, k == BRIO_VTK_CELLS ? ", and types" : "");
+            BRIO_EXPECT(r->stream->ctx,
+                        i < r->num_cells && r->cells[i].connectivity.bytes && r->cells[i].offsets.bytes &&
+                            (k != BRIO_VTK_CELLS || r->cells[i].types.bytes),
+                        BRIO_ERR_FORMAT, "%s: expected arrays connectivity and offsets of the cells%s", r->stream->name,
+                        k == BRIO_VTK_CELLS ? ", and types" : "");
             r->cells[i].piece = &r->header.pieces[p];
-            BRIO_TRY(brio_vtk_add_cells(r->builder, &r->cells[i], r->cell_data.num_columns ? &r->rows_of_faces : NULL));
+            BRIO_FORWARD(
+                brio_vtk_add_cells(r->builder, &r->cells[i], r->cell_data.num_columns ? &r->rows_of_faces : NULL));
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- arrays --- */
@@ -390,15 +365,13 @@ static brio_status note_left_out(vtk_reader *r, const brio_vtk_array *a) {
 }
 
 static brio_status take_array(vtk_reader *r, const char *tag) {
-    brio_status status = BRIO_OK;
     brio_vtk_array a;
-    BRIO_TRY(brio_vtk_header_array(r->stream, &r->header, tag, &a));
+    BRIO_FORWARD(brio_vtk_header_array(r->stream, &r->header, tag, &a));
     if (!is_kept(&a)) return note_left_out(r, &a);
     if (!a.appended) return read_array(r, &a, a.encoding);
-    BRIO_TRY(BRIO_RESERVE(r->stream->ctx, r->appended, r->appended_capacity, r->num_appended + 1));
+    BRIO_FORWARD(BRIO_RESERVE(r->stream->ctx, r->appended, r->appended_capacity, r->num_appended + 1));
     r->appended[r->num_appended++] = a;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static int compare_offsets(uint32_t i, uint32_t j, const void *user) {
@@ -408,60 +381,53 @@ static int compare_offsets(uint32_t i, uint32_t j, const void *user) {
 }
 
 static brio_status read_appended(vtk_reader *r, brio_vtk_encoding encoding) {
-    brio_status status = BRIO_OK;
     brio_stream *s = r->stream;
     uint64_t start, base = brio_stream_offset(s);
-    BRIO_TRY(BRIO_ALLOC(s->ctx, r->order, r->num_appended));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, r->order, r->num_appended));
     for (size_t i = 0; i < r->num_appended; i++) r->order[i] = (uint32_t)i;
     brio_sort_indices(r->order, r->num_appended, compare_offsets, r->appended);
     for (size_t i = 0; i < r->num_appended; i++) {
         const brio_vtk_array *a = &r->appended[r->order[i]];
         uint64_t at = brio_stream_offset(s);
-        BRIO_REQUIRE(s->ctx, !__builtin_add_overflow(base, a->offset, &start) && start >= at, BRIO_ERR_FORMAT,
-                     "%s: array %s has the offset %" PRIu64 ", where another one is", s->name, a->name, a->offset);
-        BRIO_REQUIRE(s->ctx, start <= s->size, BRIO_ERR_FORMAT,
-                     "%s: array %s has the offset %" PRIu64 ", beyond the end of the file at byte %" PRIu64, s->name,
-                     a->name, a->offset, s->size);
+        BRIO_EXPECT(s->ctx, !__builtin_add_overflow(base, a->offset, &start) && start >= at, BRIO_ERR_FORMAT,
+                    "%s: array %s has the offset %" PRIu64 ", where another one is", s->name, a->name, a->offset);
+        BRIO_EXPECT(s->ctx, start <= s->size, BRIO_ERR_FORMAT,
+                    "%s: array %s has the offset %" PRIu64 ", beyond the end of the file at byte %" PRIu64, s->name,
+                    a->name, a->offset, s->size);
         brio_stream_element(s, a->name[0] ? a->name : "array", 0);
-        BRIO_TRY(brio_stream_skip(s, start - at));
-        BRIO_TRY(read_array(r, a, encoding));
+        BRIO_FORWARD(brio_stream_skip(s, start - at));
+        BRIO_FORWARD(read_array(r, a, encoding));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the file --- */
 
 static brio_status begin_appended(vtk_reader *r, const char *tag) {
-    brio_status status = BRIO_OK;
     bool base64 = brio_xml_attribute_is(tag, "encoding", "base64");
     if (!base64 && !brio_xml_attribute_is(tag, "encoding", "raw"))
         return brio_xml_bad(r->stream, "appended data of encoding raw or base64");
-    BRIO_TRY(brio_xml_skip_to(r->stream, '_', "_ before the appended data"));
+    BRIO_FORWARD(brio_xml_skip_to(r->stream, '_', "_ before the appended data"));
     r->stream->begin++;
-    BRIO_TRY(read_appended(r, base64 ? BRIO_VTK_BASE64 : BRIO_VTK_RAW));
-done:
-    return status;
+    return read_appended(r, base64 ? BRIO_VTK_BASE64 : BRIO_VTK_RAW);
 }
 
 static brio_status read_file(vtk_reader *r) {
-    brio_status status = BRIO_OK;
     const char *tag;
     for (;;) {
-        BRIO_TRY(brio_xml_next_tag(r->stream, r->header.known ? "a tag /VTKFile" : "a tag VTKFile", &tag));
+        BRIO_FORWARD(brio_xml_next_tag(r->stream, r->header.known ? "a tag /VTKFile" : "a tag VTKFile", &tag));
         if (brio_xml_is(tag, "DataArray") || brio_xml_is(tag, "Array")) { /* Array: of words */
-            BRIO_TRY(take_array(r, tag));
+            BRIO_FORWARD(take_array(r, tag));
         } else if (brio_xml_is(tag, "AppendedData")) {
             if (r->num_appended) return begin_appended(r, tag);
             return BRIO_OK;
         } else if (brio_xml_is(tag, "/VTKFile")) {
             return r->num_appended ? brio_xml_bad(r->stream, "a tag AppendedData") : BRIO_OK;
         } else {
-            BRIO_TRY(brio_vtk_header_tag(r->stream, &r->header, tag));
+            BRIO_FORWARD(brio_vtk_header_tag(r->stream, &r->header, tag));
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void free_reader(vtk_reader *r) {

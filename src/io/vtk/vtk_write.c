@@ -61,17 +61,15 @@ static void fill_types(void *user, uint64_t first, size_t count, void *to) {
 }
 
 static brio_status write_cells(vtu_writer *w) {
-    brio_status status = BRIO_OK;
     brio_vtk_writer *xml = &w->xml;
-    BRIO_TRY(brio_output_string(xml->out, "<Cells>\n"));
-    BRIO_TRY(brio_vtk_write_array(
+    BRIO_FORWARD(brio_output_string(xml->out, "<Cells>\n"));
+    BRIO_FORWARD(brio_vtk_write_array(
         xml, &(brio_vtk_source){"connectivity", brio_vtk_index_type(xml), 1, w->num_corners, fill_connectivity, w}));
-    BRIO_TRY(
+    BRIO_FORWARD(
         brio_vtk_write_array(xml, &(brio_vtk_source){"offsets", BRIO_VTK_INT64, 1, w->num_cells, fill_offsets, w}));
-    BRIO_TRY(brio_vtk_write_array(xml, &(brio_vtk_source){"types", BRIO_SCALAR_UINT8, 1, w->num_cells, fill_types, w}));
-    BRIO_TRY(brio_output_string(xml->out, "</Cells>\n"));
-done:
-    return status;
+    BRIO_FORWARD(
+        brio_vtk_write_array(xml, &(brio_vtk_source){"types", BRIO_SCALAR_UINT8, 1, w->num_cells, fill_types, w}));
+    return brio_output_string(xml->out, "</Cells>\n");
 }
 
 brio_status brio_vtu_write(brio_output *out, const brio_write_job *job) {
@@ -145,14 +143,12 @@ typedef struct {
 } section;
 
 static brio_status write_section(vtp_writer *w, const section *s) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_format(w->xml.out, "<%s>\n", s->name));
-    BRIO_TRY(brio_vtk_write_array(
+    BRIO_FORWARD(brio_output_format(w->xml.out, "<%s>\n", s->name));
+    BRIO_FORWARD(brio_vtk_write_array(
         &w->xml, &(brio_vtk_source){"connectivity", brio_vtk_index_type(&w->xml), 1, s->num_corners, s->corners, w}));
-    BRIO_TRY(brio_vtk_write_array(&w->xml, &(brio_vtk_source){"offsets", BRIO_VTK_INT64, 1, s->num_cells, s->ends, w}));
-    BRIO_TRY(brio_output_format(w->xml.out, "</%s>\n", s->name));
-done:
-    return status;
+    BRIO_FORWARD(
+        brio_vtk_write_array(&w->xml, &(brio_vtk_source){"offsets", BRIO_VTK_INT64, 1, s->num_cells, s->ends, w}));
+    return brio_output_format(w->xml.out, "</%s>\n", s->name);
 }
 
 brio_status brio_vtp_write(brio_output *out, const brio_write_job *job) {
@@ -218,18 +214,16 @@ static bool is_finite(const brio_cells *cells, size_t vertex) {
 /* Numbers the finite vertices, if some are not. */
 static brio_status take_finite(brio_context *ctx, polyhedra *w) {
     const brio_cells *cells = w->cells;
-    brio_status status = BRIO_OK;
     size_t n = cells->num_vertices;
     for (size_t v = 0; v < n; v++) w->num_finite += is_finite(cells, v);
     if (w->num_finite == n) return BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, w->number, n));
-    BRIO_TRY(BRIO_ALLOC(ctx, w->finite, 3 * w->num_finite));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, w->number, n));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, w->finite, 3 * w->num_finite));
     for (size_t v = 0, kept = 0; v < n; v++) {
         w->number[v] = (uint32_t)kept;
         if (is_finite(cells, v)) memcpy(w->finite + 3 * kept++, cells->vertices + 3 * v, 3 * sizeof *w->finite);
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static uint32_t number_of(const polyhedra *w, uint32_t vertex) {
@@ -264,19 +258,17 @@ static void take_vertices(polyhedra *w, size_t c) {
 
 static brio_status take_cells(brio_context *ctx, polyhedra *w) {
     const brio_cells *cells = w->cells;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, w->vertex, (size_t)cells->corner_offsets[cells->face_offsets[cells->num_cells]]));
-    BRIO_TRY(BRIO_ALLOC(ctx, w->end, cells->num_cells));
-    BRIO_TRY(BRIO_ALLOC(ctx, w->polyhedron, cells->num_cells));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, w->vertex, (size_t)cells->corner_offsets[cells->face_offsets[cells->num_cells]]));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, w->end, cells->num_cells));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, w->polyhedron, cells->num_cells));
     for (size_t c = 0; c < cells->num_cells; c++) {
-        BRIO_TRY(brio_look(ctx, 16));
+        BRIO_FORWARD(brio_look(ctx, 16));
         if (!is_taken(w, c)) continue;
         take_vertices(w, c);
         w->polyhedron[w->num_polyhedra] = (uint32_t)c;
         w->end[w->num_polyhedra++] = w->num_vertices;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- arrays --- */
@@ -358,14 +350,11 @@ static void fill_counts(void *user, uint64_t first, size_t count, void *to) {
 }
 
 static brio_status write_arrays(polyhedra *w, const brio_vtk_source *arrays, size_t count) {
-    brio_status status = BRIO_OK;
-    for (size_t i = 0; i < count; i++) BRIO_TRY(brio_vtk_write_array(&w->xml, &arrays[i]));
-done:
-    return status;
+    for (size_t i = 0; i < count; i++) BRIO_FORWARD(brio_vtk_write_array(&w->xml, &arrays[i]));
+    return BRIO_OK;
 }
 
 static brio_status write_polyhedra(polyhedra *w) {
-    brio_status status = BRIO_OK;
     size_t n = w->num_polyhedra;
     int index = brio_vtk_index_type(&w->xml);
     const brio_vtk_source cells[] = {{"connectivity", index, 1, w->num_vertices, fill_vertices, w},
@@ -377,13 +366,11 @@ static brio_status write_polyhedra(polyhedra *w) {
                                     {"volume", BRIO_SCALAR_FLOAT64, 1, n, fill_volumes, w},
                                     {"area", BRIO_SCALAR_FLOAT64, 1, n, fill_areas, w},
                                     {"faces", BRIO_SCALAR_UINT32, 1, n, fill_counts, w}};
-    BRIO_TRY(brio_output_string(w->xml.out, "<Cells>\n"));
-    BRIO_TRY(write_arrays(w, cells, sizeof cells / sizeof *cells));
-    BRIO_TRY(brio_output_string(w->xml.out, "</Cells>\n<CellData>\n"));
-    BRIO_TRY(write_arrays(w, data, sizeof data / sizeof *data));
-    BRIO_TRY(brio_output_string(w->xml.out, "</CellData>\n"));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_string(w->xml.out, "<Cells>\n"));
+    BRIO_FORWARD(write_arrays(w, cells, sizeof cells / sizeof *cells));
+    BRIO_FORWARD(brio_output_string(w->xml.out, "</Cells>\n<CellData>\n"));
+    BRIO_FORWARD(write_arrays(w, data, sizeof data / sizeof *data));
+    return brio_output_string(w->xml.out, "</CellData>\n");
 }
 
 brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, const char *comment) {

@@ -48,16 +48,14 @@ static void pack_blocks(void *user, size_t begin, size_t end, int thread) {
 
 /* Appends the blocks of a batch, and stores their sizes in front.   first  the number of the first one. */
 static brio_status append(brio_vtk_appended *a, const batch *b, uint64_t first, size_t count) {
-    brio_status status = BRIO_OK;
     for (size_t i = 0; i < count; i++) {
         uint64_t size = b->sizes[i];
-        BRIO_TRY(BRIO_RESERVE(b->ctx, a->packed, a->capacity, a->packed_size + size));
+        BRIO_FORWARD(BRIO_RESERVE(b->ctx, a->packed, a->capacity, a->packed_size + size));
         memcpy(a->packed + (WORDS + first + i) * sizeof size, &size, sizeof size);
         memcpy(a->packed + a->packed_size, b->packed + i * brio_vtk_deflate_bound(BLOCK), size);
         a->packed_size += size;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status report(brio_vtk_writer *w, size_t size) {
@@ -136,56 +134,45 @@ int brio_vtk_index_type(const brio_vtk_writer *w) {
 /* --- tags --- */
 
 static brio_status write_escaped(brio_output *out, const char *text) {
-    brio_status status = BRIO_OK;
     for (; *text; text++) {
         const char *escape = *text == '&'   ? "&amp;"
                              : *text == '<' ? "&lt;"
                              : *text == '>' ? "&gt;"
                              : *text == '"' ? "&quot;"
                                             : NULL;
-        BRIO_TRY(escape ? brio_output_string(out, escape) : brio_output_bytes(out, text, 1));
+        BRIO_FORWARD(escape ? brio_output_string(out, escape) : brio_output_bytes(out, text, 1));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Writes a comment. Two hyphens would end an XML comment too early. */
 static brio_status write_comment(brio_output *out, const char *comment) {
-    brio_status status = BRIO_OK;
     if (!comment || !*comment) return BRIO_OK;
-    BRIO_TRY(brio_output_string(out, "<!-- "));
+    BRIO_FORWARD(brio_output_string(out, "<!-- "));
     for (char last = 0; *comment; last = *comment++) {
         char plain = *comment == '-' && last == '-' ? ' ' : *comment;
-        BRIO_TRY(brio_output_bytes(out, &plain, 1));
+        BRIO_FORWARD(brio_output_bytes(out, &plain, 1));
     }
-    BRIO_TRY(brio_output_string(out, " -->\n"));
-done:
-    return status;
+    return brio_output_string(out, " -->\n");
 }
 
 brio_status brio_vtk_begin(brio_vtk_writer *w) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(w->out->ctx, w->part, PART));
+    BRIO_FORWARD(BRIO_ALLOC(w->out->ctx, w->part, PART));
     if (w->job->options->compress) brio_progress_part(w->out->ctx, w->bar, 0, SHARE);
-    BRIO_TRY(brio_output_format(
+    BRIO_FORWARD(brio_output_format(
         w->out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\"%s>\n",
         w->kind, brio_host_is_little() ? "LittleEndian" : "BigEndian",
         w->job->options->compress ? " compressor=\"vtkZLibDataCompressor\"" : ""));
-    BRIO_TRY(write_comment(w->out, w->job->options->comment));
-    BRIO_TRY(brio_output_format(w->out, "<%s>\n", w->kind));
-done:
-    return status;
+    BRIO_FORWARD(write_comment(w->out, w->job->options->comment));
+    return brio_output_format(w->out, "<%s>\n", w->kind);
 }
 
 /* Writes a tag up to the format of the array. */
 static brio_status write_tag(brio_vtk_writer *w, const brio_vtk_source *a) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_format(w->out, "<DataArray type=\"%s\" Name=\"", brio_vtk_type_name(a->type)));
-    BRIO_TRY(write_escaped(w->out, a->name));
-    BRIO_TRY(brio_output_format(w->out, "\" NumberOfComponents=\"%d\"", a->components));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_format(w->out, "<DataArray type=\"%s\" Name=\"", brio_vtk_type_name(a->type)));
+    BRIO_FORWARD(write_escaped(w->out, a->name));
+    return brio_output_format(w->out, "\" NumberOfComponents=\"%d\"", a->components);
 }
 
 /* --- arrays --- */
@@ -193,15 +180,13 @@ done:
 /* Calls fill for the whole array, a part at a time.   take  receives each part. */
 static brio_status for_parts(brio_vtk_writer *w, const brio_vtk_source *a,
                              brio_status (*take)(brio_vtk_writer *w, const brio_vtk_source *a, size_t count)) {
-    brio_status status = BRIO_OK;
     size_t most = PART / brio_vtk_type_size(a->type) / (size_t)a->components * (size_t)a->components;
     for (uint64_t first = 0; first < a->count; first += most) {
         size_t count = (size_t)(a->count - first < most ? a->count - first : most);
         a->fill(a->user, first, count, w->part);
-        BRIO_TRY(take(w, a, count));
+        BRIO_FORWARD(take(w, a, count));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_raw_part(brio_vtk_writer *w, const brio_vtk_source *a, size_t count) {
@@ -209,73 +194,60 @@ static brio_status write_raw_part(brio_vtk_writer *w, const brio_vtk_source *a, 
 }
 
 static brio_status write_text_part(brio_vtk_writer *w, const brio_vtk_source *a, size_t count) {
-    brio_status status = BRIO_OK;
     const brio_property numbers = {.type = (brio_scalar)a->type, .data = w->part};
     size_t line = a->components > 1 ? (size_t)a->components : PER_LINE;
     for (size_t i = 0; i < count; i++) {
         char before = i % line ? ' ' : '\n';
-        BRIO_TRY(a->type == BRIO_VTK_INT64 ? brio_output_integer(w->out, before, ((const int64_t *)w->part)[i])
-                                           : brio_output_scalar(w->out, before, &numbers, i));
+        BRIO_FORWARD(a->type == BRIO_VTK_INT64 ? brio_output_integer(w->out, before, ((const int64_t *)w->part)[i])
+                                               : brio_output_scalar(w->out, before, &numbers, i));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_text(brio_vtk_writer *w, const brio_vtk_source *a) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(write_tag(w, a));
-    BRIO_TRY(brio_output_string(w->out, " format=\"ascii\">"));
-    BRIO_TRY(for_parts(w, a, write_text_part));
-    BRIO_TRY(brio_output_string(w->out, "\n</DataArray>\n"));
-done:
-    return status;
+    BRIO_FORWARD(write_tag(w, a));
+    BRIO_FORWARD(brio_output_string(w->out, " format=\"ascii\">"));
+    BRIO_FORWARD(for_parts(w, a, write_text_part));
+    return brio_output_string(w->out, "\n</DataArray>\n");
 }
 
 brio_status brio_vtk_write_array(brio_vtk_writer *w, const brio_vtk_source *source) {
-    brio_status status = BRIO_OK;
     if (w->job->options->ascii) return write_text(w, source);
-    BRIO_TRY(BRIO_RESERVE(w->out->ctx, w->appended, w->appended_capacity, w->num_appended + 1));
+    BRIO_FORWARD(BRIO_RESERVE(w->out->ctx, w->appended, w->appended_capacity, w->num_appended + 1));
     brio_vtk_appended *a = &w->appended[w->num_appended++];
     *a = (brio_vtk_appended){.source = *source};
-    if (w->job->options->compress) BRIO_TRY(vtk_pack(w, a));
-    BRIO_TRY(write_tag(w, source));
-    BRIO_TRY(brio_output_format(w->out, " format=\"appended\" offset=\"%llu\"/>\n", (unsigned long long)w->offset));
+    if (w->job->options->compress) BRIO_FORWARD(vtk_pack(w, a));
+    BRIO_FORWARD(write_tag(w, source));
+    BRIO_FORWARD(brio_output_format(w->out, " format=\"appended\" offset=\"%llu\"/>\n", (unsigned long long)w->offset));
     w->offset += a->packed ? a->packed_size : sizeof(uint64_t) + source->count * brio_vtk_type_size(source->type);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status write_appended(brio_vtk_writer *w) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_string(w->out, "<AppendedData encoding=\"raw\">\n_"));
+    BRIO_FORWARD(brio_output_string(w->out, "<AppendedData encoding=\"raw\">\n_"));
     for (size_t i = 0; i < w->num_appended; i++) {
         brio_vtk_appended *a = &w->appended[i];
         uint64_t bytes = a->source.count * brio_vtk_type_size(a->source.type);
         if (a->packed) {
-            BRIO_TRY(brio_output_bytes(w->out, a->packed, a->packed_size));
+            BRIO_FORWARD(brio_output_bytes(w->out, a->packed, a->packed_size));
             brio_release(w->out->ctx, a->packed);
             a->packed = NULL;
             continue;
         }
-        BRIO_TRY(brio_output_bytes(w->out, &bytes, sizeof bytes));
-        BRIO_TRY(for_parts(w, &a->source, write_raw_part));
+        BRIO_FORWARD(brio_output_bytes(w->out, &bytes, sizeof bytes));
+        BRIO_FORWARD(for_parts(w, &a->source, write_raw_part));
     }
-    BRIO_TRY(brio_output_string(w->out, "\n</AppendedData>\n"));
-done:
-    return status;
+    return brio_output_string(w->out, "\n</AppendedData>\n");
 }
 
 brio_status brio_vtk_end(brio_vtk_writer *w) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_output_format(w->out, "</Piece>\n</%s>\n", w->kind));
+    BRIO_FORWARD(brio_output_format(w->out, "</Piece>\n</%s>\n", w->kind));
     if (w->job->options->compress) {
         brio_progress_part(w->out->ctx, w->bar, SHARE, 1);
         w->out->expected = w->offset;
     }
-    if (!w->job->options->ascii) BRIO_TRY(write_appended(w));
-    BRIO_TRY(brio_output_string(w->out, "</VTKFile>\n"));
-done:
-    return status;
+    if (!w->job->options->ascii) BRIO_FORWARD(write_appended(w));
+    return brio_output_string(w->out, "</VTKFile>\n");
 }
 
 /* --- points --- */
@@ -334,7 +306,6 @@ static void make_names(const brio_mesh *m, char (*names)[64]) {
  * names, properties  room for them, which stays until the end of the file. */
 static brio_status write_properties(brio_vtk_writer *w, const brio_mesh *m, uint64_t before, uint64_t behind,
                                     char (*names)[64], brio_vtk_property *properties) {
-    brio_status status = BRIO_OK;
     const brio_channels colour = colour_of(m);
     make_names(m, names);
     for (size_t i = 0; i < m->num_properties; i++) {
@@ -350,36 +321,29 @@ static brio_status write_properties(brio_vtk_writer *w, const brio_mesh *m, uint
             source.components = colour.count;
             source.count *= (uint64_t)colour.count;
         }
-        BRIO_TRY(brio_vtk_write_array(w, &source));
+        BRIO_FORWARD(brio_vtk_write_array(w, &source));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_vtk_write_points(brio_vtk_writer *w) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = w->job->mesh;
     const brio_scalar type = w->job->options->float32 ? BRIO_SCALAR_FLOAT32 : BRIO_SCALAR_FLOAT64;
-    BRIO_TRY(BRIO_ALLOC(w->out->ctx, w->names, m->num_properties + m->num_face_properties));
-    BRIO_TRY(BRIO_ALLOC(w->out->ctx, w->properties, m->num_properties + m->num_face_properties));
-    BRIO_TRY(brio_output_string(w->out, "<Points>\n"));
-    BRIO_TRY(brio_vtk_write_array(
+    BRIO_FORWARD(BRIO_ALLOC(w->out->ctx, w->names, m->num_properties + m->num_face_properties));
+    BRIO_FORWARD(BRIO_ALLOC(w->out->ctx, w->properties, m->num_properties + m->num_face_properties));
+    BRIO_FORWARD(brio_output_string(w->out, "<Points>\n"));
+    BRIO_FORWARD(brio_vtk_write_array(
         w, &(brio_vtk_source){"Points", type, 3, 3 * (uint64_t)m->num_vertices, fill_coordinates, w}));
-    BRIO_TRY(brio_output_string(w->out, "</Points>\n<PointData>\n"));
-    BRIO_TRY(write_properties(w, m, 0, 0, w->names, w->properties));
-    BRIO_TRY(brio_output_string(w->out, "</PointData>\n"));
-done:
-    return status;
+    BRIO_FORWARD(brio_output_string(w->out, "</Points>\n<PointData>\n"));
+    BRIO_FORWARD(write_properties(w, m, 0, 0, w->names, w->properties));
+    return brio_output_string(w->out, "</PointData>\n");
 }
 
 brio_status brio_vtk_write_cell_data(brio_vtk_writer *w, uint64_t before, uint64_t behind) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = w->job->mesh, faces = brio_mesh_faces_as_points(m);
     if (!m->num_faces || !m->num_face_properties) return BRIO_OK;
-    BRIO_TRY(brio_output_string(w->out, "<CellData>\n"));
-    BRIO_TRY(
+    BRIO_FORWARD(brio_output_string(w->out, "<CellData>\n"));
+    BRIO_FORWARD(
         write_properties(w, &faces, before, behind, w->names + m->num_properties, w->properties + m->num_properties));
-    BRIO_TRY(brio_output_string(w->out, "</CellData>\n"));
-done:
-    return status;
+    return brio_output_string(w->out, "</CellData>\n");
 }
