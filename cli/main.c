@@ -2,12 +2,13 @@
  *
  * Finds the command, reads its options, runs it, and reports: facts to standard output (as JSON with --json), messages
  * to standard error, and the status as the exit code. */
-#include "commands.h"
-#include "files.h"
-#include "help.h"
-#include "hints.h"
-#include "interrupt.h"
-#include "plain.h"
+#include "cli/run/commands.h"
+#include "cli/files/files.h"
+#include "cli/files/read_write.h"
+#include "cli/help/help.h"
+#include "cli/steps/hints.h"
+#include "cli/run/interrupt.h"
+#include "cli/report/plain.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
@@ -138,6 +139,7 @@ static int run_command(const command *c, int argc, char **argv) {
         free(arguments);
         return printed() ? 0 : cli_exit_code(BRIO_ERR_WRITE);
     }
+    TRY(cli_check_common(&r));
     TRY(cli_begin(&r));
     cli_opening_facts(&r);
     r.lap = cli_clock();

@@ -1,6 +1,6 @@
 /* The completion of bash: commands, options, the words that options take, files by extension. It needs bash 4 and
  * nothing else. */
-#include "pages.h"
+#include "cli/pages/pages.h"
 #include <string.h>
 
 static const char HEAD[] =

@@ -1,7 +1,7 @@
 /* Manual pages in the language of man(7). */
-#include "../glossary.h"
-#include "../manual.h"
-#include "pages.h"
+#include "cli/report/glossary.h"
+#include "cli/help/manual.h"
+#include "cli/pages/pages.h"
 #include <ctype.h>
 #include <string.h>
 

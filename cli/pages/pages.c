@@ -1,6 +1,6 @@
 /* brio-pages FOLDER DATE: writes man1/brio.1 and its like, bash/brio and zsh/_brio below a folder that has these three folders. It is
  * built and run with brio and not installed. */
-#include "pages.h"
+#include "cli/pages/pages.h"
 #include <errno.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #ifndef BRIO_CLI_PAGES_H
 #define BRIO_CLI_PAGES_H
 
-#include "../commands.h"
+#include "cli/run/commands.h"
 
 /** brio(1): the commands, options of every command, which method fits which points, exit codes.
  *  date  of the page, YYYY-MM-DD. */

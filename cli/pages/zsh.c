@@ -1,5 +1,5 @@
 /* The completion of zsh: a table of _arguments for each command. */
-#include "pages.h"
+#include "cli/pages/pages.h"
 #include <string.h>
 
 /* Within single quotes and brackets; a colon would end the text. */

@@ -2,7 +2,7 @@
 docs/architecture.md shows. Programs see the public headers alone, and the library neither allocates, prints nor exits, but
 for the two files of src/base that do so for all.
 
-A line of arrows.txt: a room of src, and the rooms that its files may include, besides their own; a header stands for
+A line of arrows.txt: a room of src or of cli, and the rooms that its files may include, besides their own; a header stands for
 itself alone. The rooms that a line names stand above it, so that no arrows run in a circle."""
 
 import pathlib
@@ -21,7 +21,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.M)
 
 def find_included(root, path, included):
     """The folders and name, below the root, of what an include line names; empty for headers of the system."""
-    for folder in (path.parent, root / "src", root / "include"):
+    for folder in (path.parent, root / "src", root / "include", root):
         found = (folder / included).resolve()
         if found.is_file() and found.is_relative_to(root):
             return found.relative_to(root).parts
@@ -29,8 +29,8 @@ def find_included(root, path, included):
 
 
 def room_of(parts):
-    """The room of a file below src: its folder."""
-    return "/".join(parts[1:-1])
+    """The room of a file: its folder, of src without that name."""
+    return "/".join(parts[1:-1] if parts[0] == "src" else parts[:-1])
 
 
 def read_arrows(text):
@@ -48,10 +48,10 @@ def read_arrows(text):
 def may_include(arrows, path_parts, included_parts):
     if not included_parts or included_parts[:2] == ("include", "brio"):
         return True
-    if path_parts[0] != "src" or included_parts[0] != "src":
+    if path_parts[0] not in ("src", "cli") or included_parts[0] != path_parts[0]:
         return included_parts[0] == path_parts[0]
     seen = arrows.get(room_of(path_parts), ())
-    return room_of(included_parts) in seen or "/".join(included_parts[1:]) in seen
+    return room_of(included_parts) in seen or "/".join(included_parts[included_parts[0] == "src":]) in seen
 
 
 def complaints(root, arrows, path):

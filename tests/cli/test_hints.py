@@ -1,6 +1,6 @@
 """Advice that is true: every hint, every warning and every error that proposes something, evoked, and then followed.
 
-ROWS has a row for each sentence of cli/sentences.h: a line that evokes it, and what follows. Following it solves the
+ROWS has a row for each sentence of cli/run/sentences.h: a line that evokes it, and what follows. Following it solves the
 problem, or leads to another, true, end. ERRORS has the same for the sentences of errors, in cli/ and src/, that say what to
 do. The sources are searched: a sentence without a row fails the test, and so does a row without its sentence.
 """
@@ -36,7 +36,7 @@ UNSEEN = {"WARNING_PROVEN"}
 
 def sentences():
     """The rows of the table in the sources: name and sentence."""
-    with open(os.path.join(ROOT, "cli", "sentences.h")) as f:
+    with open(os.path.join(ROOT, "cli", "run", "sentences.h")) as f:
         text = f.read().replace("\\\n", "")
     return {name: joined(strings) for name, strings in re.findall(r"#define ((?:HINT|WARNING)_\w+)\s+(%s)" % STRINGS, text)}
 
@@ -310,14 +310,14 @@ class Hints(CliTest):
         self.assertEqual(set(ROWS) | UNSEEN, set(self.sentences))
 
     def test_sentences_stand_in_the_table_alone(self):
-        for path in glob.glob(os.path.join(ROOT, "cli", "*.c")):
+        for path in glob.glob(os.path.join(ROOT, "cli", "**", "*.c"), recursive=True):
             with open(path) as f:
                 text = f.read()
             self.assertEqual(re.findall(r"cli_(?:hint|warn)\(r, (?!HINT_|WARNING_)[^)]*", text), [], path)
-        with open(os.path.join(ROOT, "cli", "sentences.h")) as f:
+        with open(os.path.join(ROOT, "cli", "run", "sentences.h")) as f:
             names = set(re.findall(r"#define (\w+_\w+) ", f.read())) - {"BRIO_CLI_SENTENCES_H"}
         used = set()
-        for path in glob.glob(os.path.join(ROOT, "cli", "*.c")):
+        for path in glob.glob(os.path.join(ROOT, "cli", "**", "*.c"), recursive=True):
             with open(path) as f:
                 used |= set(re.findall(r"\b(?:HINT|WARNING)_\w+", f.read()))
         self.assertEqual(names, used)

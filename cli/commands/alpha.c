@@ -1,0 +1,172 @@
+/* brio alpha: the boundary of an alpha shape of the points of a file, and the alpha filtration. */
+#include "cli/steps/certificate.h"
+#include "cli/run/commands.h"
+#include "cli/steps/estimate.h"
+#include "cli/files/files.h"
+#include "cli/files/read_write.h"
+#include "cli/steps/hints.h"
+#include "cli/run/interrupt.h"
+#include "cli/steps/properties.h"
+#include "cli/steps/weights.h"
+#include <errno.h>
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct arguments {
+    weights_options weights;
+    const char *alpha, *filtration; /* as given, or NULL */
+} arguments;
+
+static const option options[] = {
+    {"alpha", 'A', OPTION_TEXT, offsetof(arguments, alpha), "A|auto",
+     "squared radius, as in the literature, GUDHI and CGAL; PyVista and Open3D take its root. auto: the least with all "
+     "points in one solid",
+     0},
+    {"filtration", 0, OPTION_OUTPUT, offsetof(arguments, filtration), "FILE",
+     "write all simplices with their values, sorted: lines for GUDHI; .sparse: the edges for ripser", 0},
+    WEIGHTS_ROWS(arguments, weights),
+    {0},
+};
+
+static const arguments defaults = {.weights.exponent = NO_EXPONENT};
+
+/* Sets *alpha to the number that was given; NaN for auto. */
+static brio_status read_alpha(run *r, const arguments *a, double *alpha) {
+    char *end = NULL;
+    if (!a->alpha) return cli_fail(r, BRIO_ERR_ARGUMENT, "no alpha: --alpha A or --alpha auto is missing");
+    *alpha = NAN;
+    if (!strcmp(a->alpha, "auto")) return BRIO_OK;
+    *alpha = strtod(a->alpha, &end);
+    if (end == a->alpha || *end || !isfinite(*alpha))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--alpha: expected a number or auto, got '%s'", a->alpha);
+    return BRIO_OK;
+}
+
+static brio_filtration_format filtration_format(const char *path) {
+    const char *dot = strrchr(path, '.');
+    return dot && !strcmp(dot, ".sparse") ? BRIO_FILTRATION_RIPSER : BRIO_FILTRATION_GUDHI;
+}
+
+/* Warns of squared radii that became infinite, or too close to 0 for all bits. With weights values of 0 are usual. */
+static void warn_beyond_doubles(run *r, const brio_alpha_complex *c, bool weighted) {
+    size_t beyond = 0, total = 0;
+    for (int k = 1; k < 4; k++)
+        for (size_t i = 0; i < c->counts[k]; i++, total++) {
+            double value = c->values[k][i];
+            beyond += isinf(value) || (fabs(value) < DBL_MIN && !(weighted && value == 0));
+        }
+    if (beyond) cli_warn(r, WARNING_BEYOND, beyond, total);
+}
+
+static brio_status write_filtration(run *r, const char *path, const brio_alpha_complex *complex) {
+    brio_status status = BRIO_OK;
+    size_t total = complex->counts[0] + complex->counts[1] + complex->counts[2] + complex->counts[3];
+    uint32_t *order = malloc(total * sizeof *order);
+    if (!order) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for the order of %zu simplices", total);
+    TRY(brio_alpha_order(r->ctx, complex, order));
+    cli_interrupt_writing(strcmp(path, "-") != 0);
+    status = brio_write_filtration(r->ctx, path, complex, order, filtration_format(path));
+    cli_interrupt_writing(false);
+    cli_lap(r, "filtration");
+done:
+    free(order);
+    return status;
+}
+
+static void report(run *r, const brio_alpha_complex *c, const brio_mesh *surface, const brio_alpha_shape_stats *s) {
+    facts *f = &r->facts;
+    cli_fact_text(f, "method", "alpha-shape");
+    cli_fact_real(f, "alpha", s->alpha);
+    cli_fact_real(f, "radius", s->alpha > 0 ? sqrt(s->alpha) : 0);
+    cli_fact_count(f, "samples", c->counts[0]);
+    cli_fact_count(f, "simplices", c->counts[0] + c->counts[1] + c->counts[2] + c->counts[3]);
+    cli_fact_count(f, "tetrahedra", s->tetrahedra);
+    cli_fact_count(f, "vertices", surface->num_vertices);
+    cli_fact_count(f, "faces", surface->num_faces);
+    cli_fact_count(f, "split", s->split);
+    cli_fact_count(f, "uncovered", s->uncovered);
+    cli_fact_count(f, "singular_vertices", s->singular_vertices);
+    cli_fact_count(f, "singular_edges", s->singular_edges);
+    cli_fact_count(f, "singular_facets", s->singular_facets);
+}
+
+static brio_status triangulate(run *r, const brio_mesh *input, const double *weights, brio_triangulation **t,
+                               brio_alpha_complex *complex) {
+    brio_delaunay_options o = brio_delaunay_options_default();
+    o.seed = r->common.seed;
+    FORWARD(brio_delaunay(r->ctx, input->vertices, weights, input->num_vertices, &o, t));
+    cli_lap(r, "delaunay");
+    FORWARD(brio_alpha_values(r->ctx, *t, input->vertices, weights, input->num_vertices, complex));
+    cli_lap(r, "values");
+    return BRIO_OK;
+}
+
+static brio_status make_shape(run *r, const brio_mesh *input, const brio_alpha_complex *complex, double alpha) {
+    brio_status status = BRIO_OK;
+    brio_mesh *surface = NULL;
+    brio_alpha_shape_stats s = {.size = sizeof s};
+    if (isnan(alpha)) TRY(brio_alpha_auto(r->ctx, complex, &alpha));
+    TRY(brio_alpha_shape(r->ctx, input->vertices, complex, alpha, &surface, &s));
+    cli_lap(r, "shape");
+    report(r, complex, surface, &s);
+    TRY(cli_carry_properties(r, input, NULL, surface));
+    TRY(cli_check_interrupt(r));
+    TRY(cli_certify(r, surface, 0));
+    TRY(cli_write(r, surface));
+done:
+    brio_mesh_free(surface);
+    return status;
+}
+
+static brio_status alpha(run *r) {
+    const arguments *a = r->arguments;
+    brio_mesh *input = NULL;
+    double *weights = NULL, value = NAN;
+    size_t usual;
+    brio_triangulation *t = NULL;
+    brio_alpha_complex complex = {.size = sizeof complex};
+    brio_status status = BRIO_OK;
+    TRY(read_alpha(r, a, &value));
+    TRY(cli_check_weights_options(r, &a->weights));
+    TRY(cli_require_output(r, cli_mesh_formats, a->filtration != NULL));
+    if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration, NULL));
+    TRY(cli_read_samples(r, r->operands[0], &input));
+    TRY(cli_weights(r, &a->weights, input, &weights));
+    TRY(cli_usual_points(r, input, weights, false, &usual));
+    TRY(cli_require_memory(r, cli_alpha_bytes(input, usual)));
+    cli_lap(r, "read");
+    status = triangulate(r, input, weights, &t, &complex);
+    cli_examine(r, status, input);
+    if (status != BRIO_OK) goto done;
+    if (a->filtration) warn_beyond_doubles(r, &complex, weights != NULL);
+    if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
+    status = make_shape(r, input, &complex, value);
+    cli_examine(r, status, input);
+done:
+    brio_alpha_complex_free(&complex);
+    brio_triangulation_free(t);
+    free(weights);
+    brio_mesh_free(input);
+    return status;
+}
+
+const command cli_alpha = {
+    .name = "alpha",
+    .operands = "IN",
+    .summary = "boundary of an alpha shape of points, and the alpha filtration",
+    .description =
+        "For points throughout a volume rather than on a surface. Alpha is a squared radius, as in the literature.",
+    .examples = "brio alpha points.ply --alpha auto -o shape.ply\nthe least alpha with all points in one solid\n"
+                "brio alpha points.ply --alpha 0.01 --filtration values.txt -o shape.ply\nall simplices and their "
+                "values as well\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = alpha,
+};

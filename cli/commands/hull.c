@@ -1,0 +1,76 @@
+/* brio hull: the convex hull of the points of a file, with its certificate. */
+#include "cli/files/read_write.h"
+#include "cli/steps/certificate.h"
+#include "cli/run/commands.h"
+#include "cli/steps/estimate.h"
+#include "cli/steps/properties.h"
+#include <stdlib.h>
+
+typedef struct arguments {
+    bool polygons;
+} arguments;
+
+static const option options[] = {
+    {"polygons", 0, OPTION_FLAG, offsetof(arguments, polygons), NULL,
+     "one polygon for each facet, not cut into triangles", 0},
+    {0},
+};
+
+static const arguments defaults = {.polygons = false};
+
+static void report(run *r, const brio_mesh *hull, const brio_convex_hull_stats *s) {
+    facts *f = &r->facts;
+    cli_stage(r, "skip", s->skip_seconds);
+    cli_stage(r, "hull", s->hull_seconds + s->mesh_seconds);
+    r->lap = cli_clock();
+    cli_fact_text(f, "method", "convex-hull");
+    cli_fact_count(f, "samples", s->points);
+    cli_fact_count(f, "candidates", s->candidates);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "vertices", s->vertices);
+    cli_fact_count(f, "faces", hull->num_faces);
+    cli_fact_count(f, "facets", s->facets);
+}
+
+static brio_status hull(run *r) {
+    const arguments *a = r->arguments;
+    brio_convex_hull_options o = brio_convex_hull_options_default();
+    brio_convex_hull_stats s = {.size = sizeof s};
+    brio_mesh *input = NULL, *surface = NULL;
+    uint32_t *samples = NULL;
+    brio_status status = BRIO_OK;
+    TRY(cli_require_output(r, cli_mesh_formats, false));
+    TRY(cli_read_points(r, r->operands[0], &input));
+    TRY(cli_require_memory(r, cli_hull_bytes(input)));
+    o.polygons = a->polygons;
+    o.samples = samples = malloc((input->num_vertices + 1) * sizeof *samples);
+    if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", input->num_vertices);
+    TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));
+    if (s.dimension < 0) FAIL(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull");
+    report(r, surface, &s);
+    TRY(cli_carry_properties(r, input, samples, surface));
+    TRY(cli_check_interrupt(r));
+    TRY(cli_certify(r, surface, s.dimension < 3 ? CERTIFY_OPEN : 0u)); /* flat hulls bound nothing */
+    TRY(cli_write(r, surface));
+done:
+    free(samples);
+    brio_mesh_free(surface);
+    brio_mesh_free(input);
+    return status;
+}
+
+const command cli_hull = {
+    .name = "hull",
+    .operands = "IN",
+    .summary = "convex hull of points; flat ones are a polygon or an edge",
+    .examples = "brio hull points.ply -o hull.ply\ntriangles\n"
+                "brio hull points.ply --polygons -o hull.off\none polygon for each facet\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = hull,
+};

@@ -1,0 +1,84 @@
+/* brio locate: the tetrahedron that holds each point of a file, and the nearest vertex. */
+#include "cli/run/commands.h"
+#include "cli/steps/located.h"
+#include "cli/files/table.h"
+#include <stdlib.h>
+
+typedef struct arguments {
+    weights_options weights;
+    const char *at;
+    int plane;
+} arguments;
+
+static const option options[] = {
+    AT_ROW(arguments, at),
+    LOCATED_PLANE_ROW(arguments, plane),
+    WEIGHTS_ROWS(arguments, weights),
+    {0},
+};
+
+static const arguments defaults = {.weights.exponent = NO_EXPONENT, .plane = LOCATED_SPACE};
+
+/* Fills the rows (tetrahedron, vertex); -1 stands for none. Returns how many places are inside. */
+static size_t fill_rows(const uint32_t *tetrahedra, const uint32_t *vertices, size_t count, int64_t *rows) {
+    size_t inside = 0;
+    for (size_t i = 0; i < count; i++) {
+        inside += tetrahedra[i] != BRIO_INFINITE;
+        rows[2 * i] = tetrahedra[i] == BRIO_INFINITE ? -1 : (int64_t)tetrahedra[i];
+        rows[2 * i + 1] = vertices[i] == BRIO_INFINITE ? -1 : (int64_t)vertices[i];
+    }
+    return inside;
+}
+
+static brio_status answer(run *r, const located *l) {
+    brio_status status = BRIO_OK;
+    size_t count = l->at->num_vertices;
+    uint32_t *tetrahedra = malloc((count + 1) * sizeof *tetrahedra), *vertices = malloc((count + 1) * sizeof *vertices);
+    int64_t *rows = malloc((2 * count + 1) * sizeof *rows);
+    if (!tetrahedra || !vertices || !rows) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu places", count);
+    if (l->plane) {
+        TRY(brio_locator2_triangles(r->ctx, l->plane, l->places, count, tetrahedra));
+        TRY(brio_locator2_least_power(r->ctx, l->plane, l->places, count, vertices));
+    } else {
+        TRY(brio_locator_tetrahedra(r->ctx, l->locator, l->at->vertices, count, tetrahedra));
+        TRY(brio_locator_least_power(r->ctx, l->locator, l->at->vertices, count, vertices));
+    }
+    cli_lap(r, "locate");
+    cli_report_inside(r, fill_rows(tetrahedra, vertices, count, rows), count);
+    TRY(cli_write_table(r, &(table){l->plane ? "triangle,vertex" : "tetrahedron,vertex", count, 2, rows, NULL}));
+done:
+    free(tetrahedra);
+    free(vertices);
+    free(rows);
+    return status;
+}
+
+static brio_status locate(run *r) {
+    const arguments *a = r->arguments;
+    located l = {0};
+    brio_status status = BRIO_OK;
+    TRY(cli_check_weights_options(r, &a->weights));
+    TRY(cli_require_table(r));
+    TRY(cli_read_located(r, a->at, &a->weights, a->plane, &l));
+    TRY(cli_make_locator(r, a->plane, true, &l));
+    TRY(answer(r, &l));
+done:
+    cli_located_free(&l);
+    return status;
+}
+
+const command cli_locate = {
+    .name = "locate",
+    .operands = "IN",
+    .summary = "the tetrahedron that holds each place (-1 outside), and the nearest vertex",
+    .examples = "brio locate points.ply --at places.xyz -o tetrahedra.csv\na row for each place\n"
+                "brio locate stations.csv --at places.csv --plane xy -o triangles.csv\ntriangles of a map\n",
+    .outputs = "csv npy",
+    .group = GROUP_TRIANGULATIONS,
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = locate,
+};

@@ -1,0 +1,198 @@
+/* brio medial: the medial axis of a surface, known by points of it or as a closed mesh. */
+#include "cli/steps/certificate.h"
+#include "cli/run/commands.h"
+#include "cli/steps/estimate.h"
+#include "cli/files/files.h"
+#include "cli/files/read_write.h"
+#include "cli/steps/power_crust.h"
+#include "cli/steps/properties.h"
+#include <math.h>
+
+typedef struct arguments {
+    int labeling, sides, noise;
+    double sampling_density, spacing, scale, redundancy; /* the last three: 0 where they are not given */
+    bool sharp, simplify;
+    const char *crust; /* file, or NULL */
+} arguments;
+
+static const option_choice sides[] = {
+    {"inner", BRIO_SIDES_INNER}, {"outer", BRIO_SIDES_OUTER}, {"both", BRIO_SIDES_BOTH}, {NULL, 0}};
+
+static const option options[] = {
+    {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME",
+     "the side of the surface whose axis is wanted (default inner)", sides},
+    {"labeling", 0, OPTION_CHOICE, offsetof(arguments, labeling), "NAME",
+     "what tells inside from outside (default: mesh if the input has faces, else global)", cli_labelings_or_mesh},
+    {"spacing", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, spacing), "S",
+     "of a closed mesh: no place of a face is farther from a sample (default: a hundredth of the mesh's diagonal)", 0},
+    {"simplify", 0, OPTION_FLAG, offsetof(arguments, simplify), NULL,
+     "leave out what noise and close sampling add: the same as --scale 1.1 --redundancy 0.01", 0},
+    {"scale", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, scale), "S",
+     "leave out balls that lie in another when both are scaled by S", 0},
+    {"redundancy", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, redundancy), "E",
+     "leave out balls that lie in another enlarged by E of its radius", 0},
+    {"crust", 0, OPTION_OUTPUT, offsetof(arguments, crust), "FILE",
+     "also write the surface of the balls: their power crust", 0},
+    {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME",
+     "what to do about noisy points (default auto: smooth if noise is found)", cli_noise},
+    {"sampling-density", 'R', OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, sampling_density), "R",
+     "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},
+    {"sharp", 'B', OPTION_FLAG, offsetof(arguments, sharp), NULL,
+     "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0},
+    {0},
+};
+
+static const arguments defaults = {.labeling = LABELS_OF_INPUT};
+static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
+static const double SPACING = 0.01;                 /* of samples, in diagonals of the mesh; chosen */
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU,
+                                      BRIO_FORMAT_VTK, BRIO_FORMAT_XYZ, BRIO_FORMAT_AUTO};
+
+static brio_status check_arguments(run *r) {
+    const arguments *a = r->arguments;
+    if (a->scale != 0 && a->scale < 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "--scale: %g is less than 1", a->scale);
+    if (a->crust) FORWARD(cli_check_beside(r, "crust", a->crust, cli_mesh_formats));
+    return BRIO_OK;
+}
+
+static brio_power_shape_options medial_options(const run *r, int labeling, const brio_mesh *solid) {
+    const arguments *a = r->arguments;
+    brio_power_shape_options o = brio_power_shape_options_default();
+    o.seed = r->common.seed;
+    o.poles.labeling = (brio_labeling)labeling;
+    o.poles.noise = (brio_noise)a->noise;
+    o.poles.solid = solid;
+    o.sides = (brio_sides)a->sides;
+    o.poles.sampling_density = a->sampling_density;
+    o.poles.sharp = a->sharp;
+    if (a->simplify) o.scale = SCALE, o.redundancy = REDUNDANCY;
+    if (a->scale != 0) o.scale = a->scale;
+    if (a->redundancy > 0) o.redundancy = a->redundancy;
+    return o;
+}
+
+/* Returns the spacing of samples that fits the size of the mesh. */
+static double usual_spacing(const brio_mesh *mesh) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, diagonal = 0;
+    for (size_t i = 0; i < 3 * mesh->num_vertices; i++) {
+        low[i % 3] = fmin(low[i % 3], mesh->vertices[i]);
+        high[i % 3] = fmax(high[i % 3], mesh->vertices[i]);
+    }
+    for (int k = 0; k < 3; k++) diagonal = hypot(diagonal, high[k] - low[k]);
+    return SPACING * diagonal;
+}
+
+/* Samples the faces of the mesh, so that it may be as coarse as it likes. */
+static brio_status sample_faces(run *r, const brio_mesh *mesh, brio_mesh **samples) {
+    const arguments *a = r->arguments;
+    double spacing = a->spacing > 0 ? a->spacing : usual_spacing(mesh);
+    FORWARD(brio_mesh_samples(r->ctx, mesh, spacing, samples));
+    cli_lap(r, "sample");
+    cli_fact_real(&r->facts, "spacing", spacing);
+    return BRIO_OK;
+}
+
+static void report(run *r, const brio_power_shape_options *o, const brio_power_shape_stats *s, const brio_mesh *shape) {
+    facts *f = &r->facts;
+    cli_stage(r, "noise", s->poles.noise_seconds);
+    cli_stage(r, "delaunay", s->poles.delaunay_seconds);
+    cli_stage(r, "poles", s->poles.poles_seconds);
+    cli_stage(r, "power", s->poles.power_seconds);
+    cli_stage(r, "label", s->poles.label_seconds);
+    cli_stage(r, "shape", s->shape_seconds);
+    r->lap = cli_clock();
+    cli_fact_count(f, "samples", s->poles.samples);
+    cli_report_noise(r, s->poles.noise, s->poles.smoothed);
+    cli_fact_count(f, "poles", s->poles.poles);
+    cli_fact_count(f, "hidden_poles", s->poles.hidden_poles);
+    cli_fact_count(f, "inner", s->poles.inner);
+    cli_fact_count(f, "outer", s->poles.outer);
+    cli_fact_count(f, "unlabelled", s->unlabeled);
+    cli_fact_text(f, "labeling", o->poles.solid ? "mesh" : cli_labelings[o->poles.labeling].name);
+    if (o->scale > 1 || o->redundancy > 0) {
+        cli_stage(r, "simplify", s->simplify_seconds);
+        cli_fact_count(f, "left_out", s->left_out);
+    }
+    cli_fact_count(f, "vertices", shape->num_vertices);
+    cli_fact_count(f, "edges", s->edges);
+    cli_fact_count(f, "triangles", s->triangles);
+    cli_fact_count(f, "tetrahedra", s->tetrahedra);
+}
+
+/* A VTP file and a text of points cannot hold tetrahedra: they are left out there. */
+static brio_status write_shape(run *r, brio_mesh *shape) {
+    brio_format format;
+    if (!r->common.output) return BRIO_OK; /* --json alone asks for the facts */
+    FORWARD(cli_output_format(r, r->common.output, r->common.format, &format));
+    if ((format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) && shape->num_tetrahedra) {
+        shape->num_tetrahedra = 0;
+        cli_warn(r, WARNING_TETRAHEDRA, r->common.output);
+    }
+    return cli_write(r, shape);
+}
+
+static brio_status write_crust(run *r, const brio_mesh *crust) {
+    const arguments *a = r->arguments;
+    if (!crust) return BRIO_OK;
+    FORWARD(cli_certify(r, crust, 0));
+    return cli_write_to(r, a->crust, crust);
+}
+
+static brio_status medial(run *r) {
+    const arguments *a = r->arguments;
+    brio_mesh *input = NULL, *samples = NULL, *shape = NULL, *crust = NULL;
+    brio_power_shape_stats s = {.size = sizeof s};
+    brio_status status = BRIO_OK;
+    int labeling = a->labeling;
+    bool by_mesh;
+    TRY(check_arguments(r));
+    TRY(cli_require_output(r, formats, false));
+    TRY(cli_read(r, r->operands[0], &input));
+    TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
+    uint64_t work;
+    size_t usual;
+    brio_power_shape_options o = medial_options(r, labeling, by_mesh ? input : NULL);
+    if (a->spacing > 0 && !by_mesh)
+        FAIL(r, BRIO_ERR_ARGUMENT, "--spacing is for closed meshes: the points are samples already");
+    if (by_mesh) TRY(sample_faces(r, input, &samples));
+    const brio_mesh *points = by_mesh ? samples : input;
+    TRY(cli_usual_points(r, points, NULL, false, &usual));
+    status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
+    TRY(cli_require_work(r, status, points, work));
+    status = brio_power_shape(r->ctx, points->vertices, points->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
+    cli_suggest_labeling(r, status, points, by_mesh);
+    if (status != BRIO_OK) goto done;
+    report(r, &o, &s, shape);
+    TRY(cli_carry_properties(r, input, NULL, shape));
+    if (crust) TRY(cli_carry_properties(r, input, NULL, crust));
+    brio_mesh_free(input);
+    input = NULL;
+    TRY(cli_check_interrupt(r));
+    TRY(write_crust(r, crust));
+    TRY(write_shape(r, shape));
+done:
+    brio_mesh_free(input);
+    brio_mesh_free(samples);
+    brio_mesh_free(shape);
+    brio_mesh_free(crust);
+    return status;
+}
+
+const command cli_medial = {
+    .name = "medial",
+    .operands = "IN",
+    .summary = "medial axis of the solid that points, or a closed mesh, bound",
+    .description = "The balls of the power shape, each a vertex with the property radius, and how they are joined. A "
+                   "mesh with faces says itself what is inside, and its faces are sampled; of points the labeling "
+                   "finds the inside.",
+    .examples = "brio medial scan.ply -o axis.vtp --simplify\nthe axis without what noise adds\n"
+                "brio medial mesh.off -o axis.ply --sides both\nof a closed mesh, inside and outside\n",
+    .outputs = "ply vtp vtu vtk xyz",
+    .group = GROUP_SURFACES,
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = medial,
+};

@@ -1,0 +1,543 @@
+/* brio surface: a surface through the points of a file, with its certificate. */
+#include "cli/files/files.h"
+#include "cli/files/read_write.h"
+#include "cli/run/commands.h"
+#include "cli/run/run.h"
+#include "cli/steps/certificate.h"
+#include "cli/steps/coverage.h"
+#include "cli/steps/estimate.h"
+#include "cli/steps/evidence.h"
+#include "cli/steps/hints.h"
+#include "cli/steps/power_crust.h"
+#include "cli/steps/properties.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- components --- */
+
+/* What a reconstructed surface gets before it is reported. */
+
+typedef struct component_options {
+    bool largest;
+    uint64_t least; /* faces */
+} component_options;
+
+/** Rows of a command's option table whose struct has component_options as its member `field`. */
+#define COMPONENT_ROWS(type, field)                                                                                    \
+    {                                                                                                                  \
+        "keep-largest",                                                                                                \
+        0,                                                                                                             \
+        OPTION_FLAG,                                                                                                   \
+        offsetof(type, field.largest),                                                                                 \
+        NULL,                                                                                                          \
+        "keep only the component of largest area",                                                                     \
+        0},                                                                                                            \
+    {                                                                                                                  \
+        "min-component", 0, OPTION_NATURAL, offsetof(type, field.least), "N", "drop components of fewer than N faces", \
+            0                                                                                                          \
+    }
+
+/* Drops components as the options say; nothing without options.   dropped  components and faces. */
+static brio_status keep_components(run *r, const component_options *options, brio_mesh *surface, size_t dropped[2]) {
+    dropped[0] = dropped[1] = 0;
+    if (!options->largest && !options->least) return cli_check_interrupt(r);
+    return brio_mesh_keep_components(surface, options->largest, options->least, &dropped[0], &dropped[1]);
+}
+
+/* Reports what was dropped, if the options ask for it. */
+static void report_dropped(run *r, const component_options *options, const size_t dropped[2]) {
+    if (!options->largest && !options->least) return;
+    cli_fact_count(&r->facts, "dropped_components", dropped[0]);
+    cli_fact_count(&r->facts, "dropped_faces", dropped[1]);
+}
+
+/* --- the command --- */
+
+/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is
+ * given. */
+enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, NO_LABELING = -1 };
+
+typedef struct arguments {
+    int method;
+    power_crust_options crust;
+    bool polygons, boundaries, density, vertex_normals, self_intersections;
+    double theta; /* 0: not given */
+    uint64_t pieces;
+    int extraction;
+    component_options components;
+    evidence_options evidence;
+    const char *left_out; /* file for the points that the surface leaves */
+} arguments;
+
+/* What is known of a surface before it is looked at. */
+typedef struct {
+    bool open;        /* it may end where the points do */
+    bool leaves_many; /* samples on no face are enough in number for those left out to be counted */
+} outcome;
+
+static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},
+                                        {"power-crust", POWER_CRUST},
+                                        {"cocone", COCONE},
+                                        {"tight-cocone", TIGHT_COCONE},
+                                        {NULL, 0}};
+
+static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
+                                            {"candidates", BRIO_EXTRACTION_CANDIDATES},
+                                            {"pruned", BRIO_EXTRACTION_PRUNED},
+                                            {"walk", BRIO_EXTRACTION_WALK},
+                                            {NULL, 0}};
+
+#define FIELD(name) offsetof(arguments, name)
+static const option options[] = {
+    {"method", 0, OPTION_CHOICE, FIELD(method), "NAME", "how to reconstruct (default labeled-delaunay)", methods},
+    {"labeled-delaunay", 0, OPTION_NOTE, 0, NULL,
+     "also from noisy points; open where they end (--closed: closed); the one that is right most often", 0},
+    {"power-crust", 0, OPTION_NOTE, 0, NULL, "closed; sharp edges without points on them (--sharp)", 0},
+    {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; with --boundaries open where they end", 0},
+    {"tight-cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; closed", 0},
+    COMPONENT_ROWS(arguments, components),
+    {"vertex-normals", 0, OPTION_FLAG, FIELD(vertex_normals), NULL, "give the vertices normals, as properties nx ny nz",
+     0},
+    {"self-intersections", 0, OPTION_FLAG, FIELD(self_intersections), NULL,
+     "count the pairs of faces that run through each other", 0},
+    {"left-out", 0, OPTION_OUTPUT, FIELD(left_out), "FILE",
+     "write the points that the surface leaves more than two spacings away", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
+    SOLID_ROWS(arguments, crust),
+    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay, cocone and tight-cocone", 0},
+    EVIDENCE_ROWS(arguments, evidence),
+    {"", 0, OPTION_TITLE, 0, NULL, "options of power-crust (each of them chooses it)", 0},
+    POWER_CRUST_ROWS(arguments, crust),
+    {"polygons", 0, OPTION_FLAG, FIELD(polygons), NULL, "write its polygons, not cut into triangles", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of cocone and tight-cocone", 0},
+    {"theta", 0, OPTION_NUMBER | OPTION_POSITIVE, FIELD(theta), "ANGLE",
+     "half the opening of the co-cones, radians (default pi/8)", 0},
+    {"boundaries", 0, OPTION_FLAG, FIELD(boundaries), NULL,
+     "find the points at boundaries and leave the surface open there", 0},
+    {"density", 0, OPTION_FLAG, FIELD(density), NULL,
+     "estimate how densely the points sample the surface, also in properties of the vertices", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "options of cocone", 0},
+    {"pieces", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(pieces), "N",
+     "work through about N parts one after the other, in less memory", 0},
+    {"extraction", 0, OPTION_CHOICE, FIELD(extraction), "NAME",
+     "which candidate triangles make the surface (default labels)", extractions},
+    {"labels", 0, OPTION_NOTE, 0, NULL, "those between inside and outside: a manifold", 0},
+    {"candidates", 0, OPTION_NOTE, 0, NULL, "all of them", 0},
+    {"pruned", 0, OPTION_NOTE, 0, NULL, "all but those at sharp edges", 0},
+    {"walk", 0, OPTION_NOTE, 0, NULL, "the outer ones of these, found by a walk, as in the dissertation", 0},
+    {0},
+};
+#undef FIELD
+
+static const arguments defaults = {.crust.labeling = NO_LABELING};
+/* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
+static const double LEAST_THETA = 0.2542;
+
+/* Options of the power crust alone. */
+static bool has_power_crust_options(const arguments *a) {
+    return a->polygons || a->crust.labeling != NO_LABELING || a->crust.sampling_density != 0 || a->crust.sharp;
+}
+
+static int method_of(const arguments *a) {
+    return a->method != NO_METHOD ? a->method : has_power_crust_options(a) ? POWER_CRUST : LABELED_DELAUNAY;
+}
+
+/* Completes the surface: normals, the properties of its points, fewer components. Reports what it then has.
+ * samples  the point of each vertex; NULL for the co-cones and the power crust.   num_samples  distinct positions. */
+static brio_status complete(run *r, const brio_mesh *points, const uint32_t *samples, size_t num_samples,
+                            brio_mesh *surface) {
+    const arguments *a = r->arguments;
+    int method = method_of(a);
+    size_t dropped[2];
+    if (a->vertex_normals || method == LABELED_DELAUNAY) FORWARD(brio_mesh_add_normals(surface));
+    FORWARD(method == COCONE || method == TIGHT_COCONE ? cli_copy_properties(r, points, surface)
+                                                       : cli_carry_properties(r, points, samples, surface));
+    FORWARD(keep_components(r, &a->components, surface, dropped));
+    cli_fact_text(&r->facts, "method", methods[method - 1].name);
+    cli_fact_count(&r->facts, "samples", num_samples);
+    cli_fact_count(&r->facts, "vertices", surface->num_vertices);
+    cli_fact_count(&r->facts, "faces", surface->num_faces);
+    report_dropped(r, &a->components, dropped);
+    return BRIO_OK;
+}
+
+/* --- the power crust --- */
+
+static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surface) {
+    const arguments *a = r->arguments;
+    brio_power_crust_stats s = {.size = sizeof s};
+    power_crust_options o = a->crust;
+    o.triangulate = !a->polygons;
+    if (o.labeling == NO_LABELING) o.labeling = (int)brio_power_crust_options_default().poles.labeling;
+    brio_status status = cli_power_crust(r, &o, points, surface, &s);
+    if (status != BRIO_OK) return status;
+    status = complete(r, points, NULL, s.poles.samples, *surface);
+    if (status == BRIO_OK) cli_report_power_crust(r, &o, &s);
+    return status;
+}
+
+/* --- the co-cones --- */
+
+static void report_cocone(run *r, const brio_cocone_stats *s) {
+    const arguments *a = r->arguments;
+    facts *f = &r->facts;
+    cli_fact_count(f, "unused", s->unused);
+    cli_fact_count(f, "candidates", s->candidates);
+    cli_fact_count(f, "pruned", s->pruned);
+    cli_fact_text(f, "extraction", extractions[a->extraction].name);
+    if (a->boundaries) cli_fact_count(f, "boundary_samples", s->boundary_samples);
+    cli_fact_count(f, "relabeled", s->relabeled);
+    if (a->pieces > 1) {
+        cli_fact_count(f, "pieces", s->pieces);
+        cli_fact_count(f, "unmatched", s->unmatched);
+    }
+}
+
+/* Over this median of r the user is told that the points hardly show the surface. Measured: points all over a cube or a
+ * ball, with no surface at all, have a median of 1.05; of 60 sets with a surface those that came out right had at most
+ * 0.69, and those that came out with wrong handles or pieces at least 0.75. Where r is over 0.08 only the guarantee ends,
+ * and nearly every scan is there; at sharp edges, where the feature size is 0, r is large for any sampling. */
+static const double MOST_R = 0.75;
+
+/* The sampling condition of the guarantee (theorem 19: r <= 0.08), as far as the samples themselves tell. */
+static void report_density(run *r, const brio_cocone_stats *s) {
+    facts *f = &r->facts;
+    size_t used = s->samples - s->unused;
+    double share = used ? (double)s->outside_guarantee / (double)used : 0;
+    cli_fact_open(f, "sampling", FACT_OBJECT);
+    cli_fact_real(f, "r_median", s->r_median);
+    cli_fact_real(f, "r_p95", s->r_p95);
+    cli_fact_count(f, "outside_guarantee", s->outside_guarantee);
+    cli_fact_real(f, "outside_share", share);
+    cli_fact_close(f);
+    if (s->r_median > MOST_R) cli_warn(r, WARNING_DENSITY, s->r_median);
+}
+
+static brio_status cocone(run *r, brio_mesh *points, brio_mesh **surface) {
+    const arguments *a = r->arguments;
+    brio_cocone_options o = brio_cocone_options_default();
+    brio_cocone_stats s = {.size = sizeof s};
+    o.seed = r->common.seed;
+    if (a->theta != 0) o.theta = a->theta;
+    o.tight = a->method == TIGHT_COCONE;
+    o.boundaries = a->boundaries;
+    o.pieces = a->pieces;
+    o.density = a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
+    o.extraction = (brio_extraction)a->extraction;
+    uint64_t work = 0;
+    size_t usual;
+    evidence e = {0};
+    brio_status status = cli_usual_points(r, points, NULL, false, &usual);
+    if (status == BRIO_OK) status = brio_estimate_cocone(r->ctx, usual, &o, &work);
+    TRY(cli_require_work(r, status, points, work));
+    TRY(cli_find_evidence(r, &a->evidence, points, &e));
+    if (a->pieces <= 1) o.evidence = &e.taken;
+    TRY(brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
+    cli_stage(r, "delaunay", s.delaunay_seconds);
+    cli_stage(r, "poles", s.poles_seconds);
+    cli_stage(r, "candidates", s.candidates_seconds);
+    cli_stage(r, "label", s.labels_seconds);
+    cli_stage(r, "manifold", s.manifold_seconds);
+    cli_stage(r, "density", s.density_seconds);
+    TRY(complete(r, points, NULL, s.samples, *surface));
+    report_cocone(r, &s);
+    if (o.density) report_density(r, &s);
+done:
+    cli_evidence_free(&e);
+    return status;
+}
+
+/* --- the labeled Delaunay triangulation --- */
+
+/* Over this share of guesses the user is told. Chosen. */
+static const double MANY_GUESSES = 0.02;
+
+/* Over this share of samples on no face it is counted how many of them the surface leaves. Chosen: smaller shares are strays and
+ * samples beside others. */
+static const double MANY_UNUSED = 0.005;
+
+static void report_confidence(run *r, double share) {
+    cli_fact_real(&r->facts, "uncertain_share", share);
+    if (share > MANY_GUESSES) cli_warn(r, WARNING_GUESS, 100 * share);
+}
+
+/* What tells the outside, and how well it agrees with the result. */
+static void report_orientation(run *r, const brio_labeled_delaunay_stats *s) {
+    static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
+    cli_fact_text(&r->facts, "orientation", by[s->evidence & 3]);
+    if (s->evidence) cli_fact_real(&r->facts, "agreement", s->agreement);
+}
+
+/* Over this share of bridges the user is told. As for guesses. */
+static void report_unseen(run *r, const brio_labeled_delaunay_stats *s) {
+    facts *f = &r->facts;
+    cli_fact_count(f, "strays", s->strays);
+    cli_fact_count(f, "holes", s->holes);
+    if (s->holes) cli_fact_count(f, "left_out", s->left_out);
+    cli_fact_open(f, "bridges", FACT_OBJECT);
+    cli_fact_count(f, "number", s->bridges);
+    cli_fact_real(f, "area_share", s->bridge_share);
+    cli_fact_real(f, "largest_radius", s->bridge_radius);
+    cli_fact_open(f, "largest_centre", FACT_LIST);
+    for (int k = 0; k < 3; k++) cli_fact_real(f, NULL, s->bridge_centre[k]);
+    cli_fact_close(f);
+    cli_fact_close(f);
+    cli_fact_real(f, "far_area_percent", 100 * s->far_share);
+    if (s->bridge_share > MANY_GUESSES)
+        cli_warn(r, WARNING_BRIDGES, 100 * s->bridge_share, s->bridges, s->bridge_centre[0], s->bridge_centre[1],
+                 s->bridge_centre[2], 2 * s->bridge_radius);
+}
+
+static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
+    facts *f = &r->facts;
+    cli_report_noise(r, s->noise, s->smoothed);
+    cli_fact_count(f, "unused", s->unused);
+    cli_fact_count(f, "undecided", s->undecided);
+    cli_fact_count(f, "specks", s->specks);
+    cli_fact_count(f, "relabeled", s->relabeled);
+    cli_fact_count(f, "handles", s->handles);
+    report_unseen(r, s);
+    cli_fact_real(f, "energy", s->energy);
+    report_confidence(r, s->uncertain_share);
+    report_orientation(r, s);
+}
+
+static void report_labeled_delaunay_stages(run *r, const brio_labeled_delaunay_stats *s) {
+    const arguments *a = r->arguments;
+    cli_stage(r, "noise", s->noise_seconds);
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "poles", s->poles_seconds);
+    cli_stage(r, "label", s->labels_seconds);
+    cli_stage(r, "manifold", s->manifold_seconds);
+    cli_stage(r, "open", s->open_seconds);
+    if (a->crust.simplify) cli_stage(r, "simplify", s->simplify_seconds);
+}
+
+static brio_status normals_of_points(run *r, const char *path, const brio_mesh *points, const brio_mesh *surface,
+                                     const uint32_t *samples) {
+    double *normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
+    brio_status status = BRIO_OK;
+    if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
+    TRY(brio_point_normals(r->ctx, points->vertices, points->num_vertices, surface, samples, normals));
+    TRY(cli_write_normals(r, path, points, normals));
+done:
+    free(normals);
+    return status;
+}
+
+static brio_labeled_delaunay_options labeled_delaunay_options(run *r) {
+    const arguments *a = r->arguments;
+    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    o.seed = r->common.seed;
+    o.noise = (brio_noise)a->crust.noise;
+    o.confidence = 1;
+    double spacings = NAN;
+    (void)cli_read_open(r, &a->crust, &spacings); /* check_arguments has read it before */
+    if (isnan(spacings))
+        o.holes = BRIO_HOLES_AUTO;
+    else
+        o.open = spacings;
+    o.simplify = a->crust.simplify;
+    return o;
+}
+
+static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, outcome *found) {
+    brio_labeled_delaunay_options o = labeled_delaunay_options(r);
+    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    const arguments *a = r->arguments;
+    uint64_t work = 0;
+    size_t usual;
+    uint32_t *samples = NULL;
+    evidence e = {0};
+    brio_status status = BRIO_OK;
+    TRY(cli_usual_points(r, points, NULL, false, &usual));
+    status = brio_estimate_labeled_delaunay(r->ctx, usual, &o, &work);
+    TRY(cli_require_work(r, status, points, work));
+    samples = malloc((points->num_vertices + 1) * sizeof *samples);
+    if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices);
+    bool closed = o.holes == BRIO_HOLES_CLOSED && o.open <= 0;
+    if (!closed) TRY(cli_find_evidence(r, &a->evidence, points, &e)); /* by evidence a surface may end at the hull */
+    if (!closed) o.evidence = &e.taken;
+    TRY(brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, samples, &s));
+    report_labeled_delaunay_stages(r, &s);
+    if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
+    TRY(complete(r, points, samples, s.samples, *surface));
+    report_labeled_delaunay(r, &s);
+    found->leaves_many = (double)s.unused > MANY_UNUSED * (double)s.samples;
+    found->open |= !closed;
+done:
+    cli_evidence_free(&e);
+    free(samples);
+    return status;
+}
+
+/* An option that some methods have, and whether it was given. */
+typedef struct method_option {
+    const char *name;
+    bool given;
+    unsigned methods; /* bits 1 << method */
+} method_option;
+
+/* Writes "a, b or c", the names of the methods in the set. */
+static void list_methods(unsigned set, char text[128]) {
+    option_choice chosen[TIGHT_COCONE + 1] = {0};
+    size_t count = 0;
+    for (const option_choice *m = methods; m->name; m++)
+        if (set >> m->value & 1) chosen[count++] = *m;
+    cli_list_choices(chosen, text, 128);
+}
+
+/* Options of another method are a mistake. */
+static brio_status check_method(run *r) {
+    const arguments *a = r->arguments;
+    enum {
+        SOLIDS = 1 << LABELED_DELAUNAY | 1 << POWER_CRUST,
+        CRUST = 1 << POWER_CRUST,
+        COCONES = 1 << COCONE | 1 << TIGHT_COCONE,
+        SIDED = 1 << LABELED_DELAUNAY | COCONES
+    };
+    const method_option given[] = {{"theta", a->theta != 0, COCONES},
+                                   {"boundaries", a->boundaries, COCONES},
+                                   {"density", a->density, COCONES},
+                                   {"pieces", a->pieces > 0, 1 << COCONE},
+                                   {"extraction", a->extraction != BRIO_EXTRACTION_LABELS, 1 << COCONE},
+                                   {"polygons", a->polygons, CRUST},
+                                   {"labeling", a->crust.labeling != NO_LABELING, CRUST},
+                                   {"sampling-density", a->crust.sampling_density != 0, CRUST},
+                                   {"sharp", a->crust.sharp, CRUST},
+                                   {"triangulate", a->crust.triangulate, SOLIDS},
+                                   {"noise", a->crust.noise != 0, SOLIDS},
+                                   {"simplify", a->crust.simplify, SOLIDS},
+                                   {"open", a->crust.open != NULL, SOLIDS},
+                                   {"closed", a->crust.closed, SOLIDS | 1 << TIGHT_COCONE},
+                                   {"normals", a->crust.normals != NULL, SOLIDS},
+                                   {"from", a->evidence.from != NULL, SIDED},
+                                   {"ignore-normals", a->evidence.ignore_normals, SIDED},
+                                   {"ignore-origins", a->evidence.ignore_origins, SIDED}};
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        char names[128] = "";
+        if (!given[i].given || given[i].methods >> method_of(a) & 1) continue;
+        list_methods(given[i].methods, names);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method %s, and the method is %s", given[i].name, names,
+                        methods[method_of(a) - 1].name);
+    }
+    return BRIO_OK;
+}
+
+/* A theta that voids the guarantee is worth a word. */
+static brio_status check_arguments(run *r) {
+    const arguments *a = r->arguments;
+    brio_status status = check_method(r);
+    if (status != BRIO_OK) return status;
+    double spacings;
+    TRY(cli_read_open(r, &a->crust, &spacings));
+    if (a->crust.open && isnan(spacings) && method_of(a) == POWER_CRUST)
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--open auto is for --method labeled-delaunay, and the method is power-crust");
+    if (a->extraction != BRIO_EXTRACTION_LABELS && a->pieces > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--extraction is for --method cocone without --pieces");
+    if (a->polygons && a->crust.triangulate)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--polygons and --triangulate exclude each other");
+    if (a->theta >= 1.57) return cli_fail(r, BRIO_ERR_ARGUMENT, "--theta: %g is not between 0 and pi/2", a->theta);
+    if (a->theta > 0 && a->theta < LEAST_THETA) cli_warn(r, WARNING_THETA, LEAST_THETA);
+done:
+    return status;
+}
+
+/* Hints to work in pieces, if that meets the limit of memory. */
+static void suggest_pieces(run *r, const brio_mesh *points) {
+    enum { PIECES = 30 };
+    brio_cocone_options o = brio_cocone_options_default();
+    const arguments *a = r->arguments;
+    uint64_t work = 0;
+    size_t usual;
+    o.pieces = PIECES;
+    if (a->pieces > 1 || r->common.scratch || cli_usual_points(r, points, NULL, false, &usual) != BRIO_OK) return;
+    if (brio_estimate_cocone(r->ctx, usual, &o, &work) != BRIO_OK) return;
+    double bytes = CLI_PROGRAM_BYTES + cli_mesh_bytes(points) + (double)work;
+    if (!r->common.max_memory || bytes <= (double)r->common.max_memory) cli_hint(r, HINT_PIECES, PIECES);
+}
+
+static void suggest(run *r, brio_status status, const brio_mesh *points) {
+    const arguments *a = r->arguments;
+    if (status == BRIO_ERR_NO_MEMORY) {
+        if (!r->message[0]) cli_fail(r, status, "%s", brio_message(r->ctx));
+        suggest_pieces(r, points);
+    }
+    if (status != BRIO_ERR_NO_ANSWER) return;
+    cli_examine(r, status, points);
+    if (r->flat) return;
+    const char *message = cli_message(r, status);
+    if (strstr(message, "span holes")) cli_hint(r, HINT_HOLES);
+    if (strstr(message, "no component is left")) cli_hint(r, HINT_COMPONENTS);
+    if (a->method != COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
+}
+
+static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, outcome *found) {
+    switch (method_of(r->arguments)) {
+    case POWER_CRUST:
+        return power_crust(r, points, result);
+    case LABELED_DELAUNAY:
+        return labeled_delaunay(r, points, result, found);
+    default:
+        return cocone(r, points, result);
+    }
+}
+
+static brio_status surface(run *r) {
+    const arguments *a = r->arguments;
+    brio_mesh *points = NULL, *result = NULL;
+    brio_status status = BRIO_OK;
+    TRY(check_arguments(r));
+    TRY(cli_require_output_for(r, "vertex-normals", a->vertex_normals));
+    TRY(cli_check_evidence(r, &a->evidence));
+    if (a->evidence.from && (a->crust.closed || a->pieces > 1))
+        FAIL(r, BRIO_ERR_ARGUMENT, "--from and --%s exclude each other", a->crust.closed ? "closed" : "pieces");
+    TRY(cli_require_output(r, cli_mesh_formats, false));
+    if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
+    if (a->left_out) TRY(cli_check_beside(r, "left-out", a->left_out, cli_point_formats));
+    r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
+    TRY(cli_read_samples(r, r->operands[0], &points));
+    if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
+    outcome found = {.open = a->method == COCONE || (a->crust.open && method_of(a) == POWER_CRUST)};
+    status = reconstruct(r, points, &result, &found);
+    suggest(r, status, points);
+    if (status != BRIO_OK) goto done;
+    r->lap = cli_clock();
+    TRY(cli_check_interrupt(r));
+    if (a->left_out || found.leaves_many) TRY(cli_report_left_out(r, result, points, a->left_out));
+    brio_mesh_free(points);
+    points = NULL;
+    unsigned how = found.open ? CERTIFY_OPEN : 0u;
+    if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
+    TRY(cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u)));
+    TRY(cli_write(r, result));
+done:
+    brio_mesh_free(result);
+    brio_mesh_free(points);
+    return status;
+}
+
+const command cli_surface = {
+    .name = "surface",
+    .operands = "IN",
+    .summary = "surface through points, with a certificate of what it is",
+    .description =
+        "The default method needs no parameters and no normals: points all over a closed object give a closed surface, "
+        "others a surface that ends where they end. "
+        "Other points: brio help methods. The certificate in the report says what the surface is, whatever the method.",
+    .examples = "brio surface scan.ply -o surface.ply\nthe usual way\n"
+                "brio surface part.xyz --method cocone --boundaries -o shell.ply\nan open surface\n"
+                "brio surface scan.ply --closed -o solid.stl\nwithout holes, as a printer needs it\n"
+                "brio surface scan.las --open 5 --keep-largest -o surface.ply\nleaves holes over 5 point spacings "
+                "open, drops crumbs\n",
+    .outputs = CLI_MESH_OUTPUTS,
+    .group = GROUP_SURFACES,
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = surface,
+};

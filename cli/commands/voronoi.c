@@ -1,0 +1,264 @@
+/* brio voronoi: Voronoi cells of the points of a file or, with weights, power cells. */
+#include "cli/files/files.h"
+#include "cli/files/lost.h"
+#include "cli/files/read_write.h"
+#include "cli/run/commands.h"
+#include "cli/run/interrupt.h"
+#include "cli/run/run.h"
+#include "cli/steps/estimate.h"
+#include "cli/steps/weights.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* --- how far cells are from filling their box --- */
+
+/* How far the cells in a box are from filling it, see box_error.h.
+ *
+ * A box of side 2^-400 has the volume 0 in doubles, and so have its cells. Their volumes are then computed once more with
+ * all lengths times a power of two by which the box has a volume near 1: cells of such points are the same cells. */
+
+/** What cells in a box were computed from. */
+typedef struct boxed_diagram {
+    const brio_triangulation *t;
+    const brio_mesh *mesh;
+    const double *weights;             /* NULL without weights */
+    const brio_cells_options *options; /* with a box */
+} boxed_diagram;
+
+/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
+enum { LEAST_VOLUME = -900, MOST_VOLUME = 1020 };
+
+static bool is_held(double volume) {
+    return volume > 0 && isfinite(volume) && ilogb(volume) >= LEAST_VOLUME && ilogb(volume) <= MOST_VOLUME;
+}
+
+static double error_of(const brio_cells *cells) {
+    return fabs(cells->volume_sum / cells->region_volume - 1);
+}
+
+/* Returns the exponent of the power of two that makes the volume of a box about 1. */
+static int exponent_of(const double box[6]) {
+    int sum = 0;
+    for (int k = 0; k < 3; k++) sum += ilogb(box[3 + k] / 2 - box[k] / 2) + 1;
+    return -sum / 3;
+}
+
+/* Multiplies numbers by 2^exponent. Returns NULL without memory, or without numbers. */
+static double *scaled(const double *x, size_t count, int exponent) {
+    double *out = x ? malloc((count + 1) * sizeof *out) : NULL;
+    if (!out) return NULL;
+    for (size_t i = 0; i < count; i++) out[i] = ldexp(x[i], exponent);
+    return out;
+}
+
+static bool are_finite(const double *x, size_t count) {
+    for (size_t i = 0; i < count && x; i++)
+        if (!isfinite(x[i])) return false;
+    return true;
+}
+
+static brio_status scaled_error(run *r, const boxed_diagram *d, double *error) {
+    brio_status status = BRIO_OK;
+    brio_cells_options o = *d->options;
+    brio_cells *cells = NULL;
+    size_t n = d->mesh->num_vertices;
+    int exponent = exponent_of(o.box);
+    double *box = scaled(o.box, 6, exponent), *points = scaled(d->mesh->vertices, 3 * n, exponent);
+    double *weights = scaled(d->weights, n, 2 * exponent);
+    if (!box || (n && !points) || (d->weights && !weights))
+        FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu scaled points", n);
+    if (!are_finite(box, 6) || !are_finite(points, 3 * n) || !are_finite(weights, n)) goto done;
+    o.areas = o.centroids = o.faces = o.vertices = 0;
+    o.box = box;
+    TRY(brio_voronoi_cells(r->ctx, d->t, points, weights, n, &o, &cells));
+    *error = error_of(cells);
+done:
+    brio_cells_free(cells);
+    free(box), free(points), free(weights);
+    return status;
+}
+
+/* Finds the difference of the cells' volume and the box's, as a share of the box's: NaN where doubles cannot hold what it
+ *  needs. */
+static brio_status cli_box_error(run *r, const boxed_diagram *d, const brio_cells *cells, double *error) {
+    *error = NAN;
+    if (!is_held(cells->region_volume)) return scaled_error(r, d, error);
+    *error = error_of(cells);
+    return BRIO_OK;
+}
+
+/* --- the command --- */
+
+typedef struct arguments {
+    weights_options weights;
+    const char *box, *faces;
+} arguments;
+
+#define FIELD(name) offsetof(arguments, name)
+static const option options[] = {
+    WEIGHTS_ROWS(arguments, weights),
+    {"box", 0, OPTION_TEXT, FIELD(box), "B", "clip the cells to x0,y0,z0,x1,y1,z1", 0},
+    {"faces", 0, OPTION_OUTPUT, FIELD(faces), "FILE",
+     "write a row for each face of each cell (.csv): site,neighbour,area,nx,ny,nz; walls are -1 to -6", 0},
+    {0},
+};
+#undef FIELD
+
+static const arguments defaults = {.weights.exponent = NO_EXPONENT};
+
+/* Finds the format of -o, and whether a file of that name can be written. */
+static brio_status require_output(run *r, brio_cells_format *format) {
+    const common_options *c = &r->common;
+    *format = BRIO_CELLS_FORMAT_AUTO;
+    const arguments *a = r->arguments;
+    brio_status status = a->faces ? cli_check_beside(r, "faces", a->faces, NULL) : BRIO_OK;
+    if (status != BRIO_OK) return status;
+    if (!c->output && (c->json || a->faces)) return BRIO_OK;
+    if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
+    if (c->format)
+        *format = brio_cells_format_of(c->format);
+    else if (strcmp(c->output, "-") != 0)
+        *format = brio_cells_format_of(c->output);
+    else
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format: vtu, npy or csv");
+    if (*format == BRIO_CELLS_FORMAT_AUTO)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold cells, expected .vtu .npy or .csv",
+                        c->output);
+    if (c->compress) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress: cells are written without compression");
+    return strcmp(c->output, "-") ? cli_check_target(r, c->output) : BRIO_OK;
+}
+
+/* Reads six numbers with commas between them. */
+static brio_status read_box(run *r, const char *text, double box[6]) {
+    const char *rest = text;
+    for (int i = 0; i < 6; i++) {
+        char *end;
+        box[i] = strtod(rest, &end);
+        if (end == rest || !isfinite(box[i]) || *end != (i < 5 ? ',' : 0))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: '%s' is not x0,y0,z0,x1,y1,z1", text);
+        rest = end + 1;
+    }
+    for (int k = 0; k < 3; k++)
+        if (!(box[k] < box[3 + k]))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: %c from %g to %g is empty", "xyz"[k], box[k], box[3 + k]);
+    return BRIO_OK;
+}
+
+/* Refuses work over --max-memory. */
+static brio_status require_memory(run *r, const brio_mesh *mesh, const double *weights, bool vertices) {
+    double delaunay;
+    size_t usual;
+    FORWARD(cli_delaunay_bytes(r, mesh, weights, NULL, &delaunay));
+    FORWARD(cli_usual_points(r, mesh, weights, false, &usual));
+    return cli_require_memory(r, cli_voronoi_bytes(delaunay, usual, vertices));
+}
+
+static void report(run *r, const brio_cells *cells, const brio_delaunay_stats *s, bool weighted) {
+    facts *f = &r->facts;
+    size_t bounded = 0;
+    for (size_t c = 0; c < cells->num_cells; c++) bounded += cells->bounded[c];
+    cli_fact_bool(f, "weighted", weighted);
+    cli_fact_count(f, "points", s->points);
+    cli_fact_count(f, "duplicates", s->duplicates);
+    cli_fact_count(f, "hidden", s->hidden);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "cells", cells->num_cells);
+    cli_fact_count(f, "bounded", bounded);
+    cli_fact_count(f, "faces", (size_t)cells->face_offsets[cells->num_cells]);
+    cli_fact_real(f, "volume", cells->volume_sum);
+}
+
+/* Points outside are the sites of cells all the same, which seldom is what was meant. */
+static void tell_outside(run *r, const brio_mesh *mesh, const double box[6]) {
+    size_t outside = 0;
+    for (size_t i = 0; i < mesh->num_vertices; i++) {
+        const double *p = mesh->vertices + 3 * i;
+        bool inside = true;
+        for (int k = 0; k < 3; k++) inside &= p[k] >= box[k] && p[k] <= box[k + 3];
+        outside += !inside;
+    }
+    if (outside) cli_warn(r, WARNING_OUTSIDE, outside, mesh->num_vertices, r->operands[0]);
+}
+
+static brio_status report_box(run *r, const boxed_diagram *d, const brio_cells *cells) {
+    double error;
+    if (!d->options->box) return BRIO_OK;
+    FORWARD(cli_box_error(r, d, cells, &error));
+    tell_outside(r, d->mesh, d->options->box);
+    cli_fact_real(&r->facts, "box_volume", cells->region_volume);
+    cli_fact_real(&r->facts, "box_error", error);
+    return BRIO_OK;
+}
+
+static brio_status write_file(run *r, const char *path, const brio_cells *cells, brio_cells_format format) {
+    brio_status status = BRIO_OK;
+    if (!path) return BRIO_OK;
+    TRY(cli_check_interrupt(r));
+    cli_tell_idle(r, path, format != BRIO_CELLS_FORMAT_VTU && format != BRIO_CELLS_FORMAT_NPY, false);
+    cli_interrupt_writing(strcmp(path, "-") != 0);
+    status = brio_cells_write(r->ctx, path, cells, format, "brio " BRIO_VERSION);
+    cli_interrupt_writing(false);
+    cli_lap(r, "write");
+done:
+    return status;
+}
+
+static brio_status compute(run *r, const brio_mesh *mesh, const double *weights, brio_cells_options *o,
+                           brio_triangulation **t, brio_cells **cells) {
+    FORWARD(brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, NULL, t));
+    const brio_delaunay_stats *s = brio_triangulation_stats(*t);
+    cli_stage(r, "order", s->order_seconds);
+    cli_stage(r, "insert", s->insert_seconds);
+    r->lap = cli_clock();
+    FORWARD(brio_voronoi_cells(r->ctx, *t, mesh->vertices, weights, mesh->num_vertices, o, cells));
+    cli_lap(r, "cells");
+    return BRIO_OK;
+}
+
+static brio_status voronoi(run *r) {
+    const arguments *a = r->arguments;
+    brio_cells_options o = brio_cells_options_default();
+    brio_status status = BRIO_OK;
+    brio_cells_format format;
+    brio_mesh *mesh = NULL;
+    double *weights = NULL, box[6];
+    brio_triangulation *t = NULL;
+    brio_cells *cells = NULL;
+    TRY(cli_check_weights_options(r, &a->weights));
+    TRY(require_output(r, &format));
+    if (a->box) TRY(read_box(r, a->box, box));
+    o.box = a->box ? box : NULL;
+    o.vertices = format == BRIO_CELLS_FORMAT_VTU;
+    TRY(cli_read_points(r, r->operands[0], &mesh));
+    bool weighted = cli_is_weighted(&a->weights, mesh);
+    TRY(cli_weights(r, &a->weights, mesh, &weights));
+    if (cli_limits_memory(r)) TRY(require_memory(r, mesh, weights, o.vertices));
+    TRY(compute(r, mesh, weights, &o, &t, &cells));
+    report(r, cells, brio_triangulation_stats(t), weighted);
+    TRY(report_box(r, &(boxed_diagram){t, mesh, weights, &o}, cells));
+    TRY(write_file(r, r->common.output, cells, format));
+    TRY(write_file(r, a->faces, cells, BRIO_CELLS_FORMAT_FACES_CSV));
+done:
+    brio_cells_free(cells);
+    brio_triangulation_free(t);
+    free(weights);
+    brio_mesh_free(mesh);
+    return status;
+}
+
+const command cli_voronoi = {
+    .name = "voronoi",
+    .operands = "IN",
+    .summary = "Voronoi cells of points, power cells with weights",
+    .examples = "brio voronoi atoms.xyz --box 0,0,0,1,1,1 -o cells.vtu\ncells clipped to a box, for ParaView\n"
+                "brio voronoi atoms.xyz -o cells.csv\nvolume, area and centroid of each cell\n",
+    .outputs = "vtu npy csv",
+    .group = GROUP_TRIANGULATIONS,
+    .min_operands = 1,
+    .max_operands = 1,
+    .options = options,
+    .defaults = &defaults,
+    .size = sizeof defaults,
+    .run = voronoi,
+};

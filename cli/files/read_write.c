@@ -1,0 +1,216 @@
+/* The input of a command, read, and its output, written: the steps that all commands share. */
+#include "cli/files/read_write.h"
+#include "cli/files/files.h"
+#include "cli/files/lost.h"
+#include "cli/files/precision.h"
+#include "cli/run/interrupt.h"
+#include <string.h>
+#include <strings.h>
+
+enum { MAX_THREADS = 1024 };
+
+/* --- options --- */
+
+static brio_status check_compress(run *r) {
+    const common_options *c = &r->common;
+    if (!c->compress || !c->output) return BRIO_OK;
+    if (c->ascii) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress and --ascii: text is not compressed");
+    const brio_format_info *info = brio_format_facts(brio_format_of(c->format ? c->format : c->output));
+    if (info && info->holds & BRIO_HOLDS_COMPRESSED) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can",
+                    c->output);
+}
+
+static bool names_output(const run *r) {
+    if (r->common.output) return true;
+    for (const option *row = r->command->options; row->kind; row++) {
+        const char *path = NULL;
+        if (row->kind == OPTION_OUTPUT) memcpy(&path, (const char *)r->arguments + row->offset, sizeof path);
+        if (path) return true;
+    }
+    return false;
+}
+
+brio_status cli_require_output_for(run *r, const char *name, bool given) {
+    if (!given || r->common.output) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: --%s needs -o FILE", name);
+}
+
+/* Options about a file that is not written are a mistake. */
+static brio_status refuse_idle(run *r) {
+    const common_options *c = &r->common;
+    bool written = names_output(r);
+    const struct {
+        const char *name;
+        bool idle;
+    } given[] = {{"format", c->format && !c->output},
+                 {"ascii", c->ascii && !written},
+                 {"float32", c->float32 && !written},
+                 {"compress", c->compress && !written}};
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        if (!given[i].idle) continue;
+        if (r->command->outputs) return cli_require_output_for(r, given[i].name, true);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s writes no file; --%s has no meaning here", r->command->name,
+                        given[i].name);
+    }
+    return BRIO_OK;
+}
+
+brio_status cli_check_common(run *r) {
+    const common_options *c = &r->common;
+    FORWARD(refuse_idle(r));
+    if (c->threads < 0 || c->threads > MAX_THREADS)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--threads: %d is not between 0 and %d", c->threads, MAX_THREADS);
+    if (c->json && cli_goes_to_stdout(c->output))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--json and -o %s both want standard output", c->output);
+    if (c->input_format && brio_format_of(c->input_format) == BRIO_FORMAT_AUTO)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--input-format: unknown format '%s'", c->input_format);
+    FORWARD(check_compress(r));
+    return cli_check_named_twice(r);
+}
+
+/* --- reading --- */
+
+brio_read_options cli_read_options(run *r) {
+    const common_options *c = &r->common;
+    brio_read_options options = brio_read_options_default();
+    if (c->input_format) options.format = brio_format_of(c->input_format);
+    options.columns = c->columns;
+    options.flat = r->over_map;
+    options.drop_invalid = c->drop_invalid;
+    options.dropped = &r->dropped;
+    options.salvage = c->salvage;
+    options.missing = &r->missing;
+    options.notes = &r->noted;
+    options.origins = r->wants_origins ? &r->added_origins : NULL;
+    r->dropped = r->missing = 0;
+    r->noted = (brio_read_notes){.size = sizeof r->noted};
+    return options;
+}
+
+void cli_tell_input(run *r, const char *path) {
+    const brio_read_notes *found = &r->noted;
+    if (found->numbered) cli_warn(r, WARNING_NUMBERED, path);
+    if (found->rounded) cli_warn(r, WARNING_ROUNDED, path, found->rounded_line, found->rounded_column, found->rounded);
+    if (r->common.drop_invalid) cli_fact_count(&r->facts, "dropped", r->dropped);
+    if (r->dropped) cli_warn(r, WARNING_DROPPED, path, r->dropped);
+    if (r->common.salvage) cli_fact_count(&r->facts, "missing", r->missing);
+    if (r->missing) cli_warn(r, WARNING_MISSING, path, r->missing);
+}
+
+brio_status cli_read(run *r, const char *path, brio_mesh **out) {
+    brio_read_options options = cli_read_options(r);
+    FORWARD(brio_read_as(r->ctx, path, &options, out));
+    FORWARD(cli_check_interrupt(r));
+    cli_tell_input(r, path);
+    FORWARD(cli_check_precision(r, path, *out));
+    r->has_properties |= (*out)->num_properties > 0 || (*out)->num_face_properties > 0;
+    cli_lap(r, "read");
+    return BRIO_OK;
+}
+
+brio_status cli_refuse_input_options(run *r) {
+    const common_options *c = &r->common;
+    const char *given = c->columns        ? "columns"
+                        : c->input_format ? "input-format"
+                        : c->drop_invalid ? "drop-invalid"
+                        : c->salvage      ? "salvage"
+                                          : NULL;
+    if (!given) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s reads no points; --%s has no meaning here", r->command->name, given);
+}
+
+/* Moves the arrays into a mesh that is freed. */
+brio_status cli_drop_connectivity(run *r, brio_mesh *mesh) {
+    brio_mesh *rest = NULL;
+    brio_status status = brio_mesh_new(r->ctx, &rest);
+    if (status != BRIO_OK) return status;
+    rest->face_offsets = mesh->face_offsets;
+    rest->face_vertices = mesh->face_vertices;
+    rest->tetrahedra = mesh->tetrahedra;
+    rest->edges = mesh->edges;
+    brio_mesh_free(rest);
+    mesh->face_offsets = NULL;
+    mesh->face_vertices = mesh->tetrahedra = mesh->edges = NULL;
+    mesh->num_faces = mesh->num_tetrahedra = mesh->num_edges = 0;
+    return BRIO_OK;
+}
+
+brio_status cli_read_points(run *r, const char *path, brio_mesh **out) {
+    brio_status status = cli_read(r, path, out);
+    return status == BRIO_OK ? cli_drop_connectivity(r, *out) : status;
+}
+
+brio_status cli_read_samples(run *r, const char *path, brio_mesh **out) {
+    brio_status status = cli_read(r, path, out);
+    if (status != BRIO_OK) return status;
+    size_t faces = (*out)->num_faces;
+    if (faces) cli_warn(r, WARNING_CONNECTED, path, faces, faces == 1 ? "" : "s", r->command->name);
+    return cli_drop_connectivity(r, *out);
+}
+
+const brio_format cli_mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
+                                        BRIO_FORMAT_STL, BRIO_FORMAT_VTU, BRIO_FORMAT_VTP,
+                                        BRIO_FORMAT_VTK, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
+
+const brio_format cli_point_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_XYZ,  BRIO_FORMAT_VTU, BRIO_FORMAT_VTK,
+                                         BRIO_FORMAT_VTP, BRIO_FORMAT_NODE, BRIO_FORMAT_LAS, BRIO_FORMAT_LAZ,
+                                         BRIO_FORMAT_NPY, BRIO_FORMAT_GLB,  BRIO_FORMAT_PCD, BRIO_FORMAT_AUTO};
+
+static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
+    for (; formats && *formats != format; formats++)
+        if (*formats == BRIO_FORMAT_AUTO)
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold the result of '%s'",
+                            r->common.output, r->command->name);
+    return BRIO_OK;
+}
+
+brio_status cli_require_output(run *r, const brio_format *formats, bool optional) {
+    const common_options *c = &r->common;
+    brio_format format;
+    if (!c->output && (optional || c->json)) return BRIO_OK;
+    if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
+    FORWARD(cli_output_format(r, c->output, c->format, &format));
+    FORWARD(check_format(r, formats, format));
+    if (strcmp(c->output, "-")) FORWARD(cli_check_target(r, c->output));
+    return BRIO_OK;
+}
+
+static brio_status write_file(run *r, const char *path, const char *extension, const brio_mesh *mesh) {
+    brio_write_options options = brio_write_options_default();
+    brio_status status = BRIO_OK;
+    double moved = 0;
+    int rounded = 0;
+    size_t merged = 0;
+    TRY(cli_output_format(r, path, extension, &options.format));
+    if (extension && !strcasecmp(extension, "csv")) options.separator = ",";
+    options.ascii = r->common.ascii;
+    options.float32 = r->common.float32;
+    options.moved = &moved;
+    options.colours_rounded = &rounded;
+    TRY(cli_settle_precision(r, path, mesh, &options, &merged));
+    options.compress = r->common.compress && brio_format_facts(options.format)->holds & BRIO_HOLDS_COMPRESSED;
+    options.comment = "brio " BRIO_VERSION;
+    options.neighbours = r->neighbours;
+    options.faces = r->faces;
+    options.edges = r->edges;
+    TRY(cli_check_interrupt(r));
+    cli_interrupt_writing(strcmp(path, "-") != 0);
+    status = brio_write(r->ctx, path, mesh, &options);
+    cli_interrupt_writing(false);
+    cli_lap(r, "write");
+    if (status != BRIO_OK) goto done;
+    cli_tell_moved(r, path, moved, merged);
+    cli_tell_lost(r, path, mesh, options.format);
+    if (rounded) cli_warn(r, WARNING_COLOURS, path);
+done:
+    return status;
+}
+
+brio_status cli_write(run *r, const brio_mesh *mesh) {
+    return r->common.output ? write_file(r, r->common.output, r->common.format, mesh) : BRIO_OK;
+}
+
+brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh) {
+    return write_file(r, path, NULL, mesh);
+}

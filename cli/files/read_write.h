@@ -1,0 +1,50 @@
+/* The input of a command, read, and its output, written. */
+#ifndef BRIO_CLI_READ_WRITE_H
+#define BRIO_CLI_READ_WRITE_H
+
+#include "cli/run/run.h"
+
+/** Refuses options that every command has: values without a meaning, options about files that are not written, files that are
+ *  named twice. */
+brio_status cli_check_common(run *r);
+
+/** Returns what the options of the command line say about reading. The library stores the counts of points that were left out, and
+ *  that miss, and what else a reader found, in the run: cli_tell_input. */
+brio_read_options cli_read_options(run *r);
+/** Reports, and warns of, the points that reading left out and those that the file lacks. Warns of what else the user may
+ *  not expect (brio_read_notes). */
+void cli_tell_input(run *r, const char *path);
+
+/** Reads an input with --input-format and --columns. The time is lapped as `read`. */
+brio_status cli_read(run *r, const char *path, brio_mesh **out);
+
+/** Refuses --columns and the other options about reading points for a command that reads none. */
+brio_status cli_refuse_input_options(run *r);
+
+/** Frees the faces, tetrahedra and edges of a mesh. */
+brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);
+
+/** Reads for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
+brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
+
+/** The same for a command that makes a surface of the points: warns where the file has one already. */
+brio_status cli_read_samples(run *r, const char *path, brio_mesh **out);
+
+/** The formats of surfaces; BRIO_FORMAT_AUTO ends the list. */
+extern const brio_format cli_mesh_formats[];
+/** Those of points with properties. */
+extern const brio_format cli_point_formats[];
+
+/** Refuses an option, where it was given, about a file that is not written. */
+brio_status cli_require_output_for(run *r, const char *option, bool given);
+
+/** Finds everything wrong with -o that can be found before the work: no output, no format, a format not among those of
+ *  `formats` (ended by BRIO_FORMAT_AUTO; NULL: any), a folder that cannot be written.   optional  the command has a use
+ *  without -o also when it does not report as JSON. */
+brio_status cli_require_output(run *r, const brio_format *formats, bool optional);
+/** Writes to -o, or does nothing without it. The time is lapped as `write`. */
+brio_status cli_write(run *r, const brio_mesh *mesh);
+/** Writes to another file, by its extension. */
+brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh);
+
+#endif

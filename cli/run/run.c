@@ -1,0 +1,184 @@
+/* A run of one command, between the command line on one side and the library on the other. */
+#include "cli/run/run.h"
+#include "cli/run/interrupt.h"
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#define FIELD(name) offsetof(common_options, name)
+const option cli_common_options[] = {
+    {"output", 'o', OPTION_OUTPUT, FIELD(output), "FILE",
+     "the file to write; its extension names the format; - is standard output", 0},
+    {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output, such as ply (needed with -o -)", 0},
+    {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT",
+     "format of the input, where its name and content do not tell", 0},
+    {"columns", 0, OPTION_TEXT, FIELD(columns), "NAMES", "columns of a text input: x,y,z,-,nx (- leaves one out)", 0},
+    {"drop-invalid", 0, OPTION_FLAG, FIELD(drop_invalid), NULL,
+     "leave out points of the input whose coordinates are not finite, instead of refusing the file", 0},
+    {"salvage", 0, OPTION_FLAG, FIELD(salvage), NULL, "of an input that ends early, keep the points that are whole", 0},
+    {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
+    {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
+    {"compress", 0, OPTION_FLAG, FIELD(compress), NULL, "write numbers compressed: .vtu, .vtp, .pcd", 0},
+    {"json", 0, OPTION_FLAG, FIELD(json), NULL, "print the report as one JSON object on standard output", 0},
+    {"threads", 0, OPTION_INT, FIELD(threads), "N", "threads to use (default 0: all cores)", 0},
+    {"seed", 0, OPTION_NATURAL, FIELD(seed), "N", "every random choice follows from it (default 1)", 0},
+    {"max-memory", 0, OPTION_SIZE | OPTION_POSITIVE, FIELD(max_memory), "SIZE",
+     "refuse work estimated over SIZE, such as 500M or 8G", 0},
+    {"scratch", 0, OPTION_TEXT, FIELD(scratch), "DIR", "keep the big arrays in files in DIR instead of memory", 0},
+    {"verbose", 0, OPTION_FLAG, FIELD(verbose), NULL,
+     "report also how it was done: seconds by stage, internal counts; with --help what each line means", 0},
+    {"quiet", 0, OPTION_FLAG, FIELD(quiet), NULL, "no progress bar, no report, no warnings or hints", 0},
+    {"progress", 0, OPTION_FLAG, FIELD(progress), NULL,
+     "show the progress bar even where standard error is no terminal", 0},
+    {0},
+};
+#undef FIELD
+
+const common_options cli_common_defaults = {.seed = 1};
+
+/* --- failure --- */
+
+brio_status cli_fail(run *r, brio_status status, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->message, sizeof r->message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+const char *cli_message(const run *r, brio_status status) {
+    if (r->message[0]) return r->message;
+    if (r->ctx && brio_message(r->ctx)[0]) return brio_message(r->ctx);
+    return brio_status_string(status);
+}
+
+int cli_exit_code(brio_status status) {
+    switch (status) {
+    case BRIO_OK:
+        return 0;
+    case BRIO_ERR_ARGUMENT:
+        return 1;
+    case BRIO_ERR_OPEN:
+    case BRIO_ERR_FORMAT:
+    case BRIO_ERR_NOT_FINITE:
+        return 2;
+    case BRIO_ERR_NO_ANSWER:
+        return 3;
+    case BRIO_ERR_NO_MEMORY:
+    case BRIO_ERR_TOO_LARGE:
+        return 4;
+    case BRIO_ERR_CHECK:
+        return 5;
+    case BRIO_ERR_WRITE:
+        return 6;
+    case BRIO_ERR_CANCELLED:
+        return 130;
+    case BRIO_ERR_INTERNAL:
+    case BRIO_STATUS_END:
+        break;
+    }
+    return 70; /* EX_SOFTWARE of sysexits.h: a fault of the program */
+}
+
+/* --- beginning and end --- */
+
+static int on_progress(const char *stage, double fraction, void *user) {
+    run *r = user;
+    cli_progress_show(&r->bar, stage, fraction);
+    return cli_interrupted();
+}
+
+brio_status cli_begin(run *r) {
+    const common_options *c = &r->common;
+    FORWARD(brio_context_new(NULL, &r->ctx));
+    brio_context_set_threads(r->ctx, c->threads);
+    brio_context_set_memory_limit(r->ctx, c->max_memory);
+    brio_context_set_progress(r->ctx, on_progress, r);
+    if (c->scratch) {
+        cli_interrupt_scratch(c->scratch, c->json);
+        FORWARD(brio_context_set_scratch(r->ctx, c->scratch));
+    }
+    r->bar.terminal = isatty(STDERR_FILENO);
+    r->bar.shown = c->progress || (r->bar.terminal && !c->quiet);
+    return BRIO_OK;
+}
+
+void cli_end(run *r) {
+    cli_facts_free(&r->facts);
+    brio_context_free(r->ctx);
+}
+
+/* --- the clock --- */
+
+void cli_stage(run *r, const char *stage, double seconds) {
+    int i = 0;
+    while (i < r->num_stages && strcmp(r->stages[i].stage, stage)) i++;
+    if (i == MAX_STAGES) return;
+    if (i == r->num_stages) r->num_stages++;
+    r->stages[i].stage = stage;
+    r->stages[i].seconds += seconds;
+}
+
+void cli_lap(run *r, const char *stage) {
+    double now = cli_clock();
+    cli_stage(r, stage, now - r->lap);
+    r->lap = now;
+}
+
+brio_status cli_check_interrupt(run *r) {
+    return cli_interrupted() ? cli_fail(r, BRIO_ERR_CANCELLED, "interrupted") : BRIO_OK;
+}
+
+/* --- memory --- */
+
+bool cli_limits_memory(const run *r) {
+    return r->common.max_memory && !r->common.scratch;
+}
+
+brio_status cli_require_memory(run *r, double bytes) {
+    const common_options *c = &r->common;
+    if (!cli_limits_memory(r) || bytes <= (double)c->max_memory) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_NO_MEMORY, "about %.1f MiB needed, over the limit of %.1f MiB (--max-memory)",
+                    bytes / 0x1p20, (double)c->max_memory / 0x1p20);
+}
+
+/* The kernel's high-water mark of this program's own memory. getrusage stands in where /proc is missing: it also counts
+ * what the process held before it became this program. */
+static uint64_t peak_bytes(void) {
+    unsigned long long kib = 0;
+    char line[256];
+    FILE *file = fopen("/proc/self/status", "r");
+    while (file && !kib && fgets(line, sizeof line, file)) sscanf(line, "VmHWM: %llu", &kib);
+    if (file) fclose(file);
+    struct rusage usage;
+    if (!kib && getrusage(RUSAGE_SELF, &usage) == 0) kib = (unsigned long long)usage.ru_maxrss;
+    return kib * 1024;
+}
+
+/* --- the frame of a report --- */
+
+void cli_opening_facts(run *r) {
+    facts *f = &r->facts;
+    int first = r->command->first_input < r->num_operands ? r->command->first_input : 0;
+    cli_fact_text(f, "command", r->command->name);
+    if (r->num_operands == first + 1) {
+        cli_fact_text(f, "input", r->operands[first]);
+    } else {
+        cli_fact_open(f, "input", FACT_LIST);
+        for (int i = first; i < r->num_operands; i++) cli_fact_text(f, NULL, r->operands[i]);
+        cli_fact_close(f);
+    }
+    if (r->common.output) cli_fact_text(f, "output", r->common.output);
+    cli_fact_count(f, "threads", (uint64_t)brio_context_threads(r->ctx));
+}
+
+void cli_closing_facts(run *r) {
+    facts *f = &r->facts;
+    cli_fact_open(f, "seconds", FACT_OBJECT);
+    for (int i = 0; i < r->num_stages; i++) cli_fact_seconds(f, r->stages[i].stage, r->stages[i].seconds);
+    cli_fact_seconds(f, "total", cli_clock() - r->started);
+    cli_fact_close(f);
+    cli_fact_bytes(f, "peak_bytes", peak_bytes());
+}

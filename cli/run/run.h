@@ -1,0 +1,129 @@
+/* A run of one command: the options that every command has, the library's context, the facts to report, the clock, the
+ * memory. Steps return a status; what it means for the process is decided in one place, cli_exit_code. */
+#ifndef BRIO_CLI_RUN_H
+#define BRIO_CLI_RUN_H
+
+#include "brio/brio.h"
+#include "cli/report/facts.h"
+#include "cli/run/notes.h"
+#include "cli/run/options.h"
+#include "cli/report/progress.h"
+
+/* The shapes of error handling, as in the library. FORWARD returns from a function that has nothing to free; TRY and FAIL
+ * go to the label `done:` of one that has. */
+#define FORWARD(call)                                                                                                  \
+    do {                                                                                                               \
+        const brio_status forwarded = (call);                                                                          \
+        if (forwarded != BRIO_OK) return forwarded;                                                                    \
+    } while (0)
+#define TRY(call)                                                                                                      \
+    do {                                                                                                               \
+        status = (call);                                                                                               \
+        if (status != BRIO_OK) goto done;                                                                              \
+    } while (0)
+
+/** Stores a sentence, assigns `code` to `status` and jumps to `done`. */
+#define FAIL(r, code, ...)                                                                                             \
+    do {                                                                                                               \
+        status = (code);                                                                                               \
+        cli_fail(r, status, __VA_ARGS__);                                                                              \
+        goto done;                                                                                                     \
+    } while (0)
+
+typedef struct common_options {
+    const char *output, *format, *input_format, *columns, *scratch;
+    bool json, quiet, verbose, progress, ascii, float32, compress, drop_invalid, salvage;
+    int threads;
+    uint64_t seed;
+    size_t max_memory; /* 0: no limit */
+} common_options;
+
+extern const option cli_common_options[];
+extern const common_options cli_common_defaults;
+
+/** Extensions of the files that hold points, meshes, or both. */
+#define CLI_INPUTS                                                                                                     \
+    "ply xyz pts txt csv asc xyzrgb xyzn tsv dat obj off stl vtu vtp vtk node ele las laz pcd ptx npy npz glb gltf "   \
+    "e57 "                                                                                                             \
+    "bnpts chemical extxyz"
+#define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp vtk glb"
+#define CLI_POINT_OUTPUTS "ply xyz pts txt csv asc tsv vtu vtp vtk node las laz pcd npy glb"
+
+enum { MAX_STAGES = 16 };
+
+typedef struct run {
+    const struct command *command;
+    common_options common;
+    const void *arguments; /* the command's own options */
+    char **operands;
+    int num_operands;
+    brio_context *ctx;
+    facts facts;
+    bool over_map;             /* texts of points may have no z, which then is 0 */
+    bool has_properties;       /* an input's points or faces have */
+    bool wants_origins;        /* set by a command before it reads: cli_read_options asks for places of scanners, */
+    int added_origins;         /* 1: which the file that was read last then has as properties that are not its own */
+    uint64_t dropped, missing; /* of the file that was read last, as in brio_read_options */
+    brio_read_notes noted;     /* the same */
+    progress bar;
+    struct {
+        const char *stage;
+        double seconds;
+    } stages[MAX_STAGES];
+    int num_stages;
+    double started, lap;           /* clock at the beginning, and at the end of the last stage */
+    bool neighbours, faces, edges; /* whether cli_write writes these files beside .node and .ele */
+    char message[1024];            /* of a failure found here; the library's is in the context */
+    notes warnings, hints;
+    bool flat; /* a failure is explained by the points: they lie in a plane or on a line */
+} run;
+
+/** Where the help lists a command. */
+typedef enum command_group { GROUP_FILES, GROUP_SURFACES, GROUP_TRIANGULATIONS } command_group;
+
+typedef struct command {
+    const char *name, *operands, *summary; /* the summary: what it does, on a line */
+    const char *description;               /* more of it, for the help and the manual; NULL: nothing */
+    const char *examples;                  /* command lines, each followed by a line that says what it does */
+    const char *inputs;                    /* extensions of the files that it reads; NULL: CLI_INPUTS */
+    const char *outputs;                   /* of the files that -o can name; NULL: it has no output */
+    bool output_optional;                  /* it has a use without -o, and without --json */
+    const option_choice *choices;          /* the words that the first operand can be; NULL: it is a file */
+    command_group group;
+    int min_operands, max_operands;
+    bool writes_last; /* the last of max_operands operands is the output, as -o is */
+    int first_input;  /* operands before it say what to do; without inputs the report names the first */
+    const option *options;
+    const void *defaults; /* what the command's options are before the line is read */
+    size_t size;          /* of that struct */
+    brio_status (*run)(run *r);
+} command;
+
+/** Prepares context, progress and signals' callback from the common options. */
+brio_status cli_begin(run *r);
+void cli_end(run *r);
+
+/** Stores the sentence for a status and returns the status. */
+brio_status cli_fail(run *r, brio_status status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/** The sentence of the failure, found here or in the library. */
+const char *cli_message(const run *r, brio_status status);
+int cli_exit_code(brio_status status);
+
+/** Ends a stage of the clock. */
+void cli_lap(run *r, const char *stage);
+/** Adds to a stage what something else has timed. */
+void cli_stage(run *r, const char *stage, double seconds);
+/** BRIO_ERR_CANCELLED when a signal asked to stop. */
+brio_status cli_check_interrupt(run *r);
+
+/** Whether an estimate can refuse the work. */
+bool cli_limits_memory(const run *r);
+/** Refuses an estimate over --max-memory. With --scratch the big arrays are not in memory and only the limit of the
+ *  context holds. */
+brio_status cli_require_memory(run *r, double bytes);
+
+/** The facts that begin and end every report. */
+void cli_opening_facts(run *r);
+void cli_closing_facts(run *r);
+
+#endif
