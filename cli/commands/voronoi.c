@@ -13,7 +13,7 @@
 
 /* --- how far cells are from filling their box --- */
 
-/* How far the cells in a box are from filling it, see box_error.h.
+/* How far the cells in a box are from filling it.
  *
  * A box of side 2^-400 has the volume 0 in doubles, and so have its cells. Their volumes are then computed once more with
  * all lengths times a power of two by which the box has a volume near 1: cells of such points are the same cells. */

@@ -15,7 +15,7 @@
 
 /* --- the loss --- */
 
-/* What single precision would do to points, see single_loss.h.
+/* What single precision would do to points.
  *
  * Points merge, or move over their neighbours. The points of a file that goes by in blocks are never together: points that
  * merge are near each other in space, and in most files near each other in the order, too. Where the order is random, a

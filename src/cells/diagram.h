@@ -31,7 +31,7 @@ typedef struct brio_diagram {
     const double *points, *weights; /* as the caller gave them */
     const double *at;               /* #P by 3: the points, relative to the origin and scaled */
     const double *square;           /* #P: the weights, scaled; NULL without weights */
-    size_t num_points;              /* the caller's; the triangulation can have up to three more (flat_points.h) */
+    size_t num_points;              /* the caller's; the triangulation can have up to three more (cells.c) */
     double origin[3];               /* each difference points - origin is exact */
     double scale;                   /* a power of two: at = scale * (points - origin) */
     bool flat;                      /* the points have dimension 2 or less: centres say nothing */

@@ -51,7 +51,7 @@ typedef struct brio_builder {
     bool salvage;          /* readers keep the whole points of a file that ends early, and say how many miss */
     uint64_t missing;      /* points that such a file lacks */
     brio_not_finite refused; /* vertices seen that are not finite: with `streams` or `drop_invalid` */
-    bool origins;            /* the caller wants the places of scanners as properties (origins.h) */
+    bool origins;            /* the caller wants the places of scanners as properties */
     bool has_origins;        /* the properties are there, */
     size_t first_origin;     /* from this one on */
     bool scans;              /* the caller wants the places in the grids of scans as properties, too */

@@ -48,7 +48,9 @@ static void spline(double place, uint32_t size, uint32_t index[4], double weight
     weight[3] = t * t * (-0.5 + 0.5 * t);
 }
 
-double brio_volume_at(const brio_volume *volume, const double *place) {
+/* Returns the value at a place inside the grid, given in steps along the axes. The field is piecewise cubic along
+ *  each axis, smooth (C1), and equal to the values at the grid's places. */
+static double volume_at(const brio_volume *volume, const double *place) {
     uint32_t index[3][4];
     double weight[3][4], sum = 0;
     for (int k = 0; k < 3; k++) spline(place[k], volume->size[k], index[k], weight[k]);
@@ -80,7 +82,7 @@ static double below_level(const double *p, const void *user) {
         place[k] = p[k] * s->stretch[k];
         outside = fmax(outside, fmax(0.5 - p[k], p[k] - s->cells[k] + 0.5));
     }
-    return fmax(s->level - brio_volume_at(s->volume, place), s->scale * outside);
+    return fmax(s->level - volume_at(s->volume, place), s->scale * outside);
 }
 
 static double below_level_in_space(const double *p, const void *user) {

@@ -16,10 +16,6 @@ void brio_volume_free(brio_context *ctx, brio_volume *volume);
 /** Computes mean and standard deviation of the values. */
 void brio_volume_statistics(const brio_volume *volume, double *mean, double *deviation);
 
-/** Returns the value at a place inside the grid, given in steps along the axes. The field is piecewise cubic along
- *  each axis, smooth (C1), and equal to the values at the grid's places. */
-double brio_volume_at(const brio_volume *volume, const double *place);
-
 /** Meshes the surface of the part of a volume whose values are above a level. Flat pieces half a cell inside the
  *  volume's border close the surface. The mesh is closed, manifold and oriented, counterclockwise seen from outside.
  *  resolution  cells along the longest side; 0: one for each step.   Memory: the mesh and two layers of cells.

@@ -21,8 +21,125 @@
  * Differs from the paper (Ledoux, Gold): x is not inserted and removed; the volumes come from the cavity alone, and the
  * last step is new. */
 #include "locate/natural.h"
+#include "base/flat_shares.h"
+#include "base/scale.h"
 #include "base/vector.h"
 #include "predicates/circumcentre.h"
+#include <string.h>
+
+/* --- barycentric coordinates --- */
+
+/* Coordinates of a query in the tetrahedron that holds it: the volumes of the four tetrahedra that the query makes with
+ * the facets, divided by their sum. Coordinates are relative to the query.
+ *
+ * A flat tetrahedron makes the volumes inexact. So the shares are refined: while the shares do not reproduce the query,
+ * the shares of the residual are taken off. Where that does not reproduce the query, the tetrahedron is flat up to rounding,
+ * and its faces take its place (base/flat_shares.h). So linear functions are reproduced almost to the rounding of their
+ * values, whatever the shape. */
+
+enum { REFINEMENTS = 2 };
+
+/* Returns a power of two that scales the offsets from x to these places to at most 1, or 0 if doubles cannot hold the
+ *  offsets. */
+static double offset_scale(const brio_locator *l, const uint32_t *places, size_t count, const double *x) {
+    double most = 0;
+    int exponent;
+    for (size_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) most = fmax(most, fabs(l->record[places[i]][k] - x[k]));
+    if (!(most < INFINITY)) return 0;
+    frexp(most, &exponent);
+    return exponent < -1000 ? 0x1p1000 : exponent > 1000 ? 0x1p-1020 : brio_power_of_two(-exponent);
+}
+
+/* Returns det [a, b, c]. */
+static double triple(const double *a, const double *b, const double *c) {
+    double bc[3];
+    brio_cross(b, c, bc);
+    return brio_dot(a, bc);
+}
+
+/* Sets share to the solution of sum share[i] row[i] = target, sum share[i] = total: Cramer's rule. */
+static bool solve(const double row[4][3], const double *target, double total, double share[4]) {
+    double edge[3][3], rest[3], volume;
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 3; i++) edge[i][k] = row[i + 1][k] - row[0][k];
+        rest[k] = target[k] - total * row[0][k];
+    }
+    volume = triple(edge[0], edge[1], edge[2]);
+    share[1] = triple(rest, edge[1], edge[2]) / volume;
+    share[2] = triple(edge[0], rest, edge[2]) / volume;
+    share[3] = triple(edge[0], edge[1], rest) / volume;
+    share[0] = total - share[1] - share[2] - share[3];
+    return isfinite(share[0]);
+}
+
+/* Sets residual to -sum share[i] row[i]. */
+static void find_residual(const double row[4][3], const double share[4], double residual[3]) {
+    for (int k = 0; k < 3; k++) {
+        residual[k] = 0;
+        for (int i = 0; i < 4; i++) residual[k] -= share[i] * row[i][k];
+    }
+}
+
+/* Clears the shares that are 0 exactly or would be negative, and divides the others by their sum. */
+static void normalize(unsigned zeros, double share[4]) {
+    double sum = 0;
+    for (int i = 0; i < 4; i++) {
+        if (zeros >> i & 1 || !(share[i] > 0)) share[i] = 0;
+        sum += share[i];
+    }
+    for (int i = 0; i < 4; i++) share[i] = sum > 0 ? share[i] / sum : 0.25;
+}
+
+void brio_barycentric(const brio_locator *l, const brio_holder *h, const double *x, double share[4]) {
+    const uint32_t *v = l->t.tet[h->tet].vertex;
+    double row[4][3], residual[3] = {0, 0, 0}, more[4], scale = offset_scale(l, v, 4, x);
+    if (__builtin_popcount(h->zeros) == 3) {
+        for (int i = 0; i < 4; i++) share[i] = !(h->zeros >> i & 1);
+        return;
+    }
+    for (int i = 0; i < 4; i++) brio_offset(l, v[i], x, scale, row[i]);
+    bool solved = solve(row, residual, 1, share);
+    for (int n = 0; n < REFINEMENTS && solved; n++) {
+        find_residual(row, share, residual);
+        solved = solve(row, residual, 0, more);
+        for (int i = 0; i < 4 && solved; i++) share[i] += more[i];
+    }
+    normalize(h->zeros, share);
+    if (!brio_shares_hold((const double(*)[3])row, 4, share))
+        brio_flat_shares((const double(*)[3])row, 4, h->zeros, share);
+}
+
+/* --- numbers of indices --- */
+
+/* A small map from keys to numbers. */
+
+enum { FIRST_CAPACITY = 256 };
+
+brio_status brio_map_grow(brio_context *ctx, brio_index_map *map) {
+    brio_index_map larger = {.capacity = map->capacity ? 2 * map->capacity : FIRST_CAPACITY, .generation = 1};
+    brio_status status = BRIO_ALLOC_ZERO(ctx, larger.entry, larger.capacity);
+    if (status != BRIO_OK) return status;
+    for (size_t i = 0; i < map->capacity; i++) {
+        if (map->entry[i].generation != map->generation) continue;
+        brio_map_entry *e = &larger.entry[brio_map_place(&larger, map->entry[i].key)];
+        *e = (brio_map_entry){map->entry[i].key, 1, map->entry[i].value};
+        larger.size++;
+    }
+    brio_release(ctx, map->entry);
+    *map = larger;
+    return BRIO_OK;
+}
+
+/* Forgets all keys. */
+static void map_clear(brio_index_map *map) {
+    map->size = 0;
+    if (!map->capacity || ++map->generation) return;
+    memset(map->entry, 0, map->capacity * sizeof *map->entry);
+    map->generation = 1;
+}
+
+/* --- natural coordinates --- */
 
 void brio_natural_free(brio_natural *n) {
     void *const block[] = {n->tets.entry, n->vertices.entry, n->edges.entry, n->tet,   n->place, n->corner,
@@ -127,7 +244,7 @@ static brio_status list_edges(brio_natural *n, brio_querent *q, const double *x)
 
 /* Computes the offsets of the vertices and the centres. *found becomes false where doubles do not hold them. */
 static brio_status find_centres(brio_natural *n, const brio_locator *l, const double *x, bool *found) {
-    double scale = brio_offset_scale(l, n->place + 1, n->num_vertices - 1, x);
+    double scale = offset_scale(l, n->place + 1, n->num_vertices - 1, x);
     BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->offset, n->offset_room, n->num_vertices));
     BRIO_FORWARD(BRIO_RESERVE(n->ctx, n->centre, n->centre_room, n->num_centres));
     for (int k = 0; k < 3; k++) n->offset[0][k] = 0;
@@ -244,9 +361,9 @@ static bool divide_by_sum(brio_natural *n, double sum) {
 
 static brio_status clear(brio_natural *n, brio_context *ctx) {
     n->ctx = ctx;
-    brio_map_clear(&n->tets);
-    brio_map_clear(&n->vertices);
-    brio_map_clear(&n->edges);
+    map_clear(&n->tets);
+    map_clear(&n->vertices);
+    map_clear(&n->edges);
     n->num_tets = n->num_centres = n->num_edges = n->num_facets = 0;
     n->num_vertices = 1; /* the query */
     return BRIO_RESERVE(ctx, n->place, n->place_room, 1);

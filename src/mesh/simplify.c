@@ -14,7 +14,7 @@
  * done once more, as one block, with a guard that sees every sheet (collapse_guard.h).
  *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
- * Differs from the paper: blocks instead of one queue; see also collapse.c and quadric.h. */
+ * Differs from the paper: blocks instead of one queue; see also collapse.c and collapse_mesh.h. */
 #include "mesh/simplify.h"
 #include "base/memory.h"
 #include "base/team.h"

@@ -41,7 +41,7 @@ static const brio_mesh_offset_options STANDARD = {.size = sizeof STANDARD};
 
 BRIO_OPTIONS_INIT(brio_mesh_offset_options)
 
-void brio_offset_work_free(brio_offset_work *w) {
+static void offset_work_free(brio_offset_work *w) {
     brio_release(w->ctx, w->points);
     brio_release(w->ctx, w->triangles);
     brio_release(w->ctx, w->faults);
@@ -184,7 +184,7 @@ brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double di
     s.error = ldexp(worst_of(&w), exponent);
     BRIO_GIVE(brio_mesh_offset_stats, stats, &s);
 done:
-    brio_offset_work_free(&w);
+    offset_work_free(&w);
     brio_solid_free(ctx, &solid);
     brio_release(ctx, vertices);
     if (status != BRIO_OK) {

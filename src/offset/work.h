@@ -41,8 +41,6 @@ extern const double brio_offset_places[BRIO_OFFSET_PLACES][3];
 brio_status brio_offset_settle(brio_context *ctx, const brio_mesh *mesh, double distance,
                                const brio_mesh_offset_options *options, brio_mesh_offset_options *settled);
 
-void brio_offset_work_free(brio_offset_work *w);
-
 /** Reports progress; the share done so far. */
 brio_status brio_offset_progress(brio_offset_work *w);
 

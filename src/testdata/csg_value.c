@@ -11,8 +11,135 @@
  * rendering of complex closed-form implicit surfaces. SIGGRAPH 2020 (children left out, region by region). */
 #include "base/vector.h"
 #include "testdata/csg.h"
-#include "testdata/csg_shapes.h"
 #include <math.h>
+#include <stdint.h>
+
+/* --- shapes --- */
+
+/* Signed distances of simple shapes.
+ *
+ * Based on: Hart. Sphere tracing: a geometric method for the antialiased ray tracing of implicit surfaces. The Visual
+ * Computer 1996. Schoen. Infinite periodic minimal surfaces without self-intersections. NASA TN D-5541, 1970 (the
+ * gyroid). */
+
+/** Returns about the distance from an upright screw thread round the origin with a triangular section. */
+double brio_thread_distance(const double *p, const double *v); /* radius, depth, pitch, half height */
+
+static double length2(double x, double y) {
+    return sqrt(x * x + y * y);
+}
+
+/* Returns the distance from a body that is the product of two others, from the distances of those. */
+static double product_distance(double a, double b) {
+    return fmin(fmax(a, b), 0) + length2(fmax(a, 0), fmax(b, 0));
+}
+
+/* Returns the distance from an ellipsoid with half axes r, to first order in the distance; at most the least half axis
+ * deep. With k = |p / r|, the function (k - 1) k / |p / r^2| has value 0 and slope 1 on the surface. */
+static double ellipsoid_distance(const double *p, const double *r) {
+    double k = 0, slope = 0, least = fmin(r[0], fmin(r[1], r[2]));
+    for (int i = 0; i < 3; i++) {
+        double x = p[i] / r[i];
+        k += x * x;
+        slope += x * x / (r[i] * r[i]);
+    }
+    k = sqrt(k);
+    return slope > 0 ? fmax(k * (k - 1) / sqrt(slope), -least) : -least;
+}
+
+/* Returns the distance from a segment on the z axis from 0 to `height`, less a radius that runs from `low` to `high`
+ * (the hull of two balls). |low - high| < height. Along the axis the nearest ball of the family is shifted by the sine
+ * of the cone's angle. */
+static double capsule_distance(const double *p, double height, double low, double high) {
+    double b = (low - high) / height, a = sqrt(fmax(1 - b * b, 0)), q = length2(p[0], p[1]), k = p[2] * a - q * b;
+    if (k < 0) return length2(q, p[2]) - low;
+    if (k > a * height) return length2(q, p[2] - height) - high;
+    return q * a + p[2] * b - low;
+}
+
+/* Returns the distance from a torus round the z axis. */
+static double torus_distance(const double *p, double major, double minor) {
+    return length2(length2(p[0], p[1]) - major, p[2]) - minor;
+}
+
+/* Returns the distance from a box with the given half sides round the origin. */
+static double box_distance(const double *p, const double *half) {
+    double outside = 0, most = -INFINITY;
+    for (int k = 0; k < 3; k++) {
+        double d = fabs(p[k]) - half[k];
+        most = fmax(most, d);
+        if (d > 0) outside += d * d;
+    }
+    return fmin(most, 0) + sqrt(outside);
+}
+
+/* Returns the distance from an upright cylinder round the origin. */
+static double cylinder_distance(const double *p, double radius, double half_height) {
+    return product_distance(length2(p[0], p[1]) - radius, fabs(p[2]) - half_height);
+}
+
+/* Returns the distance from a polygon in the plane. Point i of the polygon is at points[i][0], points[i][1]. The sign
+ * changes with each edge that crosses the ray from the point towards +x. */
+static double polygon_distance(double x, double y, const double (*points)[4], uint32_t count) {
+    double square = INFINITY, sign = 1;
+    for (uint32_t i = 0, j = count - 1; i < count; j = i++) {
+        const double *a = points[i], *b = points[j];
+        double ex = b[0] - a[0], ey = b[1] - a[1], wx = x - a[0], wy = y - a[1];
+        double t = fmin(fmax((wx * ex + wy * ey) / (ex * ex + ey * ey), 0), 1);
+        double dx = wx - t * ex, dy = wy - t * ey;
+        square = fmin(square, dx * dx + dy * dy);
+        if ((y >= a[1]) == (y < b[1]) && (y >= a[1]) == (ex * wy > ey * wx)) sign = -sign;
+    }
+    return sign * sqrt(square);
+}
+
+/* Returns the distance from a polygon in the plane of x and y, extruded to |z| <= half. */
+static double prism_distance(const double *p, double half, const double (*points)[4], uint32_t count) {
+    return product_distance(polygon_distance(p[0], p[1], points, count), fabs(p[2]) - half);
+}
+
+/* Returns the distance from a polyline of balls: point i is a centre in [0] to [2], with its radius in [3]. Radii run
+ *  linearly between the points; the value exceeds the distance by a factor of at most sqrt(1 + slope^2). */
+static double strand_distance(const double *p, const double (*points)[4], uint32_t count) {
+    double least = INFINITY;
+    for (uint32_t i = 0; i + 1 < count; i++) {
+        const double *a = points[i], *b = points[i + 1];
+        double e[3], w[3];
+        for (int k = 0; k < 3; k++) e[k] = b[k] - a[k], w[k] = p[k] - a[k];
+        double t = fmin(fmax(brio_dot(w, e) / brio_dot(e, e), 0), 1);
+        for (int k = 0; k < 3; k++) w[k] -= t * e[k];
+        least = fmin(least, sqrt(brio_dot(w, w)) - a[3] - t * (b[3] - a[3]));
+    }
+    return least;
+}
+
+/* Returns about the distance from a vessel round the z axis, between z = v[0] and z = v[1]. Its radius is v[2] times 1
+ * + the sum of v[3 + i] sin(pi (i + 1) t + v[6 + i]), i = 0 to 2, t being (z - v[9]) / v[10]. Divides the distance
+ * from the profile along the radius by the secant of the profile's slope. */
+static double vessel_distance(const double *p, const double *v) {
+    double t = (p[2] - v[9]) / v[10], radius = 1, slope = 0;
+    for (int i = 0; i < 3; i++) {
+        double frequency = 3.14159265358979324 * (i + 1), angle = frequency * t + v[6 + i];
+        radius += v[3 + i] * sin(angle);
+        slope += v[3 + i] * frequency * cos(angle);
+    }
+    double side = (length2(p[0], p[1]) - v[2] * radius) / length2(1, v[2] * slope / v[10]);
+    return fmax(side, fmax(v[0] - p[2], p[2] - v[1]));
+}
+
+double brio_thread_distance(const double *p, const double *v) {
+    double turn = p[2] / v[2] - atan2(p[1], p[0]) / 6.28318530717958648, depth = 2 * fabs(turn - rint(turn)) * v[1];
+    double side = (length2(p[0], p[1]) - v[0] + depth) / length2(1, 2 * v[1] / v[2]);
+    return fmax(side, fabs(p[2]) - v[3]);
+}
+
+/* Returns about the distance from a periodic sheet, the gyroid of period 2 pi / frequency. */
+static double gyroid_distance(const double *p, double frequency) {
+    double x = frequency * p[0], y = frequency * p[1], z = frequency * p[2];
+    return (sin(x) * cos(y) + sin(y) * cos(z) + sin(z) * cos(x)) / (1.5 * frequency);
+}
+
+/* --- trees --- */
 
 static const double FULL_TURN = 6.28318530717958648;
 
@@ -145,27 +272,27 @@ static double shape(const brio_csg *tree, const brio_csg_node *n, const double *
     case BRIO_CSG_BALL:
         return sqrt(brio_dot(p, p)) - v[0];
     case BRIO_CSG_ELLIPSOID:
-        return brio_ellipsoid_distance(p, v);
+        return ellipsoid_distance(p, v);
     case BRIO_CSG_CAPSULE:
-        return brio_capsule_distance(p, v[0], v[1], v[2]);
+        return capsule_distance(p, v[0], v[1], v[2]);
     case BRIO_CSG_TORUS:
-        return brio_torus_distance(p, v[0], v[1]);
+        return torus_distance(p, v[0], v[1]);
     case BRIO_CSG_BOX:
-        return brio_box_distance(p, v);
+        return box_distance(p, v);
     case BRIO_CSG_CYLINDER:
-        return brio_cylinder_distance(p, v[0], v[1]);
+        return cylinder_distance(p, v[0], v[1]);
     case BRIO_CSG_PRISM:
-        return brio_prism_distance(p, v[0], tree->points + n->point, n->points);
+        return prism_distance(p, v[0], tree->points + n->point, n->points);
     case BRIO_CSG_LATHE:
-        return brio_polygon_distance(sqrt(p[0] * p[0] + p[1] * p[1]), p[2], tree->points + n->point, n->points);
+        return polygon_distance(sqrt(p[0] * p[0] + p[1] * p[1]), p[2], tree->points + n->point, n->points);
     case BRIO_CSG_STRAND:
-        return brio_strand_distance(p, tree->points + n->point, n->points);
+        return strand_distance(p, tree->points + n->point, n->points);
     case BRIO_CSG_VESSEL:
-        return brio_vessel_distance(p, v);
+        return vessel_distance(p, v);
     case BRIO_CSG_THREAD:
         return brio_thread_distance(p, v);
     case BRIO_CSG_GYROID:
-        return brio_gyroid_distance(p, v[0]);
+        return gyroid_distance(p, v[0]);
     default:
         return p[2];
     }

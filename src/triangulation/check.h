@@ -14,11 +14,6 @@ typedef struct {
     bool canonical; /* every tie found so far is broken as by the symbolic perturbation */
 } brio_judge;
 
-brio_judge brio_judge_of(brio_context *ctx, const brio_tetrahedra *t, size_t num_points, bool weighted);
-
-/** Runs tests 1 to 6 of check.c on the tetrahedra. Returns BRIO_OK, BRIO_ERR_CHECK, BRIO_ERR_CANCELLED. */
-brio_status brio_check_tetrahedra(brio_judge *j);
-
 /** Runs test 6 on one point: point p must not be inside the (ortho)sphere of finite tetrahedron tet. */
 brio_status brio_check_sphere(brio_judge *j, size_t tet, uint32_t p);
 

@@ -168,7 +168,7 @@ size_t brio_laz_pack(brio_laz_packer *p, const uint8_t *rows, size_t count, cons
 
 /* --- all chunks --- */
 
-enum { BYTES = 1 /* the context of the table's integers, as in laz_table.c */, MOST_ENTRY = 8 /* bytes */ };
+enum { BYTES = 1 /* the context of the table's integers, as in laz_read.c */, MOST_ENTRY = 8 /* bytes */ };
 
 typedef struct brio_laz_worker {
     brio_laz_packer *packer;
