@@ -53,7 +53,7 @@ static void nearest_eight(const work *w) {
 }
 
 static void interpolate(const work *w, brio_interpolation_method method) {
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     o.method = method;
     o.values = w->values;
     require(brio_locator_interpolate(ctx, w->locator, w->queries, w->count, &o, w->results));
@@ -99,7 +99,7 @@ static double *in_boxes(const double *queries, size_t count) {
 
 int main(int argc, char **argv) {
     size_t n = argc > 1 ? strtoul(argv[1], NULL, 10) : 1000000, count = argc > 2 ? strtoul(argv[2], NULL, 10) : 1000000;
-    brio_generate_options o = brio_generate_options_default();
+    brio_generate_options o = {0};
     brio_mesh *points, *queries;
     brio_triangulation *t;
     brio_locator *locator;

@@ -18,7 +18,7 @@ static void print_contents(const brio_mesh *mesh) {
 }
 
 static void print_certificate(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     CHECK(ctx, brio_mesh_certificate(ctx, mesh, &c));
     printf("closed %s, manifold %s, oriented %s\n", yes(c.closed), yes(c.manifold), yes(c.oriented));
     printf("components %zu, genus %lld, boundary loops %zu\n", c.components, (long long)c.genus, c.boundary_loops);
@@ -34,22 +34,21 @@ int main(int argc, char **argv) {
         return EXIT_FAILURE;
     }
     CHECK(ctx, brio_context_new(NULL, &ctx));
-    CHECK(ctx, brio_read(ctx, argv[1], BRIO_FORMAT_AUTO, &mesh));
+    CHECK(ctx, brio_read(ctx, argv[1], NULL, &mesh));
     print_contents(mesh);
     if (mesh->num_faces) print_certificate(ctx, mesh);
 
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.comment = "written by 03_files";
     CHECK(ctx, brio_write(ctx, argv[2], mesh, &options));
 
     printf("read back:\n");
-    CHECK(ctx, brio_read(ctx, argv[2], BRIO_FORMAT_AUTO, &again));
+    CHECK(ctx, brio_read(ctx, argv[2], NULL, &again));
     print_contents(again);
 
     /* A failure is a status and a sentence, and leaves nothing to clean up. */
     brio_mesh *missing = NULL;
-    if (brio_read(ctx, "no-such-file.ply", BRIO_FORMAT_AUTO, &missing) == BRIO_ERR_OPEN)
-        printf("%s\n", brio_message(ctx));
+    if (brio_read(ctx, "no-such-file.ply", NULL, &missing) == BRIO_ERR_OPEN) printf("%s\n", brio_message(ctx));
 
     brio_mesh_free(again);
     brio_mesh_free(mesh);

@@ -8,15 +8,14 @@ static const size_t NUM_POINTS = 4000;
 int main(int argc, char **argv) {
     brio_context *ctx = NULL;
     brio_mesh *cloud = NULL, *surface = NULL;
-    brio_power_crust_stats stats = {.size = sizeof stats};
-    brio_certificate c = {.size = sizeof c};
+    brio_surface_stats stats = {0};
+    brio_certificate c = {0};
     CHECK(ctx, brio_context_new(NULL, &ctx));
     CHECK(ctx, brio_generate(ctx, BRIO_KIND_TORUS, NUM_POINTS, NULL, &cloud)); /* radii 1 and 0.4 */
 
-    brio_power_crust_options options = brio_power_crust_options_default();
-    options.triangulate = 1;
-    CHECK(ctx, brio_power_crust(ctx, cloud->vertices, cloud->num_vertices, &options, &surface, NULL, &stats));
-    printf("samples %zu, confused poles %zu\n", stats.poles.samples, stats.poles.confused);
+    brio_surface_options options = {.method = BRIO_SURFACE_POWER_CRUST};
+    CHECK(ctx, brio_surface(ctx, cloud->vertices, cloud->num_vertices, &options, &surface, &stats));
+    printf("samples %zu, confused poles %zu\n", stats.samples, stats.poles.confused);
 
     CHECK(ctx, brio_mesh_certificate(ctx, surface, &c));
     printf("closed %s, manifold %s, oriented %s\n", yes(c.closed), yes(c.manifold), yes(c.oriented));

@@ -29,13 +29,13 @@ int main(void) {
 
     watcher hasty = {.patience = 0.5};
     brio_context_set_progress(ctx, watch, &hasty);
-    brio_status status = brio_power_crust(ctx, cloud->vertices, cloud->num_vertices, NULL, &surface, NULL, NULL);
+    brio_status status = brio_surface(ctx, cloud->vertices, cloud->num_vertices, NULL, &surface, NULL);
     printf("stopped half way: %s\n", brio_status_string(status));
     printf("no result: %s, all memory given back: %s\n", yes(surface == NULL), yes(brio_context_memory(ctx) == held));
 
     watcher calm = {.patience = 2};
     brio_context_set_progress(ctx, watch, &calm);
-    CHECK(ctx, brio_power_crust(ctx, cloud->vertices, cloud->num_vertices, NULL, &surface, NULL, NULL));
+    CHECK(ctx, brio_surface(ctx, cloud->vertices, cloud->num_vertices, NULL, &surface, NULL));
     printf("second run finished: watched: %s, never went back: %s\n", yes(calm.calls > 0), yes(!calm.went_back));
 
     brio_mesh_free(surface);

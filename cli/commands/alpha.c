@@ -94,7 +94,7 @@ static void report(run *r, const brio_alpha_complex *c, const brio_mesh *surface
 
 static brio_status triangulate(run *r, const brio_mesh *input, const double *weights, brio_triangulation **t,
                                brio_alpha_complex *complex) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.seed = r->common.seed;
     FORWARD(brio_delaunay(r->ctx, input->vertices, weights, input->num_vertices, &o, t));
     cli_lap(r, "delaunay");
@@ -106,7 +106,7 @@ static brio_status triangulate(run *r, const brio_mesh *input, const double *wei
 static brio_status make_shape(run *r, const brio_mesh *input, const brio_alpha_complex *complex, double alpha) {
     brio_status status = BRIO_OK;
     brio_mesh *surface = NULL;
-    brio_alpha_shape_stats s = {.size = sizeof s};
+    brio_alpha_shape_stats s = {0};
     if (isnan(alpha)) TRY(brio_alpha_auto(r->ctx, complex, &alpha));
     TRY(brio_alpha_shape(r->ctx, input->vertices, complex, alpha, &surface, &s));
     cli_lap(r, "shape");
@@ -126,7 +126,7 @@ static brio_status alpha(run *r) {
     double *weights = NULL, value = NAN;
     size_t usual;
     brio_triangulation *t = NULL;
-    brio_alpha_complex complex = {.size = sizeof complex};
+    brio_alpha_complex complex = {0};
     brio_status status = BRIO_OK;
     TRY(read_alpha(r, a, &value));
     TRY(cli_check_weights_options(r, &a->weights));

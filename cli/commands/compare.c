@@ -146,7 +146,7 @@ static void report_distance(facts *f, const brio_distance *d) {
 /* Compares two surfaces by points on both. */
 static brio_status compare_surfaces(run *r, const brio_mesh *a, const brio_mesh *b) {
     const arguments *chosen = r->arguments;
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     brio_status status = BRIO_OK;
     if (r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "two surfaces: -o is for points compared with a surface");
     status = brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &d);

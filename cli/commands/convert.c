@@ -122,12 +122,12 @@ static void report(run *r, const brio_convert_stats *stats, const brio_convert_o
 }
 
 static brio_status convert(run *r) {
-    brio_convert_options o = brio_convert_options_default();
-    brio_read_options from = brio_read_options_default();
-    brio_write_options to = brio_write_options_default();
+    brio_convert_options o = {0};
+    brio_read_options from = {0};
+    brio_write_options to = {0};
     double moved = 0;
     size_t merged = 0;
-    brio_convert_stats stats = {.size = sizeof stats};
+    brio_convert_stats stats = {0};
     facts lost = {0}, renamed = {0};
     brio_status status = BRIO_OK;
     if (!r->common.output) return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: expected A B, got one file");

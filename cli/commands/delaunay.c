@@ -220,7 +220,7 @@ done:
 }
 
 static brio_delaunay_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = insertion_order(a);
     o.locate = (brio_location)a->locate;
     o.first_conflict = a->first_conflict;

@@ -117,13 +117,13 @@ done:
 }
 
 static brio_status generate_points(run *r, const arguments *a, brio_kind kind) {
-    brio_generate_options o = brio_generate_options_default();
+    brio_generate_options o = {0};
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a, kind));
     TRY(cli_require_work(r, BRIO_OK, NULL, brio_estimate_generate((size_t)a->points)));
     o.seed = r->common.seed;
-    if (!isnan(a->noise)) o.noise = a->noise;
+    if (!isnan(a->noise)) o.noise = a->noise > 0 ? a->noise : -1;
     if (a->views) o.views = a->views;
     TRY(brio_generate(r->ctx, kind, (size_t)a->points, &o, &mesh));
     cli_lap(r, "generate");

@@ -34,8 +34,8 @@ static void report(run *r, const brio_mesh *hull, const brio_convex_hull_stats *
 
 static brio_status hull(run *r) {
     const arguments *a = r->arguments;
-    brio_convex_hull_options o = brio_convex_hull_options_default();
-    brio_convex_hull_stats s = {.size = sizeof s};
+    brio_convex_hull_options o = {0};
+    brio_convex_hull_stats s = {0};
     brio_mesh *input = NULL, *surface = NULL;
     uint32_t *samples = NULL;
     brio_status status = BRIO_OK;

@@ -256,9 +256,9 @@ static brio_status report_surfaces(run *r, const brio_mesh *mesh, size_t usual) 
     facts *f = &r->facts;
     double beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh);
     uint64_t surface, crust, cocone;
-    FORWARD(brio_estimate_labeled_delaunay(r->ctx, usual, NULL, &surface));
-    FORWARD(brio_estimate_power_crust(r->ctx, usual, NULL, &crust));
-    FORWARD(brio_estimate_cocone(r->ctx, usual, NULL, &cocone));
+    FORWARD(brio_estimate_surface(r->ctx, usual, NULL, &surface));
+    FORWARD(brio_estimate_power_shape(r->ctx, usual, NULL, &crust));
+    FORWARD(brio_estimate_surface(r->ctx, usual, &(brio_surface_options){.method = BRIO_SURFACE_COCONE}, &cocone));
     cli_fact_bytes(f, "surface", (uint64_t)(beside + (double)surface));
     cli_fact_bytes(f, "medial", (uint64_t)(beside + (double)crust));
     FORWARD(report_offset(r, mesh, beside, crust));

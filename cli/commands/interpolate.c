@@ -69,7 +69,7 @@ static brio_status write_results(run *r, const located *l, const arguments *a, c
 
 static brio_status answer(run *r, const located *l, const arguments *a, const double *values) {
     brio_status status = BRIO_OK;
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     double *results = NULL;
     size_t inside = 0, count = l->at->num_vertices;
     double *found = malloc((2 * count + 1) * sizeof *found);

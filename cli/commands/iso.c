@@ -19,7 +19,8 @@ static const option options[] = {
      "cells along the longest side (default the map's own, or 0.5 A for atoms)", 0},
     {"points", 'n', OPTION_NATURAL | OPTION_POSITIVE, FIELD(vertices), "N",
      "choose the resolution for about N vertices", 0},
-    {"blobbiness", 0, OPTION_NUMBER, FIELD(blobbiness), "B", "atoms: the larger, the closer to spheres (default 2)", 0},
+    {"blobbiness", 0, OPTION_NUMBER | OPTION_POSITIVE, FIELD(blobbiness), "B",
+     "atoms: the larger, the closer to spheres (default 2)", 0},
     {"delaunay-conforming", 0, OPTION_FLAG, FIELD(conforming), NULL, "all triangles are Delaunay", 0},
     {"vertex-normals", 0, OPTION_FLAG, FIELD(vertex_normals), NULL, "give the vertices normals, as properties nx ny nz",
      0},
@@ -41,19 +42,18 @@ static brio_status check_arguments(run *r, const arguments *a) {
 
 static brio_status iso(run *r) {
     const arguments *a = r->arguments;
-    brio_iso_surface_options o = brio_iso_surface_options_default();
+    brio_iso_surface_options o = {0};
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     TRY(cli_refuse_input_options(r));
     TRY(check_arguments(r, a));
-    o.level = a->level;
     o.deviations = a->sigma;
     o.conforming = a->conforming;
     o.resolution = (size_t)a->resolution;
     if (!isnan(a->blobbiness)) o.blobbiness = a->blobbiness;
     o.vertices = (size_t)a->vertices;
     if (o.vertices) TRY(cli_require_work(r, BRIO_OK, NULL, brio_estimate_iso_surface(o.vertices)));
-    TRY(brio_iso_surface(r->ctx, r->operands[0], &o, &mesh));
+    TRY(brio_iso_surface(r->ctx, r->operands[0], a->level, &o, &mesh));
     cli_lap(r, "iso");
     cli_fact_count(&r->facts, "points", mesh->num_vertices);
     cli_fact_count(&r->facts, "vertices", mesh->num_vertices);

@@ -57,10 +57,10 @@ static brio_status check_arguments(run *r) {
 
 static brio_power_shape_options medial_options(const run *r, int labeling, const brio_mesh *solid) {
     const arguments *a = r->arguments;
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     o.seed = r->common.seed;
     o.poles.labeling = (brio_labeling)labeling;
-    o.poles.noise = (brio_noise)a->noise;
+    o.noise = (brio_noise)a->noise;
     o.poles.solid = solid;
     o.sides = (brio_sides)a->sides;
     o.poles.sampling_density = a->sampling_density;
@@ -94,15 +94,15 @@ static brio_status sample_faces(run *r, const brio_mesh *mesh, brio_mesh **sampl
 
 static void report(run *r, const brio_power_shape_options *o, const brio_power_shape_stats *s, const brio_mesh *shape) {
     facts *f = &r->facts;
-    cli_stage(r, "noise", s->poles.noise_seconds);
-    cli_stage(r, "delaunay", s->poles.delaunay_seconds);
-    cli_stage(r, "poles", s->poles.poles_seconds);
+    cli_stage(r, "noise", s->noise_seconds);
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "poles", s->poles_seconds);
     cli_stage(r, "power", s->poles.power_seconds);
     cli_stage(r, "label", s->poles.label_seconds);
     cli_stage(r, "shape", s->shape_seconds);
     r->lap = cli_clock();
-    cli_fact_count(f, "samples", s->poles.samples);
-    cli_report_noise(r, s->poles.noise, s->poles.smoothed);
+    cli_fact_count(f, "samples", s->samples);
+    cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "poles", s->poles.poles);
     cli_fact_count(f, "hidden_poles", s->poles.hidden_poles);
     cli_fact_count(f, "inner", s->poles.inner);
@@ -141,7 +141,7 @@ static brio_status write_crust(run *r, const brio_mesh *crust) {
 static brio_status medial(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL, *samples = NULL, *shape = NULL, *crust = NULL;
-    brio_power_shape_stats s = {.size = sizeof s};
+    brio_power_shape_stats s = {0};
     brio_status status = BRIO_OK;
     int labeling = a->labeling;
     bool by_mesh;

@@ -43,31 +43,32 @@ static const arguments defaults = {.distance = NAN, .crust.labeling = LABELS_OF_
 static brio_status offset_points(run *r, const power_crust_options *crust, const brio_mesh *points,
                                  brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_offset_surface_options o = brio_offset_surface_options_default();
-    brio_offset_surface_stats found = {.size = sizeof found};
+    const brio_surface_options o = {.method = BRIO_SURFACE_OFFSET,
+                                    .noise = (brio_noise)crust->noise,
+                                    .seed = r->common.seed,
+                                    .simplify = crust->simplify,
+                                    .polygons = !crust->triangulate && !crust->simplify,
+                                    .distance = a->distance,
+                                    .poles = cli_pole_options(crust)};
+    brio_surface_stats s = {0};
     facts *f = &r->facts;
     brio_status status = BRIO_OK;
     if (a->error > 0)
         FAIL(r, BRIO_ERR_ARGUMENT,
              "--error is for closed meshes: the error of an offset of points is that of the points");
-    o.seed = r->common.seed;
-    o.poles = cli_pole_options(crust);
-    o.triangulate = crust->triangulate;
-    o.simplify = crust->simplify;
     uint64_t work = 0;
     size_t usual;
     TRY(cli_usual_points(r, points, NULL, false, &usual));
-    status = brio_estimate_offset_surface(r->ctx, usual, &o, &work);
+    status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
-    status = brio_offset_surface(r->ctx, points->vertices, points->num_vertices, a->distance, &o, surface, &found);
+    status = brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
     cli_suggest_labeling(r, status, points, false);
     TRY(status);
-    brio_power_crust_stats s = {
-        .poles = found.poles, .crust_seconds = found.crust_seconds, .simplify_seconds = found.simplify_seconds};
+    brio_mesh_remove_property(*surface, "sample"); /* which no vertex is */
     cli_report_power_crust_stages(r, crust, &s);
     cli_fact_text(f, "method", "power-crust");
     cli_fact_real(f, "distance", a->distance);
-    cli_fact_count(f, "samples", s.poles.samples);
+    cli_fact_count(f, "samples", s.samples);
     cli_fact_count(f, "vertices", (*surface)->num_vertices);
     cli_fact_count(f, "faces", (*surface)->num_faces);
     cli_report_power_crust(r, crust, &s);
@@ -92,8 +93,8 @@ static brio_status refuse_options_of_points(run *r) {
 /* The offset of the solid that the faces bound. */
 static brio_status offset_mesh(run *r, const brio_mesh *mesh, brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_mesh_offset_options o = brio_mesh_offset_options_default();
-    brio_mesh_offset_stats s = {.size = sizeof s};
+    brio_mesh_offset_options o = {0};
+    brio_mesh_offset_stats s = {0};
     facts *f = &r->facts;
     uint64_t work = 0;
     brio_status status = BRIO_OK;

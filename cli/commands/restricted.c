@@ -48,8 +48,8 @@ static brio_status refuse_uncertified(run *r, const brio_restricted_stats *s) {
 
 static brio_status restricted(run *r) {
     const arguments *a = r->arguments;
-    brio_restricted_stats s = {.size = sizeof s};
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_restricted_stats s = {0};
+    brio_delaunay_options o = {0};
     brio_mesh *samples = NULL, *surface = NULL, *triangles = NULL;
     brio_status status = BRIO_OK;
     double bytes;

@@ -24,7 +24,7 @@ static const double NEAR = 0.01;
 
 static brio_status simplify(run *r) {
     const arguments *a = r->arguments;
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     if (!a->faces && !(a->error > 0)) FAIL(r, BRIO_ERR_ARGUMENT, "simplify: --faces N or --error D is missing");

@@ -166,20 +166,20 @@ static brio_status complete(run *r, const brio_mesh *points, const uint32_t *sam
 
 static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_power_crust_stats s = {.size = sizeof s};
+    brio_surface_stats s = {0};
     power_crust_options o = a->crust;
     o.triangulate = !a->polygons;
-    if (o.labeling == NO_LABELING) o.labeling = (int)brio_power_crust_options_default().poles.labeling;
+    if (o.labeling == NO_LABELING) o.labeling = BRIO_LABELING_GLOBAL;
     brio_status status = cli_power_crust(r, &o, points, surface, &s);
     if (status != BRIO_OK) return status;
-    status = complete(r, points, NULL, s.poles.samples, *surface);
+    status = complete(r, points, NULL, s.samples, *surface);
     if (status == BRIO_OK) cli_report_power_crust(r, &o, &s);
     return status;
 }
 
 /* --- the co-cones --- */
 
-static void report_cocone(run *r, const brio_cocone_stats *s) {
+static void report_cocone(run *r, const brio_surface_stats *s) {
     const arguments *a = r->arguments;
     facts *f = &r->facts;
     cli_fact_count(f, "unused", s->unused);
@@ -201,7 +201,7 @@ static void report_cocone(run *r, const brio_cocone_stats *s) {
 static const double MOST_R = 0.75;
 
 /* The sampling condition of the guarantee (theorem 19: r <= 0.08), as far as the samples themselves tell. */
-static void report_density(run *r, const brio_cocone_stats *s) {
+static void report_density(run *r, const brio_surface_stats *s) {
     facts *f = &r->facts;
     size_t used = s->samples - s->unused;
     double share = used ? (double)s->outside_guarantee / (double)used : 0;
@@ -216,11 +216,11 @@ static void report_density(run *r, const brio_cocone_stats *s) {
 
 static brio_status cocone(run *r, brio_mesh *points, brio_mesh **surface) {
     const arguments *a = r->arguments;
-    brio_cocone_options o = brio_cocone_options_default();
-    brio_cocone_stats s = {.size = sizeof s};
+    brio_surface_options o = {0};
+    brio_surface_stats s = {0};
     o.seed = r->common.seed;
-    if (a->theta != 0) o.theta = a->theta;
-    o.tight = a->method == TIGHT_COCONE;
+    o.theta = a->theta;
+    o.method = a->method == TIGHT_COCONE ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
     o.boundaries = a->boundaries;
     o.pieces = a->pieces;
     o.density = a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
@@ -229,11 +229,12 @@ static brio_status cocone(run *r, brio_mesh *points, brio_mesh **surface) {
     size_t usual;
     evidence e = {0};
     brio_status status = cli_usual_points(r, points, NULL, false, &usual);
-    if (status == BRIO_OK) status = brio_estimate_cocone(r->ctx, usual, &o, &work);
+    if (status == BRIO_OK) status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     TRY(cli_find_evidence(r, &a->evidence, points, &e));
     if (a->pieces <= 1) o.evidence = &e.taken;
-    TRY(brio_cocone(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
+    TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
+    brio_mesh_remove_property(*surface, "sample"); /* vertex v is point v */
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "poles", s.poles_seconds);
     cli_stage(r, "candidates", s.candidates_seconds);
@@ -263,14 +264,14 @@ static void report_confidence(run *r, double share) {
 }
 
 /* What tells the outside, and how well it agrees with the result. */
-static void report_orientation(run *r, const brio_labeled_delaunay_stats *s) {
+static void report_orientation(run *r, const brio_surface_stats *s) {
     static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
     cli_fact_text(&r->facts, "orientation", by[s->evidence & 3]);
     if (s->evidence) cli_fact_real(&r->facts, "agreement", s->agreement);
 }
 
 /* Over this share of bridges the user is told. As for guesses. */
-static void report_unseen(run *r, const brio_labeled_delaunay_stats *s) {
+static void report_unseen(run *r, const brio_surface_stats *s) {
     facts *f = &r->facts;
     cli_fact_count(f, "strays", s->strays);
     cli_fact_count(f, "holes", s->holes);
@@ -289,7 +290,7 @@ static void report_unseen(run *r, const brio_labeled_delaunay_stats *s) {
                  s->bridge_centre[2], 2 * s->bridge_radius);
 }
 
-static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s) {
+static void report_labeled_delaunay(run *r, const brio_surface_stats *s) {
     facts *f = &r->facts;
     cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "unused", s->unused);
@@ -303,7 +304,7 @@ static void report_labeled_delaunay(run *r, const brio_labeled_delaunay_stats *s
     report_orientation(r, s);
 }
 
-static void report_labeled_delaunay_stages(run *r, const brio_labeled_delaunay_stats *s) {
+static void report_labeled_delaunay_stages(run *r, const brio_surface_stats *s) {
     const arguments *a = r->arguments;
     cli_stage(r, "noise", s->noise_seconds);
     cli_stage(r, "delaunay", s->delaunay_seconds);
@@ -314,60 +315,53 @@ static void report_labeled_delaunay_stages(run *r, const brio_labeled_delaunay_s
     if (a->crust.simplify) cli_stage(r, "simplify", s->simplify_seconds);
 }
 
-static brio_status normals_of_points(run *r, const char *path, const brio_mesh *points, const brio_mesh *surface,
-                                     const uint32_t *samples) {
-    double *normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
-    brio_status status = BRIO_OK;
-    if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
-    TRY(brio_point_normals(r->ctx, points->vertices, points->num_vertices, surface, samples, normals));
-    TRY(cli_write_normals(r, path, points, normals));
-done:
-    free(normals);
-    return status;
-}
-
-static brio_labeled_delaunay_options labeled_delaunay_options(run *r) {
+static brio_surface_options labeled_delaunay_options(run *r) {
     const arguments *a = r->arguments;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = {0};
     o.seed = r->common.seed;
     o.noise = (brio_noise)a->crust.noise;
     o.confidence = 1;
     double spacings = NAN;
     (void)cli_read_open(r, &a->crust, &spacings); /* check_arguments has read it before */
-    if (isnan(spacings))
-        o.holes = BRIO_HOLES_AUTO;
-    else
+    if (!isnan(spacings)) {
+        o.holes = BRIO_HOLES_CLOSED;
         o.open = spacings;
+    }
     o.simplify = a->crust.simplify;
     return o;
 }
 
 static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, outcome *found) {
-    brio_labeled_delaunay_options o = labeled_delaunay_options(r);
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_surface_options o = labeled_delaunay_options(r);
+    brio_surface_stats s = {0};
     const arguments *a = r->arguments;
     uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;
+    double *normals = NULL;
     evidence e = {0};
     brio_status status = BRIO_OK;
     TRY(cli_usual_points(r, points, NULL, false, &usual));
-    status = brio_estimate_labeled_delaunay(r->ctx, usual, &o, &work);
+    status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
-    samples = malloc((points->num_vertices + 1) * sizeof *samples);
-    if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", points->num_vertices);
+    if (a->crust.normals) {
+        o.normals = normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
+        if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
+    }
     bool closed = o.holes == BRIO_HOLES_CLOSED && o.open <= 0;
     if (!closed) TRY(cli_find_evidence(r, &a->evidence, points, &e)); /* by evidence a surface may end at the hull */
     if (!closed) o.evidence = &e.taken;
-    TRY(brio_labeled_delaunay(r->ctx, points->vertices, points->num_vertices, &o, surface, samples, &s));
+    TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
     report_labeled_delaunay_stages(r, &s);
-    if (a->crust.normals) TRY(normals_of_points(r, a->crust.normals, points, *surface, samples));
+    if (normals) TRY(cli_write_normals(r, a->crust.normals, points, normals));
+    TRY(cli_take_samples(r, *surface, &samples));
     TRY(complete(r, points, samples, s.samples, *surface));
     report_labeled_delaunay(r, &s);
     found->leaves_many = (double)s.unused > MANY_UNUSED * (double)s.samples;
     found->open |= !closed;
 done:
     cli_evidence_free(&e);
+    free(normals);
     free(samples);
     return status;
 }
@@ -448,13 +442,13 @@ done:
 /* Hints to work in pieces, if that meets the limit of memory. */
 static void suggest_pieces(run *r, const brio_mesh *points) {
     enum { PIECES = 30 };
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = {.method = BRIO_SURFACE_COCONE};
     const arguments *a = r->arguments;
     uint64_t work = 0;
     size_t usual;
     o.pieces = PIECES;
     if (a->pieces > 1 || r->common.scratch || cli_usual_points(r, points, NULL, false, &usual) != BRIO_OK) return;
-    if (brio_estimate_cocone(r->ctx, usual, &o, &work) != BRIO_OK) return;
+    if (brio_estimate_surface(r->ctx, usual, &o, &work) != BRIO_OK) return;
     double bytes = CLI_PROGRAM_BYTES + cli_mesh_bytes(points) + (double)work;
     if (!r->common.max_memory || bytes <= (double)r->common.max_memory) cli_hint(r, HINT_PIECES, PIECES);
 }

@@ -91,7 +91,7 @@ done:
 
 static brio_status triangulate(run *r, terrain *t) {
     size_t n = t->points->num_vertices;
-    brio_delaunay2_options o = brio_delaunay2_options_default();
+    brio_delaunay2_options o = {0};
     o.seed = r->common.seed;
     FORWARD(cli_require_work(r, BRIO_OK, t->points,
                              brio_estimate_delaunay2(n, false) + (uint64_t)((COORDINATES + HEIGHT) * (double)n)));
@@ -152,7 +152,7 @@ done:
 static brio_status fill_row(run *r, void *user, size_t row, double *heights) {
     terrain *t = user;
     const raster *g = &t->grid;
-    brio_interpolation how = brio_interpolation_default();
+    brio_interpolation how = {0};
     how.method = BRIO_INTERPOLATION_LINEAR;
     how.values = t->height;
     for (size_t i = 0; i < g->columns; i++) {

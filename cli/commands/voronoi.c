@@ -69,7 +69,8 @@ static brio_status scaled_error(run *r, const boxed_diagram *d, double *error) {
     if (!box || (n && !points) || (d->weights && !weights))
         FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu scaled points", n);
     if (!are_finite(box, 6) || !are_finite(points, 3 * n) || !are_finite(weights, n)) goto done;
-    o.areas = o.centroids = o.faces = o.vertices = 0;
+    o.no_areas = o.no_centroids = o.no_faces = 1;
+    o.vertices = 0;
     o.box = box;
     TRY(brio_voronoi_cells(r->ctx, d->t, points, weights, n, &o, &cells));
     *error = error_of(cells);
@@ -218,7 +219,7 @@ static brio_status compute(run *r, const brio_mesh *mesh, const double *weights,
 
 static brio_status voronoi(run *r) {
     const arguments *a = r->arguments;
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_status status = BRIO_OK;
     brio_cells_format format;
     brio_mesh *mesh = NULL;

@@ -73,7 +73,7 @@ brio_status cli_check_common(run *r) {
 
 brio_read_options cli_read_options(run *r) {
     const common_options *c = &r->common;
-    brio_read_options options = brio_read_options_default();
+    brio_read_options options = {0};
     if (c->input_format) options.format = brio_format_of(c->input_format);
     options.columns = c->columns;
     options.flat = r->over_map;
@@ -100,7 +100,7 @@ void cli_tell_input(run *r, const char *path) {
 
 brio_status cli_read(run *r, const char *path, brio_mesh **out) {
     brio_read_options options = cli_read_options(r);
-    FORWARD(brio_read_as(r->ctx, path, &options, out));
+    FORWARD(brio_read(r->ctx, path, &options, out));
     FORWARD(cli_check_interrupt(r));
     cli_tell_input(r, path);
     FORWARD(cli_check_precision(r, path, *out));
@@ -177,7 +177,7 @@ brio_status cli_require_output(run *r, const brio_format *formats, bool optional
 }
 
 static brio_status write_file(run *r, const char *path, const char *extension, const brio_mesh *mesh) {
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     brio_status status = BRIO_OK;
     double moved = 0;
     int rounded = 0;

@@ -56,7 +56,7 @@ static brio_status count_self_intersections(run *r, const brio_mesh *mesh, brio_
 }
 
 brio_status cli_certify(run *r, const brio_mesh *mesh, unsigned how) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     brio_status status = BRIO_OK;
     TRY(brio_mesh_certificate(r->ctx, mesh, &c));
     cli_lap(r, "certify");

@@ -13,7 +13,7 @@ static void report_points(run *r, size_t left_out, size_t num_points) {
 }
 
 brio_status cli_report_coverage(run *r, const brio_mesh *surface, const brio_mesh *points) {
-    brio_coverage c = {.size = sizeof c};
+    brio_coverage c = {0};
     facts *f = &r->facts;
     brio_status status = brio_mesh_coverage(r->ctx, surface, points->vertices, points->num_vertices, NULL, &c);
     if (status != BRIO_OK) return status;

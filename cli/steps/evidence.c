@@ -100,7 +100,7 @@ brio_status cli_find_evidence(run *r, const evidence_options *options, brio_mesh
         FORWARD(take_from(r, options->from, out));
     else if (!options->ignore_origins)
         FORWARD(take_origins(r, points, out));
-    out->taken = brio_evidence_default();
+    out->taken = (brio_evidence){0};
     out->taken.normals = out->normals;
     out->taken.origins = out->origins;
     out->taken.num_origins = out->num_origins;

@@ -44,7 +44,7 @@ static brio_status project(run *r, const brio_plane_frame *frame, const brio_mes
 static brio_status make_in_plane(run *r, int plane, located *l) {
     brio_status status = BRIO_OK;
     brio_triangulation2 *t = NULL;
-    brio_delaunay2_options o = brio_delaunay2_options_default();
+    brio_delaunay2_options o = {0};
     brio_plane_frame frame;
     double *points = NULL;
     size_t count = l->points->num_vertices;
@@ -70,7 +70,7 @@ brio_status cli_make_locator(run *r, int plane, bool own_plane, located *l) {
     if (plane != LOCATED_SPACE) return make_in_plane(r, plane, l);
     brio_status status = BRIO_OK;
     brio_triangulation *t = NULL;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     size_t count = l->points->num_vertices;
     o.seed = r->common.seed;
     TRY(brio_delaunay(r->ctx, l->points->vertices, l->weights, count, &o, &t));

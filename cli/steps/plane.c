@@ -71,7 +71,7 @@ static brio_status set_faces(run *r, brio_mesh *mesh, const brio_triangulation2 
 
 static brio_status triangulate(run *r, const double *points, const double *weights, size_t n, double round_ratio,
                                brio_triangulation2 **t) {
-    brio_delaunay2_options o = brio_delaunay2_options_default();
+    brio_delaunay2_options o = {0};
     o.seed = r->common.seed;
     if (!isnan(round_ratio)) o.round_ratio = round_ratio;
     brio_status status = brio_delaunay2(r->ctx, points, weights, n, &o, t);

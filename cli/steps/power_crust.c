@@ -26,7 +26,7 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
     if (*labeling == LABELS_OF_MESH && !input->num_faces)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--labeling mesh: %s has no faces", r->operands[0]);
     *by_mesh = *labeling == LABELS_OF_MESH || (*labeling == LABELS_OF_INPUT && input->num_faces > 0);
-    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = (int)brio_power_crust_options_default().poles.labeling;
+    if (*by_mesh || *labeling == LABELS_OF_INPUT) *labeling = BRIO_LABELING_GLOBAL;
     return BRIO_OK;
 }
 
@@ -54,10 +54,10 @@ done:
     return status;
 }
 
-void cli_report_power_crust_stages(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
-    cli_stage(r, "noise", s->poles.noise_seconds);
-    cli_stage(r, "delaunay", s->poles.delaunay_seconds);
-    cli_stage(r, "poles", s->poles.poles_seconds);
+void cli_report_power_crust_stages(run *r, const power_crust_options *a, const brio_surface_stats *s) {
+    cli_stage(r, "noise", s->noise_seconds);
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "poles", s->poles_seconds);
     cli_stage(r, "power", s->poles.power_seconds);
     cli_stage(r, "label", s->poles.label_seconds);
     cli_stage(r, "crust", s->crust_seconds);
@@ -66,12 +66,8 @@ void cli_report_power_crust_stages(run *r, const power_crust_options *a, const b
 }
 
 brio_pole_options cli_pole_options(const power_crust_options *a) {
-    brio_pole_options o = brio_power_crust_options_default().poles;
-    o.labeling = (brio_labeling)a->labeling;
-    o.noise = (brio_noise)a->noise;
-    o.sampling_density = a->sampling_density;
-    o.sharp = a->sharp;
-    return o;
+    return (brio_pole_options){
+        .labeling = (brio_labeling)a->labeling, .sampling_density = a->sampling_density, .sharp = a->sharp};
 }
 
 brio_status cli_read_open(run *r, const power_crust_options *a, double *spacings) {
@@ -92,31 +88,32 @@ static double open_of(run *r, const power_crust_options *a) {
     return cli_read_open(r, a, &spacings) == BRIO_OK && spacings > 0 ? spacings : 0;
 }
 
-static brio_power_crust_options library_options(run *r, const power_crust_options *a) {
-    brio_power_crust_options o = brio_power_crust_options_default();
-    o.seed = r->common.seed;
-    o.poles = cli_pole_options(a);
-    o.triangulate = a->triangulate;
-    o.simplify = a->simplify;
-    o.open = open_of(r, a);
-    return o;
+static brio_surface_options library_options(run *r, const power_crust_options *a) {
+    return (brio_surface_options){.method = BRIO_SURFACE_POWER_CRUST,
+                                  .noise = (brio_noise)a->noise,
+                                  .seed = r->common.seed,
+                                  .open = open_of(r, a),
+                                  .simplify = a->simplify,
+                                  .polygons = !a->triangulate && !a->simplify,
+                                  .poles = cli_pole_options(a)};
 }
 
 brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
-                            brio_power_crust_stats *stats) {
-    brio_power_crust_options o = library_options(r, a);
+                            brio_surface_stats *stats) {
+    brio_surface_options o = library_options(r, a);
     brio_status status = BRIO_OK;
     double *normals = NULL;
     if (a->normals) {
-        normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
+        o.normals = normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
         if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
     }
     uint64_t work;
     size_t usual;
     TRY(cli_usual_points(r, points, NULL, false, &usual));
-    status = brio_estimate_power_crust(r->ctx, usual, &o, &work);
+    status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
-    TRY(brio_power_crust(r->ctx, points->vertices, points->num_vertices, &o, surface, normals, stats));
+    TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, stats));
+    brio_mesh_remove_property(*surface, "sample"); /* which no vertex is */
     cli_report_power_crust_stages(r, a, stats);
     if (normals) TRY(cli_write_normals(r, a->normals, points, normals));
 done:
@@ -129,9 +126,9 @@ void cli_report_noise(run *r, double noise, bool smoothed) {
     cli_fact_bool(&r->facts, "smoothed", smoothed);
 }
 
-void cli_report_power_crust(run *r, const power_crust_options *a, const brio_power_crust_stats *s) {
+void cli_report_power_crust(run *r, const power_crust_options *a, const brio_surface_stats *s) {
     facts *f = &r->facts;
-    cli_report_noise(r, s->poles.noise, s->poles.smoothed);
+    cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "poles", s->poles.poles);
     cli_fact_count(f, "hidden_poles", s->poles.hidden_poles);
     cli_fact_count(f, "inner", s->poles.inner);

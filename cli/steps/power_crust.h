@@ -42,7 +42,7 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
     {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
      "a quarter as many faces, as far as the shape allows; triangles", 0},                                             \
     {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
-     "write triangles; the default, kept for old scripts", 0},                                                         \
+     "write triangles, which is the default", 0},                                                                      \
     {"normals", 0, OPTION_OUTPUT, offsetof(type, field.normals), "FILE",                                                 \
      "also write the points with oriented normals", 0}
 
@@ -59,7 +59,7 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT. */
 brio_status cli_read_open(run *r, const power_crust_options *options, double *spacings);
 
-/** The options of the poles as the library has them, without a solid. */
+/** Returns the options of the poles as the library has them, without a solid. */
 brio_pole_options cli_pole_options(const power_crust_options *options);
 
 /** Writes the points with their normals, #P by 3. */
@@ -67,15 +67,15 @@ brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points,
 
 /** Reconstructs the surface of the points; writes the normals where they are asked for. */
 brio_status cli_power_crust(run *r, const power_crust_options *options, const brio_mesh *points, brio_mesh **surface,
-                            brio_power_crust_stats *stats);
+                            brio_surface_stats *stats);
 
 /** Adds the stages of a power crust to the clock. */
-void cli_report_power_crust_stages(run *r, const power_crust_options *options, const brio_power_crust_stats *stats);
+void cli_report_power_crust_stages(run *r, const power_crust_options *options, const brio_surface_stats *stats);
 
 /** Reports the noise that was found, and whether the samples were smoothed. */
 void cli_report_noise(run *r, double noise, bool smoothed);
 
 /** Reports the counts of a power crust. */
-void cli_report_power_crust(run *r, const power_crust_options *options, const brio_power_crust_stats *stats);
+void cli_report_power_crust(run *r, const power_crust_options *options, const brio_surface_stats *stats);
 
 #endif

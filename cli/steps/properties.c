@@ -52,6 +52,15 @@ brio_status cli_carry_properties(run *r, const brio_mesh *points, const uint32_t
     return status;
 }
 
+brio_status cli_take_samples(run *r, brio_mesh *surface, uint32_t **samples) {
+    const brio_property *property = brio_mesh_property(surface, "sample");
+    *samples = malloc((surface->num_vertices + 1) * sizeof **samples);
+    if (!*samples) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", surface->num_vertices);
+    for (size_t v = 0; v < surface->num_vertices; v++) (*samples)[v] = (uint32_t)brio_property_value(property, v);
+    brio_mesh_remove_property(surface, "sample");
+    return BRIO_OK;
+}
+
 brio_status cli_copy_properties(run *r, const brio_mesh *points, brio_mesh *surface) {
     uint32_t *samples = points->num_properties ? malloc((surface->num_vertices + 1) * sizeof *samples) : NULL;
     if (!points->num_properties) return BRIO_OK;

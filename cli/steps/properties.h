@@ -11,6 +11,9 @@ void cli_set_aside(run *r, brio_mesh *mesh, const char *name);
  *  vertex. Adds nothing if every point is a vertex.   representatives  #V. */
 brio_status cli_add_representatives(run *r, brio_mesh *mesh, const uint32_t *representatives);
 
+/** Moves the property "sample" of a surface into an array, so that it is in no file.   samples  for free. */
+brio_status cli_take_samples(run *r, brio_mesh *surface, uint32_t **samples);
+
 /** Gives the vertices of a surface the properties of points (brio_mesh_carry_properties), unless there are none.
  *  samples  the point of each vertex; NULL: the nearest point. */
 brio_status cli_carry_properties(run *r, const brio_mesh *points, const uint32_t *samples, brio_mesh *surface);

@@ -1,8 +1,33 @@
 /* brio: exact three-dimensional Delaunay and regular triangulations of very large point sets, and surface
  * reconstruction with guarantees on top of them.   MIT licence.
  *
- * The headers of this folder are the manual. This one has the words, promises and rules that hold in all, and includes
- * them; each can be included alone.
+ * The headers of this folder are the manual. This one has the words, promises and rules that hold in all of them, and
+ * includes them; each can be included alone. A program that makes a surface from a scan:
+ *
+ *     #include <brio/brio.h>
+ *     #include <stdio.h>
+ *
+ *     int main(void) {
+ *         brio_context *ctx;
+ *         brio_mesh *scan = NULL, *surface = NULL;
+ *         if (brio_context_new(NULL, &ctx) != BRIO_OK) return 1;
+ *         brio_status status = brio_read(ctx, "scan.ply", NULL, &scan);
+ *         if (!status) status = brio_surface(ctx, scan->vertices, scan->num_vertices, NULL, &surface, NULL);
+ *         if (!status) status = brio_write(ctx, "surface.ply", surface, NULL);
+ *         if (status) fprintf(stderr, "%s\n", brio_message(ctx));
+ *         brio_mesh_free(surface);
+ *         brio_mesh_free(scan);
+ *         brio_context_free(ctx);
+ *         return status != BRIO_OK;
+ *     }
+ *
+ * It is linked with -lbrio -lm -lpthread, or with what pkg-config --libs brio says. NULL in place of options, or a struct
+ * of options that is all zeros, stands for the defaults.
+ *
+ * Shapes of arrays:
+ *   #P, #V, #F, #T, #E, #Q   the number of points, vertices, faces (or facets), tetrahedra (triangles in the plane), edges,
+ *               queries
+ *   #P by 3     that many rows of three numbers, row after row in one array: coordinate k of point i is points[3 * i + k]
  *
  * Words, used in one meaning throughout:
  *   points      the rows of the input
@@ -17,6 +42,10 @@
  *   facet       The handle 4*t + i names the facet of tetrahedron t opposite to its vertex i. Two handles that name the
  *               same triangle from its two sides are mates.
  *   positive    A tetrahedron (a, b, c, d) is positive when det [b-a, c-a, d-a] > 0.
+ *   samples     points on a surface, known or not
+ *   spacing     the distance from a sample to its neighbours: what the sampling can tell apart
+ *   hull        the convex hull: the smallest convex set that holds all points
+ *   Voronoi and power cells, poles   in cells.h and surface.h
  *
  * Promises.
  *   - The sign of every predicate is right for all finite doubles.
@@ -36,6 +65,10 @@
  *     library's state.
  *   - A stack of 64 KiB suffices in the calling thread.
  * Rules.
+ *   - A function that makes an object takes `brio_X **out`, and the caller frees the object by brio_X_free. Results in a
+ *     struct of the caller (brio_certificate, brio_edges, brio_incidences, brio_alpha_complex) begin as zeros, and are freed
+ *     by the function of their name. What a function returns as a pointer to const is a view: of an object, until that is
+ *     freed. Arrays that a function fills are the caller's.
  *   - A pointer is not NULL unless its function says that it may be; arrays of 0 elements may be NULL. An object must not
  *     be used after it or its context was freed.
  *   - After an error every out pointer to an object is NULL, and statistics and results hold nothing to be freed.
@@ -47,7 +80,7 @@
 #ifndef BRIO_H
 #define BRIO_H
 
-#include "context.h"       /* versions, status, context */
+#include "context.h"       /* status, context, versions */
 #include "surface.h"       /* surfaces from points */
 #include "files.h"         /* reading, writing, converting */
 #include "mesh.h"          /* meshes and their properties */
@@ -57,7 +90,8 @@
 #include "queries.h"       /* location, nearest vertices, interpolation */
 #include "cells.h"         /* Voronoi and power cells */
 #include "shapes.h"        /* convex hulls, alpha shapes, restricted triangulations */
-#include "offset.h"        /* offsets, medial axes */
+#include "offset.h"        /* offsets of closed meshes */
+#include "medial.h"        /* medial axes */
 #include "iso.h"           /* iso-surfaces of maps and atoms */
 #include "plane.h"         /* triangulations of the plane */
 #include "predicates.h"    /* exact signs */

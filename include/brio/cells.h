@@ -10,21 +10,14 @@ extern "C" {
 
 typedef struct brio_cells_options {
     size_t size;
-    int areas;            /* 1 (default): computes `area` */
-    int centroids;        /* 1 (default): computes `centroid` */
-    int faces;            /* 1 (default): computes the faces */
-    int vertices;         /* 1: computes the vertices, and the faces; default 0 */
-    const double *box;    /* x0 y0 z0 x1 y1 z1, low before high: clips the cells; default NULL */
-    const double *planes; /* #planes by 4, n and d: clips the cells to n . x <= d; default NULL */
+    int no_areas;         /* 1: leaves `area` out, which saves time; and so on */
+    int no_centroids;     /* 1: leaves `centroid` out */
+    int no_faces;         /* 1: leaves the faces out */
+    int vertices;         /* 1: computes the vertices, and the faces */
+    const double *box;    /* x0 y0 z0 x1 y1 z1, low before high: clips the cells */
+    const double *planes; /* #planes by 4, n and d: clips the cells to n . x <= d */
     size_t num_planes;    /* box and planes together must bound a polytope with a volume */
 } brio_cells_options;
-
-BRIO_API void brio_cells_options_init(brio_cells_options *options, size_t size);
-static inline brio_cells_options brio_cells_options_default(void) {
-    brio_cells_options options;
-    brio_cells_options_init(&options, sizeof options);
-    return options;
-}
 
 /** Cells and their faces, #C cells and #F faces. Cell c has the faces face_offsets[c] to face_offsets[c+1] - 1, and face f
  *  has the corners corner_offsets[f] to corner_offsets[f+1] - 1, counterclockwise seen from outside the cell. Arrays that

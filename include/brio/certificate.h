@@ -26,7 +26,7 @@ typedef struct brio_certificate {
     double area, volume;        /* volume is positive when the faces are seen counterclockwise from outside */
 } brio_certificate;
 
-/** Certifies the polygons of a mesh. Cost O(F log F).   out  initialised with = {.size = sizeof c}; freed with
+/** Certifies the polygons of a mesh. Cost O(F log F).   out  zeros at first; freed with
  *  brio_certificate_free, also before it receives another certificate.
  *  Returns BRIO_OK (whatever the certificate says), BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out);
@@ -50,7 +50,7 @@ typedef struct brio_distance {
 } brio_distance;
 
 /** Compares two surfaces. Takes `samples` random points of each (0: 100,000), uniform by area, and computes their exact
- *  distances from the triangles of the other surface.   out  its `size` set.
+ *  distances from the triangles of the other surface.   out  zeros at first.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without triangles, or whose faces have no area), BRIO_ERR_NOT_FINITE,
  *  BRIO_ERR_NO_ANSWER (doubles cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
@@ -81,7 +81,7 @@ typedef struct brio_coverage {
 } brio_coverage;
 
 /** Compares a surface, of any origin, with the points that it is to go through. Polygons count as fans.
- *  bridge  NULL, or #F: receives 1 for faces of bridges.   out  its `size` set.
+ *  bridge  NULL, or #F: receives 1 for faces of bridges.   out  zeros at first.
  *  Cost: about ten nearest points a point and a face; 90 bytes a point and 110 a face.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, no faces or no points), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */

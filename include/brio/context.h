@@ -1,4 +1,4 @@
-/* brio/context.h: versions, structs that grow, status, and the context of all calls.
+/* brio/context.h: status, the context of all calls, structs that grow, versions.
  * The manual begins in brio/brio.h: words, promises, rules.
  */
 #ifndef BRIO_CONTEXT_H
@@ -12,33 +12,6 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
-/* Versions. docs/versions.md says what stays the same from one version to the next. */
-
-#define BRIO_VERSION_MAJOR 0
-#define BRIO_VERSION_MINOR 2
-#define BRIO_VERSION_PATCH 0
-#define BRIO_VERSION       "0.2.0"
-/** The version of this header as one number that grows: 10000 MAJOR + 100 MINOR + PATCH. */
-#define BRIO_VERSION_NUMBER (10000 * BRIO_VERSION_MAJOR + 100 * BRIO_VERSION_MINOR + BRIO_VERSION_PATCH)
-
-/** Returns the version of the library that runs, as BRIO_VERSION; it may be newer than this header. */
-BRIO_API const char *brio_version(void);
-/** Returns the version of the library that runs, as BRIO_VERSION_NUMBER. */
-BRIO_API int brio_version_number(void);
-
-/* Structs that grow. Structs of options, statistics and results begin with `size`, the bytes that the caller was
- * compiled with, so that later versions can append fields: the library touches no byte beyond `size`.
- *   - Options:  brio_cocone_options o = brio_cocone_options_default(); then set fields. A pointer to options may be
- *     NULL, which stands for the defaults. Other languages call brio_cocone_options_init(&o, sizeof o).
- *     Options that were only set to 0 are not the defaults.
- *   - Statistics and results:  brio_cocone_stats stats = {.size = sizeof stats};   in C++:  brio_cocone_stats stats = {};
- *     stats.size = sizeof stats;
- *   - Structs that the library made (brio_mesh, brio_delaunay_stats) are as long as their `size`: a program that may run
- *     with an older library looks at it before it reads a field that the older version did not have.
- * A `size` that was not set is BRIO_ERR_ARGUMENT. Fields whose names begin with `reserved` stay 0. Elements of arrays
- * (brio_tetrahedron, brio_round, brio_property) and brio_allocator, brio_edges, brio_incidences, brio_edge_walk never
- * change. */
 
 /** What a function that can fail returns. Numbers are fixed; families have gaps. */
 typedef enum brio_status {
@@ -123,6 +96,33 @@ BRIO_API brio_status brio_context_set_scratch(brio_context *ctx, const char *fol
 BRIO_API size_t brio_context_memory(const brio_context *ctx);
 /** Returns the most bytes that the context ever held. */
 BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
+
+/* Structs that grow. Structs of options, statistics and results begin with `size`, the bytes that the caller was
+ * compiled with, so that later versions can append fields: the library touches no byte beyond `size`.
+ *   - Options:  brio_surface_options o = {.method = BRIO_SURFACE_COCONE};   A field of 0 is its default, and NULL in place
+ *     of options stands for all defaults. The default of a seed is 1.
+ *   - Statistics and results:  brio_surface_stats stats = {0};
+ *   - A `size` of 0 stands for the fields that the struct had in version 0.3. Fields that came later say so; a program that
+ *     uses one of them sets the size:  {.size = sizeof o, ...}. The library ignores them without it.
+ *   - Structs that the library made (brio_mesh, brio_delaunay_stats) are as long as their `size`: a program that may run
+ *     with an older library looks at it before it reads a field that the older version did not have.
+ * An impossible `size`, as of a struct that was not set to zeros, is BRIO_ERR_ARGUMENT. Fields whose names begin with
+ * `reserved` stay 0. Elements of arrays (brio_tetrahedron, brio_round, brio_property) and brio_allocator, brio_edges,
+ * brio_incidences, brio_edge_walk never change. */
+
+/* Versions. docs/versions.md says what stays the same from one version to the next. */
+
+#define BRIO_VERSION_MAJOR 0
+#define BRIO_VERSION_MINOR 3
+#define BRIO_VERSION_PATCH 0
+#define BRIO_VERSION       "0.3.0"
+/** The version of this header as one number that grows: 10000 MAJOR + 100 MINOR + PATCH. */
+#define BRIO_VERSION_NUMBER (10000 * BRIO_VERSION_MAJOR + 100 * BRIO_VERSION_MINOR + BRIO_VERSION_PATCH)
+
+/** Returns the version of the library that runs, as BRIO_VERSION; it may be newer than this header. */
+BRIO_API const char *brio_version(void);
+/** Returns the version of the library that runs, as BRIO_VERSION_NUMBER. */
+BRIO_API int brio_version_number(void);
 
 #ifdef __cplusplus
 }

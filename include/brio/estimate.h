@@ -9,6 +9,7 @@
 
 #include "triangulation.h"
 #include "surface.h"
+#include "medial.h"
 #include "offset.h"
 
 #ifdef __cplusplus
@@ -30,24 +31,17 @@ BRIO_API brio_status brio_estimate_tetrahedra(brio_context *ctx, const double *p
 /** Returns the estimate for brio_delaunay2 and brio_delaunay2_flat of points without duplicates. */
 BRIO_API uint64_t brio_estimate_delaunay2(size_t num_points, int weighted);
 
-/** Estimates the memory of a reconstruction from num_points samples, as the functions below for other methods. Samples of
- *  6.8 tetrahedra each are assumed; where brio_estimate_tetrahedra has more, the estimate for as many samples as these are enough
- *  for is nearer to what is needed. Where poles coincide, as those of exact cylinders and tori do, power crusts need more.
- *  options  NULL for the defaults.   Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
-BRIO_API brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t num_points,
-                                                    const brio_labeled_delaunay_options *options, uint64_t *bytes);
+/** Estimates the memory of brio_surface for num_points samples. Samples of 6.8 tetrahedra each are assumed. Where
+ *  brio_estimate_tetrahedra finds more, ask for the number of samples that so many tetrahedra belong to. Where poles
+ *  coincide, as those of exact cylinders and tori do, power crusts need more.
+ *  options  NULL for the defaults. Of them `method`, `polygons`, `simplify` and `pieces` count.
+ *  Returns BRIO_OK or BRIO_ERR_ARGUMENT (no such method, or an impossible size). */
+BRIO_API brio_status brio_estimate_surface(brio_context *ctx, size_t num_points, const brio_surface_options *options,
+                                           uint64_t *bytes);
 
-/** Estimates the memory of a reconstruction from num_points samples.   options  NULL for the defaults. Of the options,
- *  `triangulate`, `simplify` and `pieces` count; `scale` and `redundancy` do not.
-*  Returns BRIO_OK or BRIO_ERR_ARGUMENT (options.size was not set). */
-BRIO_API brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points,
-                                               const brio_power_crust_options *options, uint64_t *bytes);
-BRIO_API brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points,
-                                                  const brio_offset_surface_options *options, uint64_t *bytes);
+/** Estimates the memory of brio_power_shape for num_points samples, likewise. */
 BRIO_API brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points,
                                                const brio_power_shape_options *options, uint64_t *bytes);
-BRIO_API brio_status brio_estimate_cocone(brio_context *ctx, size_t num_points, const brio_cocone_options *options,
-                                          uint64_t *bytes);
 
 /** Estimates the memory of brio_mesh_offset, from the angles of the mesh's edges.   options  NULL for the defaults.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or as brio_mesh_offset), BRIO_ERR_TOO_LARGE,

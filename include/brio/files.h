@@ -9,6 +9,36 @@
 extern "C" {
 #endif
 
+typedef struct brio_read_options brio_read_options;
+typedef struct brio_write_options brio_write_options;
+
+/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of vertices and polygons; skips other elements.
+ *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads. A file
+ *  compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or libzstd; messages
+ *  then count lines and bytes of what was decompressed.
+ *  path  "-" reads standard input.   options  NULL for the defaults.   out  owned by the caller; NULL on error.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (columns of a format that has none, or that lack x, y or z), BRIO_ERR_OPEN,
+ *  BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was expected), BRIO_ERR_NOT_FINITE
+ *  (the message names the first such point and their number), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_read(brio_context *ctx, const char *path, const brio_read_options *options, brio_mesh **out);
+
+/** Writes a mesh. Writes a temporary file beside the target, flushes it, and renames it to the target, so that no
+ *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
+ *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
+ *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a descriptor
+ *  of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The process
+ *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
+ *  texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
+ *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
+ *  several lines becomes several comments. Of several files (.node and those beside it) none gets its name before all are
+ *  complete.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, an index is out of range, or three tetrahedra
+ *  whose neighbours are asked for share a facet), BRIO_ERR_NOT_FINITE, before a file is opened, BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
+                                const brio_write_options *options);
+
 /** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the format. */
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
@@ -84,59 +114,38 @@ typedef struct brio_read_notes {
     char rounded_column[64]; /* its property, or x, y or z */
 } brio_read_notes;
 
-typedef struct brio_read_options {
+/** Options of reading. A field of 0 is the default. */
+struct brio_read_options {
     size_t size;
-    brio_format format; /* default BRIO_FORMAT_AUTO */
+    brio_format format;
     const char
         *columns;     /* texts of points (BRIO_FORMAT_XYZ): the names of the columns in their order, "x,y,z,-,nx"; - and
                             _ leave a column out, as it happens to columns behind the last name. x, y and z have to be
-                            there. Default NULL: by the file's line of names, or else the first three */
+                            there. NULL: by the file's line of names, or else the first three */
     int drop_invalid; /* 1: leaves out points whose coordinates are not finite, and the polygons, tetrahedra and edges
-                              that use them; default 0: such points are an error */
-    int salvage;      /* 1: of a file that ends early, keeps the points that are whole; default 0: an error.
+                              that use them; 0: such points are an error */
+    int salvage;      /* 1: of a file that ends early, keeps the points that are whole; 0: an error.
                               docs/formats.md lists the formats */
-    uint64_t *dropped;     /* receives the number of points that drop_invalid left out; default NULL */
-    uint64_t *missing;     /* receives the number of points that the file announces and lacks; default NULL */
+    uint64_t *dropped;     /* receives the number of points that drop_invalid left out */
+    uint64_t *missing;     /* receives the number of points that the file announces and lacks */
     brio_lost_fn left_out; /* called once for each part of the file that the mesh has not, such as "textures", after all
-                              has been read; docs/formats.md lists the names. Default NULL */
+                              has been read; docs/formats.md lists the names */
     void *left_out_user;
-    brio_read_notes *notes; /* default NULL, or receives what was found */
+    brio_read_notes *notes; /* NULL, or receives what was found */
     int flat; /* texts of points, 1: data over a map. Names of columns that have x and y and no height mean that z is 0, and so
-                 do rows of two numbers without names; default 0: z has to be there */
+                 do rows of two numbers without names; 0: z has to be there */
     int reserved_int;
-    int *origins; /* default NULL. Else adds the places of the scanners as properties x_origin, y_origin, z_origin
+    int *origins; /* NULL, or adds the places of the scanners as properties x_origin, y_origin, z_origin
                      (float64) of their points, NaN where a place is not known, and receives 1; receives 0 if the file has
                      such properties or tells no place. docs/formats.md tells when PTX, E57 and PCD files do */
-} brio_read_options;
+};
 
-BRIO_API void brio_read_options_init(brio_read_options *options, size_t size);
-static inline brio_read_options brio_read_options_default(void) {
-    brio_read_options options;
-    brio_read_options_init(&options, sizeof options);
-    return options;
-}
-
-/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of vertices and polygons; skips other elements.
- *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads. A file
- *  compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or libzstd; messages
- *  then count lines and bytes of what was decompressed.
- *  path  "-" reads standard input.   options  NULL for the defaults.   out  owned by the caller; NULL on error.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (columns of a format that has none, or that lack x, y or z), BRIO_ERR_OPEN,
- *  BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was expected), BRIO_ERR_NOT_FINITE
- *  (the message names the first such point and their number), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
- *  BRIO_ERR_CANCELLED. */
-BRIO_API brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_options *options,
-                                  brio_mesh **out);
-
-/** brio_read_as with a format and else the defaults. */
-BRIO_API brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out);
-
-/** brio_read_as of a file's bytes in memory, compressed ones included. No file is opened: a .node file's tetrahedra, which
+/** brio_read of a file's bytes in memory, compressed ones included. No file is opened: a .node file's tetrahedra, which
  *  are in another file, are not read.
  *  bytes  size of them, not kept.
  *  name   what messages call the file, "scan.ply"; its extension tells the format where the content does not. NULL is for
  *         none: then bytes in no known format are rows of numbers.
- *  Returns what brio_read_as returns, but not BRIO_ERR_OPEN. */
+ *  Returns what brio_read returns, but not BRIO_ERR_OPEN. */
 BRIO_API brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
                                       const brio_read_options *options, brio_mesh **out);
 
@@ -161,74 +170,44 @@ typedef int (*brio_rows_fn)(const brio_mesh *block, void *user);
 BRIO_API brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_read_options *options,
                                       brio_rows_fn take, void *user, brio_file_facts *facts);
 
-typedef struct brio_write_options {
+/** Options of writing. A field of 0 is the default. */
+struct brio_write_options {
     size_t size;
-    brio_format format;  /* default BRIO_FORMAT_AUTO: by the extension */
-    int ascii;           /* 1: text, in formats with a text and a binary form; default 0 */
-    int float32;         /* 1: coordinates in single precision, in formats with both; default 0 */
-    const char *comment; /* a line for the header; default NULL: none */
+    brio_format format;  /* BRIO_FORMAT_AUTO: by the extension */
+    int ascii;           /* 1: text, in formats with a text and a binary form */
+    int float32;         /* 1: coordinates in single precision, in formats with both */
+    const char *comment; /* a line for the header */
     double *moved;       /* receives the greatest distance between a vertex and the point that a reader gets: not 0
-                            where the format or `float32` rounds coordinates; default NULL */
-    int compress;        /* 1: compressed by zlib: VTU and VTP, if the library was built with zlib; default 0 */
-    /* NODE, 1: TetGen's .neigh, .face and .edge too, beside .ele; default 0. They are found from the tetrahedra, with 40
+                            where the format or `float32` rounds coordinates */
+    int compress;        /* 1: compressed by zlib: VTU and VTP, if the library was built with zlib */
+    /* NODE, 1: TetGen's .neigh, .face and .edge too, beside .ele. They are found from the tetrahedra, with 40
      * bytes a tetrahedron. Facets of one tetrahedron alone are the hull, whose faces and edges have the marker 1. */
     int neighbours, faces, edges;
-    const char
-        *separator; /* XYZ: "," or " " between numbers; with "," there is no comment; default NULL: by the name, ","
+    const char *separator; /* XYZ: "," or " " between numbers; with "," there is no comment; NULL: by the name, ","
                               for .csv */
-    int *colours_rounded; /* receives 1 if the file's colours have fewer steps than the mesh's, else 0; default NULL */
-    int crs_comment;      /* PLY, 1: the metadata crs.wkt, or without it crs.code, as comments "crs TEXT"; default 0 */
+    int *colours_rounded;  /* receives 1 if the file's colours have fewer steps than the mesh's, else 0 */
+    int crs_comment;       /* PLY, 1: the metadata crs.wkt, or without it crs.code, as comments "crs TEXT" */
     int reserved_int;
-} brio_write_options;
-
-BRIO_API void brio_write_options_init(brio_write_options *options, size_t size);
-static inline brio_write_options brio_write_options_default(void) {
-    brio_write_options options;
-    brio_write_options_init(&options, sizeof options);
-    return options;
-}
-
-/** Writes a mesh. Writes a temporary file beside the target, flushes it, and renames it to the target, so that no
- *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
- *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
- *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a descriptor
- *  of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The process
- *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
- *  texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
- *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
- *  several lines becomes several comments. Of several files (.node and those beside it) none gets its name before all are
- *  complete.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, an index is out of range, or three tetrahedra
- *  whose neighbours are asked for share a facet), BRIO_ERR_NOT_FINITE, before a file is opened, BRIO_ERR_TOO_LARGE,
- *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
-BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
-                                const brio_write_options *options);
+};
 
 typedef struct brio_convert_options {
     size_t size;
-    const brio_read_options *from;         /* default NULL: the defaults of reading */
-    const brio_write_options *to;          /* default NULL: the defaults of writing */
-    int crop;                              /* 1: keeps what is in the box; default 0 */
-    int drop_outliers;                     /* neighbours by which brio_outliers judges; default 0: keeps outliers */
+    const brio_read_options *from;         /* NULL: the defaults of reading */
+    const brio_write_options *to;          /* NULL: the defaults of writing */
+    int crop;                              /* 1: keeps what is in the box */
+    int drop_outliers;                     /* neighbours by which brio_outliers judges; 0: keeps outliers */
     double box[6];                         /* x0, y0, z0, x1, y1, z1; its border belongs to it */
-    const brio_outliers_options *outliers; /* default NULL: the defaults of brio_outliers */
-    double thin;                           /* spacing of brio_thin; default 0: keeps all points */
-    brio_lost_fn lost; /* default NULL: called once for each part that is lost, before the file gets its name */
+    const brio_outliers_options *outliers; /* NULL: the defaults of brio_outliers */
+    double thin;                           /* spacing of brio_thin; 0: keeps all points */
+    brio_lost_fn lost; /* NULL: called once for each part that is lost, before the file gets its name */
     void *lost_user;
-    brio_lost_fn renamed; /* default NULL: called once for each property that has another name in the file */
+    brio_lost_fn renamed; /* NULL: called once for each property that has another name in the file */
     void *renamed_user;
-    int merge; /* 1: brio_mesh_merge_vertices, within merge_distance; default 0 */
+    int merge; /* 1: brio_mesh_merge_vertices, within merge_distance */
     int reserved_int;
-    double merge_distance; /* default 0: equal positions only */
-    const char *crs; /* default NULL: a file that receives the coordinate system as well-known text, such as scan.prj */
+    double merge_distance; /* 0: equal positions only */
+    const char *crs;       /* NULL: a file that receives the coordinate system as well-known text, such as scan.prj */
 } brio_convert_options;
-
-BRIO_API void brio_convert_options_init(brio_convert_options *options, size_t size);
-static inline brio_convert_options brio_convert_options_default(void) {
-    brio_convert_options options;
-    brio_convert_options_init(&options, sizeof options);
-    return options;
-}
 
 typedef struct brio_convert_stats {
     size_t size;

@@ -181,21 +181,14 @@ BRIO_API brio_status brio_mesh_subdivide(brio_context *ctx, const brio_mesh *mes
 
 typedef struct brio_mesh_simplify_options {
     size_t size;
-    size_t target_faces; /* stops at this number of faces; default 0: as few as the tolerance allows */
+    size_t target_faces; /* stops at this number of faces; 0: as few as the tolerance allows */
     double
         tolerance; /* most distance of a new vertex from the planes of the triangles that it stands for, as the root of
-                            the mean of squares, in the unit of the mesh; default 0: any distance */
+                            the mean of squares, in the unit of the mesh; 0: any distance */
     int any; /* 1: takes any mesh: cuts polygons into triangles, drops faces without three distinct corners, and takes what
-                is not manifold and oriented for boundaries, which stay; default 0: such meshes are refused */
+                is not manifold and oriented for boundaries, which stay; 0: such meshes are refused */
     int reserved_int;
 } brio_mesh_simplify_options;
-
-BRIO_API void brio_mesh_simplify_options_init(brio_mesh_simplify_options *options, size_t size);
-static inline brio_mesh_simplify_options brio_mesh_simplify_options_default(void) {
-    brio_mesh_simplify_options options;
-    brio_mesh_simplify_options_init(&options, sizeof options);
-    return options;
-}
 
 /** Simplifies a mesh of triangles in place: edges collapse, about in the order of their errors. The mesh stays manifold and oriented,
  *  and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary stay. Triangles do not come to

@@ -21,16 +21,9 @@ typedef struct {
 
 typedef struct brio_delaunay2_options {
     size_t size;
-    double round_ratio; /* share of the points left for the rounds before the last one, below 1; default 0: 1/8 */
-    uint64_t seed;      /* every random choice follows from it; default 1 */
+    double round_ratio; /* share of the points left for the rounds before the last one, below 1; 0: 1/8 */
+    uint64_t seed;      /* every random choice follows from it */
 } brio_delaunay2_options;
-
-BRIO_API void brio_delaunay2_options_init(brio_delaunay2_options *options, size_t size);
-static inline brio_delaunay2_options brio_delaunay2_options_default(void) {
-    brio_delaunay2_options options;
-    brio_delaunay2_options_init(&options, sizeof options);
-    return options;
-}
 
 /** Facts of a triangulation of the plane. Counters are totals over the construction and include infinite triangles. */
 typedef struct brio_delaunay2_stats {
@@ -85,9 +78,9 @@ typedef struct brio_plane_frame {
  *  squares of their distances. Points on a line and at one position, up to the same rounding, are of dimension 1 and 0. Does
  *  not depend on the order of the points. In a plane of constant z the coordinates are x and y, of constant x or y the two
  *  after it, cyclically, exactly.
- *  points  #P by 3.   frame  its size is set.
+ *  points  #P by 3.   frame  zeros at first.
  *  Cost: O(n), for points off a plane O(n log n). Memory: 24 bytes a point, for points off a plane 44.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the size was not set), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an impossible size), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY.
  *  Based on: [Pearson 1901]. */
 BRIO_API brio_status brio_plane_fit(brio_context *ctx, const double *points, size_t num_points,
                                     brio_plane_frame *frame);

@@ -34,15 +34,8 @@ BRIO_API brio_status brio_mesh_samples(brio_context *ctx, const brio_mesh *mesh,
 
 typedef struct brio_outliers_options {
     size_t size;
-    double factor; /* finite, 1 or more; default 3 */
+    double factor; /* finite, 1 or more; 0: 3 */
 } brio_outliers_options;
-
-BRIO_API void brio_outliers_options_init(brio_outliers_options *options, size_t size);
-static inline brio_outliers_options brio_outliers_options_default(void) {
-    brio_outliers_options options;
-    brio_outliers_options_init(&options, sizeof options);
-    return options;
-}
 
 /** Finds outliers. The spacing of a point is its mean distance to its nearest points, `neighbours` of them. A point is an
  *  outlier if its spacing is more than `factor` times the lower quartile of the spacings of these points, or if it is far

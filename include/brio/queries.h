@@ -69,18 +69,11 @@ typedef enum brio_interpolation_method {
 /** What to interpolate, and how. */
 typedef struct brio_interpolation {
     size_t size;
-    brio_interpolation_method method; /* default BRIO_INTERPOLATION_NATURAL */
+    brio_interpolation_method method;
     int reserved_int;
     const double *values; /* #P by components: row i at point i. Rows of points that are no vertices do not count. */
-    size_t components;    /* numbers a row; default 1 */
+    size_t components;    /* numbers a row; 0: 1 */
 } brio_interpolation;
-
-BRIO_API void brio_interpolation_init(brio_interpolation *options, size_t size);
-static inline brio_interpolation brio_interpolation_default(void) {
-    brio_interpolation options;
-    brio_interpolation_init(&options, sizeof options);
-    return options;
-}
 
 /** Interpolates values at the vertices, at each query. Both methods reproduce the values at the vertices exactly, and
  *  linear functions up to rounding. NATURAL weighs the natural neighbours of the query x by the volumes that the Voronoi

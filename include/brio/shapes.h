@@ -15,18 +15,10 @@ extern "C" {
 
 typedef struct brio_convex_hull_options {
     size_t size;
-    int polygons; /* 1: a facet is one polygon; default 0: a facet is a fan of triangles from its first corner */
+    int polygons; /* 1: a facet is one polygon; 0: a facet is a fan of triangles from its first corner */
     int reserved_int;
-    uint32_t
-        *samples; /* room for #P indices: receives for each vertex of the mesh the index of its point; default NULL */
+    uint32_t *samples; /* room for #P indices: receives for each vertex of the mesh the index of its point */
 } brio_convex_hull_options;
-
-BRIO_API void brio_convex_hull_options_init(brio_convex_hull_options *options, size_t size);
-static inline brio_convex_hull_options brio_convex_hull_options_default(void) {
-    brio_convex_hull_options options;
-    brio_convex_hull_options_init(&options, sizeof options);
-    return options;
-}
 
 typedef struct brio_convex_hull_stats {
     size_t size;
@@ -49,7 +41,7 @@ typedef struct brio_convex_hull_stats {
  *  vertices and one edge (brio_mesh.edges), points of dimension 0 one vertex, no points none.
  *  points   #P by 3.   num_points  less than 2^32 - 16.   options  NULL for the defaults.
  *  out      owned by the caller.
- *  stats    NULL, or its `size` set.
+ *  stats    NULL, or receives what was found.
  *  Cost: three passes over the points, in which those inside a polytope of 26 extreme points are skipped, with all
  *  threads; expected O(c log c) time for the c candidates that are left, with one thread. Memory: 4 bytes a point, and
  *  about 80 a candidate and 90 a vertex.
@@ -85,7 +77,7 @@ typedef struct brio_restricted_stats {
  *  out      owned by the caller, NULL on error. Its vertices are the samples, with the same indices, also those that no
  *           triangle uses. Each triangle is oriented as the face that its Voronoi edge meets. The property "closed_ball" is 1
  *           at a sample whose cell, and all whose facets and edges, meet the surface in closed balls or not at all.
- *  stats    NULL, or its `size` set.
+ *  stats    NULL, or receives what was found.
  *  Cost: one triangulation; then, for each face of the surface and each cell that it meets, a test of the Voronoi edges of that
  *  cell, mostly in doubles. Memory: 60 bytes a face and 40 a piece of one, beside the triangulation and 60 bytes a tetrahedron.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the surface is not closed, no manifold, or not of triangles), BRIO_ERR_NO_ANSWER (the
@@ -124,7 +116,7 @@ typedef struct brio_alpha_complex {
  *  2^511 or below 2^-511. Rounding leaves every value at most that of the simplices that contain the simplex. Duplicates
  *  and hidden points are in no simplex.
  *  t        the triangulation of these points and weights, of dimension 3.   weights  #P, or NULL.
- *  out      its `size` set; freed with brio_alpha_complex_free.
+ *  out      zeros at first; freed with brio_alpha_complex_free.
  *  Cost: a few times that of the triangulation, most of it with all threads. For the result and the work 48 bytes a
  *  tetrahedron, 45 a facet, 37 an edge and 24 a vertex.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (another number of points), BRIO_ERR_NO_ANSWER (the points have dimension 2 or
@@ -137,7 +129,7 @@ BRIO_API brio_status brio_alpha_values(brio_context *ctx, const brio_triangulati
  *  circles in place of spheres. counts[3] is 0, and `solid` is the least value of a triangle. brio_alpha_order and
  *  brio_alpha_auto take the complex, brio_alpha_shape does not.
  *  t        made of these points and weights by brio_delaunay2 or brio_delaunay2_flat, of dimension 2.
- *  points   #P by the coordinates of t.   weights  #P, or NULL.   out  its `size` set; freed with brio_alpha_complex_free.
+ *  points   #P by the coordinates of t.   weights  #P, or NULL.   out  zeros at first; freed with brio_alpha_complex_free.
  *  Cost: linear, one thread. For the result and the work 29 bytes a triangle, 25 an edge and 57 a point.
  *  Returns what brio_alpha_values returns; BRIO_ERR_NO_ANSWER for points on a line.
  *  Based on: [Edelsbrunner Kirkpatrick Seidel 1983], [Edelsbrunner 1995] for weights. */
@@ -173,7 +165,7 @@ typedef struct brio_alpha_shape_stats {
 /** Makes the boundary of an alpha shape: of the union of the tetrahedra with values of at most alpha. Its triangles are
  *  seen counterclockwise from outside. The mesh is closed and manifold: where parts of the solid touch in a vertex or an
  *  edge only, vertices are doubled. Singular simplices are counted, and are not in the mesh.
- *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or its `size` set.
+ *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or receives what was found.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN, or the complex is of the plane), BRIO_ERR_NO_ANSWER (no tetrahedron
  *  has a value of at most alpha, or alpha is closer to 0 than brio_alpha_auto finds one), BRIO_ERR_NO_MEMORY.
  *  Based on: [Edelsbrunner Muecke 1994]. */

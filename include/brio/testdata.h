@@ -24,18 +24,11 @@ typedef enum brio_kind {
 
 typedef struct brio_generate_options {
     size_t size;
-    uint64_t seed; /* default 1 */
-    double noise;  /* scan: standard deviation along the ray, in spacings of the samples; default 0.05 */
-    int views;     /* scan: number of sensor positions; default 12 */
+    uint64_t seed;
+    double noise; /* scan: standard deviation along the ray, in spacings of the samples; 0: 0.05; negative: none */
+    int views;    /* scan: number of sensor positions; 0: 12 */
     int reserved_int;
 } brio_generate_options;
-
-BRIO_API void brio_generate_options_init(brio_generate_options *options, size_t size);
-static inline brio_generate_options brio_generate_options_default(void) {
-    brio_generate_options options;
-    brio_generate_options_init(&options, sizeof options);
-    return options;
-}
 
 /** Makes n points of a kind; the same seed gives the same points. A scan has about n points, as many as its rays hit, and
  *  the property "view".   options  NULL for the defaults.   out  owned by the caller.

@@ -51,35 +51,27 @@ typedef enum brio_location {
 
 typedef struct brio_delaunay_options {
     size_t size;
-    brio_order order;        /* default BRIO_ORDER_BRIO */
-    brio_location locate;    /* default BRIO_LOCATION_WALK */
-    double round_ratio;      /* share of the points that is left for the rounds before the last one, below 1; default 0:
+    brio_order order;
+    brio_location locate;
+    double round_ratio;      /* share of the points that is left for the rounds before the last one, below 1; 0:
                                 the order's own ratio, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
-    uint64_t seed;           /* every random choice follows from it; default 1 */
-    uint32_t max_tetrahedra; /* most tetrahedra at any time, infinite ones included; default (and most) 2^30 */
-    int all_conflicts;       /* HISTORY and TRACE: 1 follows all conflicts, 0 (default) one search path */
-    size_t block_size;       /* most points in a block of an octree or a k-d tree; default 0: 2,000 */
+    uint64_t seed;           /* every random choice follows from it */
+    uint32_t max_tetrahedra; /* most tetrahedra at any time, infinite ones included; 0: 2^30, which is the most */
+    int all_conflicts;       /* HISTORY and TRACE: 1 follows all conflicts, 0 one search path */
+    size_t block_size;       /* most points in a block of an octree or a k-d tree; 0: 2,000 */
     uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;
-                                default 0: no entries */
-    const uint32_t *edges;   /* TRACE and NEIGHBOUR: num_edges pairs of indices of points; default NULL */
+                                0: no entries */
+    const uint32_t *edges;   /* TRACE and NEIGHBOUR: num_edges pairs of indices of points */
     size_t num_edges;
     int leave_hidden;   /* 1 leaves hidden points without a representative: BRIO_INFINITE stands in the array. Where
                          weights hide most points, this saves up to two fifths of the time, and takes 6 to 12 bytes a
                          point when the insertion is over. Default 0 */
     int first_conflict; /* HISTORY and TRACE: 1 searches depth first through conflicts, up to the first one that is alive,
-                           as the program hull of Clarkson does; default 0. Not with all_conflicts */
-    uint64_t
-        page_bytes; /* counts page touches of so large pages, a power of two from 64 on, with one thread; default 0:
+                           as the program hull of Clarkson does. Not with all_conflicts */
+    uint64_t page_bytes;  /* counts page touches of so large pages, a power of two from 64 on, with one thread; 0:
                              none are counted */
-    uint64_t cache_bytes; /* of the cache for page_faults; default 0: of one page */
+    uint64_t cache_bytes; /* of the cache for page_faults; 0: of one page */
 } brio_delaunay_options;
-
-BRIO_API void brio_delaunay_options_init(brio_delaunay_options *options, size_t size);
-static inline brio_delaunay_options brio_delaunay_options_default(void) {
-    brio_delaunay_options options;
-    brio_delaunay_options_init(&options, sizeof options);
-    return options;
-}
 
 /** Facts of a triangulation. Counters are totals over the construction and include infinite tetrahedra. */
 typedef struct brio_delaunay_stats {

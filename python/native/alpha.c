@@ -102,7 +102,7 @@ static PyObject *alpha_shape(PyObject *module, PyObject *args) {
     double alpha;
     input p, w = {.held = 0};
     call c;
-    brio_alpha_shape_stats s = {.size = sizeof s};
+    brio_alpha_shape_stats s = {0};
     if (!PyArg_ParseTuple(args, "OOOd", &object, &points, &weights, &alpha)) return NULL;
     const brio_alpha_complex *a = handle_object(state_of(module), object, KIND_ALPHA);
     if (!a || input_open(&p, points, "points", 'd', -1)) return NULL;

@@ -56,7 +56,7 @@ static PyObject *cells(PyObject *module, PyObject *args) {
     if (object != Py_None && !t) return NULL;
     if (!open_arrays(&a, points, weights, box, planes) &&
         (!t || !handle_has_points(state, object, &a.points, &a.weights)) && !call_begin(&c, state, threads, progress)) {
-        brio_cells_options o = brio_cells_options_default();
+        brio_cells_options o = {0};
         brio_status status;
         o.vertices = 1;
         o.box = a.box.data;

@@ -15,7 +15,7 @@ static int read_format(module_state *state, const char *name, brio_format *forma
 /* read(path, format or None, columns or None, threads, progress): a mesh. The path is bytes. */
 static PyObject *read_mesh(PyObject *module, PyObject *args) {
     PyObject *progress;
-    brio_read_options o = brio_read_options_default();
+    brio_read_options o = {0};
     const char *path, *format;
     int threads;
     call c;
@@ -24,7 +24,7 @@ static PyObject *read_mesh(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "yzziO", &path, &format, &o.columns, &threads, &progress)) return NULL;
     if (read_format(state_of(module), format, &o.format)) return NULL;
     if (call_begin(&c, state_of(module), threads, progress)) return NULL;
-    CALL(c, status, brio_read_as(c.ctx, path, &o, &made));
+    CALL(c, status, brio_read(c.ctx, path, &o, &made));
     return call_end_with_mesh(&c, status, made);
 }
 
@@ -36,7 +36,7 @@ static int read_write_options(PyObject *tuple, brio_write_options *o) {
 /* write(path, mesh, options, threads, progress) */
 static PyObject *write_mesh(PyObject *module, PyObject *args) {
     PyObject *object, *options, *progress;
-    brio_write_options o = brio_write_options_default();
+    brio_write_options o = {0};
     const char *path;
     int threads;
     call c;
@@ -95,11 +95,11 @@ static PyObject *conversion_dict(const brio_convert_stats *s, const losses *l) {
  * progress): a dict. */
 static PyObject *convert(PyObject *module, PyObject *args) {
     PyObject *options, *box, *progress, *result = NULL;
-    brio_read_options in = brio_read_options_default();
-    brio_write_options out = brio_write_options_default();
-    brio_outliers_options outliers = brio_outliers_options_default();
-    brio_convert_options o = brio_convert_options_default();
-    brio_convert_stats stats = {.size = sizeof stats};
+    brio_read_options in = {0};
+    brio_write_options out = {0};
+    brio_outliers_options outliers = {0};
+    brio_convert_options o = {0};
+    brio_convert_stats stats = {0};
     const char *from, *to;
     int threads;
     call c;

@@ -13,8 +13,7 @@ static PyObject *locator(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &weights, &threads, &progress)) return NULL;
     const brio_triangulation *t = handle_object(state_of(module), object, KIND_TRIANGULATION);
     if (!t || input_borrow(&p, points, "points", 'd', 3)) return NULL;
-    if (!input_borrow_weights(&w, weights, p.rows) &&
-        !call_begin(&c, state_of(module), threads, progress)) {
+    if (!input_borrow_weights(&w, weights, p.rows) && !call_begin(&c, state_of(module), threads, progress)) {
         brio_locator *l = NULL;
         brio_status status;
         CALL(c, status, brio_locator_new(c.ctx, t, p.data, w.data, p.rows, &l));
@@ -75,12 +74,13 @@ static PyObject *interpolate(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOOinOiO", &object, &queries, &values, &method, &points, &array, &threads, &progress))
         return NULL;
     const brio_locator *l = handle_object(state_of(module), object, KIND_LOCATOR);
-    if (l && !input_borrow(&a.queries, queries, "queries", 'd', 3) && !input_open(&a.values, values, "values", 'd', -1) &&
+    if (l && !input_borrow(&a.queries, queries, "queries", 'd', 3) &&
+        !input_open(&a.values, values, "values", 'd', -1) &&
         !output_open(&a.out, array, "out", 'd', (int)a.values.columns) &&
         !input_has_rows(&a.out, "out", a.queries.rows) && !input_has_rows(&a.values, "values", (size_t)points) &&
         !call_begin(&c, state_of(module), threads, progress)) {
         brio_status status;
-        brio_interpolation options = brio_interpolation_default();
+        brio_interpolation options = {0};
         options.method = (brio_interpolation_method)method;
         options.values = a.values.data;
         options.components = a.values.columns;

@@ -225,7 +225,7 @@ static PyObject *mesh_simplified(PyObject *module, PyObject *args) {
     call c;
     brio_mesh *made = NULL;
     brio_status status;
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     if (!PyArg_ParseTuple(args, "OndO", &object, &faces, &o.tolerance, &progress)) return NULL;
     const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
     if (!m || call_begin(&c, state_of(module), 0, progress)) return NULL;
@@ -316,7 +316,7 @@ static PyObject *certificate_dict(const brio_certificate *k) {
 static PyObject *mesh_certificate(PyObject *module, PyObject *object) {
     call c;
     brio_status status;
-    brio_certificate k = {.size = sizeof k};
+    brio_certificate k = {0};
     PyObject *result = NULL;
     const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
     if (!m || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
@@ -349,7 +349,7 @@ static PyObject *mesh_distance(PyObject *module, PyObject *args) {
     unsigned long long seed;
     call c;
     brio_status status;
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     if (!PyArg_ParseTuple(args, "OOnKiO", &first, &second, &samples, &seed, &threads, &progress)) return NULL;
     const brio_mesh *a = handle_object(state_of(module), first, KIND_MESH);
     const brio_mesh *b = a ? handle_object(state_of(module), second, KIND_MESH) : NULL;

@@ -56,7 +56,7 @@ typedef struct {
 static int run(module_state *state, const brio_locator2 *l, interpolation_arrays *a, int natural, PyObject *progress) {
     call c;
     brio_status status;
-    brio_interpolation options = brio_interpolation_default();
+    brio_interpolation options = {0};
     if (call_begin(&c, state, 1, progress)) return -1;
     options.method = natural ? BRIO_INTERPOLATION_NATURAL : BRIO_INTERPOLATION_LINEAR;
     options.values = a->values.data;
@@ -77,10 +77,10 @@ static PyObject *interpolate2(PyObject *module, PyObject *args) {
     interpolation_arrays a = {{.held = 0}, {.held = 0}, {.held = 0}};
     if (!PyArg_ParseTuple(args, "OOOiOO", &object, &queries, &values, &natural, &array, &progress)) return NULL;
     const brio_locator2 *l = handle_object(state_of(module), object, KIND_LOCATOR2);
-    if (l && !input_borrow(&a.queries, queries, "queries", 'd', 2) && !input_open(&a.values, values, "values", 'd', -1) &&
+    if (l && !input_borrow(&a.queries, queries, "queries", 'd', 2) &&
+        !input_open(&a.values, values, "values", 'd', -1) &&
         !output_open(&a.out, array, "out", 'd', (int)a.values.columns) &&
-        !input_has_rows(&a.out, "out", a.queries.rows) &&
-        !input_has_rows(&a.values, "values", points_of(object)))
+        !input_has_rows(&a.out, "out", a.queries.rows) && !input_has_rows(&a.values, "values", points_of(object)))
         failed = run(state_of(module), l, &a, natural, progress);
     input_close(&a.queries);
     input_close(&a.values);

@@ -43,7 +43,7 @@ static PyObject *thin(PyObject *module, PyObject *args) {
 /* outliers(points, neighbours, factor, out, threads, progress): out is a mask of the outliers. */
 static PyObject *outliers(PyObject *module, PyObject *args) {
     PyObject *points, *out, *progress;
-    brio_outliers_options o = brio_outliers_options_default();
+    brio_outliers_options o = {0};
     int neighbours, threads;
     point_call k;
     brio_status status;

@@ -95,7 +95,7 @@ static void close_surface_call(surface_call *s) {
 
 /* Fields that every method with poles has. */
 #define POLE_OPTIONS(o)                                                                                                \
-    {"seed", SEED, &(o).seed}, {"labeling", INT, &(o).poles.labeling}, {"noise", INT, &(o).poles.noise},               \
+    {"seed", SEED, &(o).seed}, {"labeling", INT, &(o).poles.labeling}, {"noise", INT, &(o).noise},                     \
         {"sampling_density", DOUBLE, &(o).poles.sampling_density}, {                                                   \
         "sharp", INT, &(o).poles.sharp                                                                                 \
     }
@@ -127,7 +127,7 @@ static int open_evidence_array(input *in, PyObject *options, const char *name) {
 /* Opens the options normals and origins: one row a point; origins may also be one row for all points. */
 static int open_evidence(evidence_input *e, PyObject *options, size_t rows) {
     int normals, origins;
-    *e = (evidence_input){.taken = brio_evidence_default()};
+    *e = (evidence_input){.taken = (brio_evidence){0}};
     if ((normals = open_evidence_array(&e->normals, options, "normals")) < 0) return -1;
     if (normals && input_has_rows(&e->normals, "normals", rows)) return -1;
     if ((origins = open_evidence_array(&e->origins, options, "origins")) < 0) return -1;
@@ -143,6 +143,18 @@ static void close_evidence(evidence_input *e) {
     input_close(&e->origins);
 }
 
+/* Makes the surface. Its property "sample" goes to an array, where one is given, and not to the interpreter. */
+static brio_status make_surface(brio_context *ctx, const surface_call *s, const brio_surface_options *o,
+                                uint32_t *samples, brio_mesh **mesh) {
+    brio_status status = brio_surface(ctx, s->p.data, s->p.rows, o, mesh, NULL);
+    if (status != BRIO_OK) return status;
+    const brio_property *property = brio_mesh_property(*mesh, "sample");
+    for (size_t v = 0; samples && v < (*mesh)->num_vertices; v++)
+        samples[v] = (uint32_t)brio_property_value(property, v);
+    brio_mesh_remove_property(*mesh, "sample");
+    return BRIO_OK;
+}
+
 static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     surface_call s;
     evidence_input e = {.taken = {0}};
@@ -150,50 +162,48 @@ static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     brio_status status;
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = {0};
     const option table[] = {
         {"seed", SEED, &o.seed},   {"noise", INT, &o.noise},       {"confidence", INT, &o.confidence},
         {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {"holes", INT, &o.holes},
         {NULL, INT, NULL}};
     o.evidence = &e.taken;
     if (!open_surface_call(&s, args, input_open, 'I', 0) && !open_evidence(&e, s.options, s.p.rows))
-        RUN_SURFACE(table, brio_labeled_delaunay(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
+        RUN_SURFACE(table, make_surface(c.ctx, &s, &o, s.out.data, &mesh));
     close_evidence(&e);
     close_surface_call(&s);
     return result;
 }
 
-static PyObject *power_crust(PyObject *module, PyObject *args) {
+/* The power crust, and its offset: polygons, unless triangles are asked for. */
+static PyObject *crust(PyObject *module, PyObject *args, brio_surface_method method) {
     surface_call s;
     call c;
     brio_status status;
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
-    brio_power_crust_options o = brio_power_crust_options_default();
+    int triangulate = 0;
+    brio_surface_options o = {.method = method};
     const option table[] = {POLE_OPTIONS(o),
-                            {"triangulate", INT, &o.triangulate},
+                            {"triangulate", INT, &triangulate},
                             {"simplify", INT, &o.simplify},
-                            {"open", DOUBLE, &o.open},
+                            {method == BRIO_SURFACE_POWER_CRUST ? "open" : NULL, DOUBLE, &o.open},
                             {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, input_open, 'd', 3))
-        RUN_SURFACE(table, brio_power_crust(c.ctx, s.p.data, s.p.rows, &o, &mesh, s.out.data, NULL));
+    if (!open_surface_call(&s, args, input_open, 'd', 3)) {
+        o.normals = s.out.data;
+        o.distance = s.number;
+        RUN_SURFACE(table, (o.polygons = !triangulate && !o.simplify, make_surface(c.ctx, &s, &o, NULL, &mesh)));
+    }
     close_surface_call(&s);
     return result;
 }
 
+static PyObject *power_crust(PyObject *module, PyObject *args) {
+    return crust(module, args, BRIO_SURFACE_POWER_CRUST);
+}
+
 static PyObject *offset_surface(PyObject *module, PyObject *args) {
-    surface_call s;
-    call c;
-    brio_status status;
-    brio_mesh *mesh = NULL;
-    PyObject *result = NULL;
-    brio_offset_surface_options o = brio_offset_surface_options_default();
-    const option table[] = {
-        POLE_OPTIONS(o), {"triangulate", INT, &o.triangulate}, {"simplify", INT, &o.simplify}, {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, input_open, 'd', 3))
-        RUN_SURFACE(table, brio_offset_surface(c.ctx, s.p.data, s.p.rows, s.number, &o, &mesh, NULL));
-    close_surface_call(&s);
-    return result;
+    return crust(module, args, BRIO_SURFACE_OFFSET);
 }
 
 static PyObject *power_shape(PyObject *module, PyObject *args) {
@@ -202,7 +212,7 @@ static PyObject *power_shape(PyObject *module, PyObject *args) {
     brio_status status;
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     const option table[] = {POLE_OPTIONS(o),
                             {"sides", INT, &o.sides},
                             {"scale", DOUBLE, &o.scale},
@@ -221,10 +231,11 @@ static PyObject *cocone(PyObject *module, PyObject *args) {
     brio_status status;
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
-    brio_cocone_options o = brio_cocone_options_default();
+    int tight = 0;
+    brio_surface_options o = {0};
     const option table[] = {{"seed", SEED, &o.seed},
                             {"theta", DOUBLE, &o.theta},
-                            {"tight", INT, &o.tight},
+                            {"tight", INT, &tight},
                             {"boundaries", INT, &o.boundaries},
                             {"density", INT, &o.density},
                             {"pieces", SIZE, &o.pieces},
@@ -232,7 +243,8 @@ static PyObject *cocone(PyObject *module, PyObject *args) {
                             {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, input_open, 'd', 3) && !open_evidence(&e, s.options, s.p.rows)) {
         if (e.taken.normals || e.taken.origins) o.evidence = &e.taken;
-        RUN_SURFACE(table, brio_cocone(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
+        RUN_SURFACE(table, (o.method = tight ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE,
+                            make_surface(c.ctx, &s, &o, NULL, &mesh)));
     }
     close_evidence(&e);
     close_surface_call(&s);
@@ -246,7 +258,7 @@ static PyObject *convex_hull(PyObject *module, PyObject *args) {
     brio_status status;
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
-    brio_convex_hull_options o = brio_convex_hull_options_default();
+    brio_convex_hull_options o = {0};
     const option table[] = {{"polygons", INT, &o.polygons}, {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, input_borrow, 'I', 0)) {
         o.samples = s.out.data;
@@ -266,7 +278,7 @@ static PyObject *mesh_offset(PyObject *module, PyObject *args) {
     call c;
     brio_mesh *made = NULL;
     brio_status status;
-    brio_mesh_offset_options o = brio_mesh_offset_options_default();
+    brio_mesh_offset_options o = {0};
     if (!PyArg_ParseTuple(args, "OddiO", &object, &distance, &o.error, &threads, &progress)) return NULL;
     const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
     if (!m || call_begin(&c, state_of(module), threads, progress)) return NULL;
@@ -293,7 +305,7 @@ static PyObject *mesh_shape(PyObject *module, PyObject *args) {
     call c;
     brio_mesh *made = NULL;
     brio_status status;
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     const option table[] = {POLE_OPTIONS(o),
                             {"sides", INT, &o.sides},
                             {"scale", DOUBLE, &o.scale},

@@ -276,5 +276,5 @@ void brio_alpha_complex_free(brio_alpha_complex *c) {
     brio_release(c->context, c->solid[0]);
     brio_release(c->context, c->gabriel[0]);
     brio_alpha_complex empty = {.size = c->size};
-    brio_versioned_give(c, &empty, sizeof empty);
+    BRIO_GIVE(brio_alpha_complex, c, &empty);
 }

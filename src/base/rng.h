@@ -8,6 +8,9 @@
 #include <assert.h>
 #include <stdint.h>
 
+/** The seed that options of 0 stand for. */
+#define BRIO_SEED UINT64_C(1)
+
 /** Returns the bits of x mixed by a bijection. */
 static inline uint64_t brio_mix(uint64_t x) {
     x += UINT64_C(0x9e3779b97f4a7c15);

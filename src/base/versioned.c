@@ -9,10 +9,11 @@
  * initialised. */
 enum { MOST_BYTES = 4096 };
 
-static size_t size_of(const void *given) {
+/* Returns the size that the caller gave; 0 stands for the first fields. */
+static size_t size_of(const void *given, const brio_layout *layout) {
     size_t size;
     memcpy(&size, given, sizeof size);
-    return size;
+    return size ? size : layout->first;
 }
 
 static bool is_plausible(size_t size) {
@@ -31,49 +32,42 @@ static void copy_fields(void *to, size_t to_size, const void *from, size_t from_
         memcpy((char *)to + sizeof(size_t), (const char *)from + sizeof(size_t), common - sizeof(size_t));
 }
 
-void brio_versioned_init(void *given, size_t size, const void *defaults, size_t mine_size) {
-    assert(is_plausible(mine_size));
-    if (size < sizeof size) return;
-    memset(given, 0, size);
-    memcpy(given, &size, sizeof size);
-    copy_fields(given, size, defaults, mine_size);
-}
-
-brio_status brio_versioned_check(brio_context *ctx, const void *given, const char *name) {
+brio_status brio_versioned_check(brio_context *ctx, const void *given, const brio_layout *layout) {
     if (!given) return BRIO_OK;
-    size_t size = size_of(given);
+    size_t size = size_of(given, layout);
     if (is_plausible(size)) return BRIO_OK;
-    return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s.size is %zu: set it to sizeof(%s), or initialise the struct", name,
-                     size, name);
+    return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s.size is %zu: set the struct to zeros, or its size to sizeof(%s)",
+                     layout->name, size, layout->name);
 }
 
-bool brio_versioned_reaches(const void *given, size_t least) {
-    size_t size = size_of(given);
+bool brio_versioned_reaches(const void *given, size_t least, const brio_layout *layout) {
+    size_t size = size_of(given, layout);
     return is_plausible(size) && size >= least;
 }
 
-brio_status brio_versioned_check_owner(brio_context *ctx, const void *given, size_t least, const char *name) {
-    if (brio_versioned_reaches(given, least)) return BRIO_OK;
-    return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s.size is %zu: set it to sizeof(%s)", name, size_of(given), name);
+brio_status brio_versioned_check_owner(brio_context *ctx, const void *given, size_t least, const brio_layout *layout) {
+    if (brio_versioned_reaches(given, least, layout)) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s.size is %zu: set the struct to zeros, or its size to sizeof(%s)",
+                     layout->name, size_of(given, layout), layout->name);
 }
 
-brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine, size_t mine_size, const char *name) {
+brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine, const brio_layout *layout) {
     if (!given) return BRIO_OK;
-    brio_status status = brio_versioned_check(ctx, given, name);
+    brio_status status = brio_versioned_check(ctx, given, layout);
     if (status != BRIO_OK) return status;
-    size_t size = size_of(given);
-    assert(is_plausible(mine_size));
-    if (size > mine_size && !all_zero(given, mine_size, size))
+    size_t size = size_of(given, layout);
+    assert(is_plausible(layout->size) && layout->first <= layout->size);
+    if (size > layout->size && !all_zero(given, layout->size, size))
         return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s sets a field that this version of the library does not know",
-                         name);
-    copy_fields(mine, mine_size, given, size);
+                         layout->name);
+    copy_fields(mine, layout->size, given, size);
     return BRIO_OK;
 }
 
-void brio_versioned_give(void *given, const void *mine, size_t mine_size) {
-    assert(is_plausible(mine_size));
-    size_t size = given ? size_of(given) : 0;
+void brio_versioned_give(void *given, const void *mine, const brio_layout *layout) {
+    assert(is_plausible(layout->size) && layout->first <= layout->size);
+    size_t size = given ? size_of(given, layout) : 0;
     if (!is_plausible(size)) return;
     memset((char *)given + sizeof size, 0, size - sizeof size);
-    copy_fields(given, size, mine, mine_size);
+    copy_fields(given, size, mine, layout->size);
 }

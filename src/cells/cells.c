@@ -114,10 +114,6 @@ done:
 /* CHUNK: cells that a thread takes at a time. SLICES: progress is reported between slices of the cells. All chosen. */
 enum { CHUNK = 128, CELLS_A_THREAD = 512, SLICES = 64 };
 
-static const brio_cells_options STANDARD = {.size = sizeof STANDARD, .areas = 1, .centroids = 1, .faces = 1};
-
-BRIO_OPTIONS_INIT(brio_cells_options)
-
 void brio_cells_free(brio_cells *cells) {
     if (!cells) return;
     brio_context *ctx = cells->context;
@@ -469,8 +465,8 @@ static void end_call(cell_call *c) {
 static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *out) {
     const brio_cells_options *o = &c->options;
     brio_cell_job job = {.d = &c->diagram, .region = &c->region, .out = out};
-    job.areas = o->areas, job.centroids = o->centroids, job.vertices = o->vertices;
-    job.faces = o->faces || o->vertices;
+    job.areas = !o->no_areas, job.centroids = !o->no_centroids, job.vertices = o->vertices;
+    job.faces = !o->no_faces || o->vertices;
     c->diagram.ctx = c->ctx;
     c->diagram.num_points = c->num_points;
     BRIO_FORWARD(check_region(c->ctx, o));
@@ -492,7 +488,7 @@ brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, c
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_cells *cells = NULL;
-    cell_call c = {.ctx = ctx, .points = points, .weights = weights, .num_points = num_points, .options = STANDARD};
+    cell_call c = {.ctx = ctx, .points = points, .weights = weights, .num_points = num_points};
     brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
     c.diagram.ctx = ctx;

@@ -73,7 +73,7 @@ static double delaunay_bytes(double points, const brio_triangulation_size *size,
 brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                    const brio_delaunay_options *options, uint64_t *bytes) {
     BRIO_DOOR;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     brio_triangulation_size size = {0};
     *bytes = 0;
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
@@ -104,33 +104,6 @@ static uint64_t crust_bytes(size_t num_points, double each, bool triangulate, bo
     return bytes_of(each * (double)num_points);
 }
 
-brio_status brio_estimate_power_crust(brio_context *ctx, size_t num_points, const brio_power_crust_options *options,
-                                      uint64_t *bytes) {
-    BRIO_DOOR;
-    brio_power_crust_options o = brio_power_crust_options_default();
-    brio_status status = BRIO_TAKE(ctx, brio_power_crust_options, options, &o);
-    *bytes = status == BRIO_OK ? crust_bytes(num_points, CRUST_BYTES_A_POINT, o.triangulate, o.simplify) : 0;
-    return status;
-}
-
-brio_status brio_estimate_offset_surface(brio_context *ctx, size_t num_points,
-                                         const brio_offset_surface_options *options, uint64_t *bytes) {
-    BRIO_DOOR;
-    brio_offset_surface_options o = brio_offset_surface_options_default();
-    brio_status status = BRIO_TAKE(ctx, brio_offset_surface_options, options, &o);
-    *bytes = status == BRIO_OK ? crust_bytes(num_points, OFFSET_BYTES_A_POINT, o.triangulate, o.simplify) : 0;
-    return status;
-}
-
-brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points, const brio_power_shape_options *options,
-                                      uint64_t *bytes) {
-    BRIO_DOOR;
-    brio_power_shape_options o = brio_power_shape_options_default();
-    brio_status status = BRIO_TAKE(ctx, brio_power_shape_options, options, &o);
-    *bytes = status == BRIO_OK ? crust_bytes(num_points, CRUST_BYTES_A_POINT, false, false) : 0;
-    return status;
-}
-
 /* Returns the estimate of the co-cones. The super co-cone keeps the points and the triangles of all pieces, and works on one piece of up to twice the mean size.
  * Measured on scans of 60,000 and 200,000 points in 3 to 154 pieces, with one thread. */
 static double cocone_bytes(double points, double pieces) {
@@ -139,21 +112,35 @@ static double cocone_bytes(double points, double pieces) {
     return pieces < 2 ? whole : fmin(whole, KEPT_A_POINT * points + whole * 2 / pieces) + A_PIECE * pieces;
 }
 
-brio_status brio_estimate_cocone(brio_context *ctx, size_t num_points, const brio_cocone_options *options,
-                                 uint64_t *bytes) {
+brio_status brio_estimate_surface(brio_context *ctx, size_t num_points, const brio_surface_options *options,
+                                  uint64_t *bytes) {
     BRIO_DOOR;
-    brio_cocone_options o = brio_cocone_options_default();
-    brio_status status = BRIO_TAKE(ctx, brio_cocone_options, options, &o);
-    *bytes = status == BRIO_OK ? bytes_of(cocone_bytes((double)num_points, (double)o.pieces)) : 0;
-    return status;
+    brio_surface_options o = {0};
+    *bytes = 0;
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_surface_options, options, &o));
+    BRIO_EXPECT(ctx, (unsigned)o.method < BRIO_SURFACE_END, BRIO_ERR_ARGUMENT, "no such method: %d", (int)o.method);
+    switch (o.method) {
+    case BRIO_SURFACE_POWER_CRUST:
+        *bytes = crust_bytes(num_points, CRUST_BYTES_A_POINT, !o.polygons, o.simplify);
+        break;
+    case BRIO_SURFACE_OFFSET:
+        *bytes = crust_bytes(num_points, OFFSET_BYTES_A_POINT, !o.polygons, o.simplify);
+        break;
+    case BRIO_SURFACE_LABELED:
+        *bytes = bytes_of(LABELED_BYTES_A_POINT * (double)num_points);
+        break;
+    default:
+        *bytes = bytes_of(cocone_bytes((double)num_points, (double)o.pieces));
+    }
+    return BRIO_OK;
 }
 
-brio_status brio_estimate_labeled_delaunay(brio_context *ctx, size_t num_points,
-                                           const brio_labeled_delaunay_options *options, uint64_t *bytes) {
+brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points, const brio_power_shape_options *options,
+                                      uint64_t *bytes) {
     BRIO_DOOR;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_status status = BRIO_TAKE(ctx, brio_labeled_delaunay_options, options, &o);
-    *bytes = status == BRIO_OK ? bytes_of(LABELED_BYTES_A_POINT * (double)num_points) : 0;
+    brio_power_shape_options o = {0};
+    brio_status status = BRIO_TAKE(ctx, brio_power_shape_options, options, &o);
+    *bytes = status == BRIO_OK ? crust_bytes(num_points, CRUST_BYTES_A_POINT, false, false) : 0;
     return status;
 }
 

@@ -134,7 +134,7 @@ static int exponent_of_set(const double *points, const double *weights, size_t c
 /* Triangulates a small set, which it scales in place. BRIO_ERR_TOO_LARGE if there are too many tetrahedra. */
 static brio_status triangulate(brio_context *ctx, double *points, double *weights, size_t count,
                                brio_triangulation **t) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     brio_status status = BRIO_OK;
     int exponent = exponent_of_set(points, weights, count);
     BRIO_TRY(brio_scale(ctx, points, 3 * count, -exponent, points));

@@ -12,6 +12,7 @@
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/sort.h"
 #include "base/versioned.h"
 #include "hull/hull_faces.h"
@@ -20,10 +21,6 @@
 #include "order/order.h"
 #include <assert.h>
 #include <string.h>
-
-static const brio_convex_hull_options STANDARD = {.size = sizeof STANDARD};
-
-BRIO_OPTIONS_INIT(brio_convex_hull_options)
 
 typedef struct {
     brio_context *ctx;
@@ -48,7 +45,7 @@ static brio_status take_records(hull *h, size_t n) {
     brio_status status = BRIO_OK;
     double *rows = NULL;
     uint32_t *order = NULL;
-    const brio_delaunay_options o = brio_delaunay_options_default();
+    const brio_delaunay_options o = {.seed = BRIO_SEED};
     BRIO_TRY(BRIO_ALLOC(h->ctx, rows, 3 * n));
     BRIO_TRY(BRIO_ALLOC(h->ctx, order, n));
     BRIO_TRY(BRIO_ALLOC(h->ctx, h->records.record, n + 1));
@@ -204,7 +201,7 @@ brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num
                              const brio_convex_hull_options *options, brio_mesh **out, brio_convex_hull_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_convex_hull_options o = STANDARD;
+    brio_convex_hull_options o = {0};
     hull h = {.ctx = ctx, .points = points, .num_points = num_points, .lap = brio_seconds()};
     brio_mesh *mesh = NULL;
     *out = NULL;

@@ -11,10 +11,6 @@
 
 enum { MAP_WORD = 208 };
 
-static const brio_iso_surface_options STANDARD = {.size = sizeof STANDARD, .level = 1, .blobbiness = 2};
-
-BRIO_OPTIONS_INIT(brio_iso_surface_options)
-
 /* --- reading --- */
 
 static bool has_extension(const char *path, const char *const *extensions) {
@@ -52,26 +48,26 @@ done:
     return status;
 }
 
-static brio_status check_options(brio_context *ctx, const brio_iso_surface_options *o) {
-    BRIO_EXPECT(ctx, isfinite(o->level), BRIO_ERR_ARGUMENT, "level %g: expected a finite number", o->level);
+static brio_status check_options(brio_context *ctx, double level, const brio_iso_surface_options *o) {
+    BRIO_EXPECT(ctx, isfinite(level), BRIO_ERR_ARGUMENT, "level %g: expected a finite number", level);
     BRIO_EXPECT(ctx, !o->resolution || !o->vertices, BRIO_ERR_ARGUMENT,
                 "a resolution and a number of vertices: one decides the other");
     return BRIO_OK;
 }
 
-brio_status brio_iso_surface(brio_context *ctx, const char *path, const brio_iso_surface_options *options,
+brio_status brio_iso_surface(brio_context *ctx, const char *path, double level, const brio_iso_surface_options *options,
                              brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_iso_surface_options o = STANDARD;
+    brio_iso_surface_options o = {0};
     brio_iso_source from = {0};
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_iso_surface_options, options, &o));
-    BRIO_TRY(check_options(ctx, &o));
+    BRIO_TRY(check_options(ctx, level, &o));
     BRIO_TRY(read_source(ctx, path, &from));
-    BRIO_REQUIRE(ctx, !from.is_map || o.blobbiness == STANDARD.blobbiness, BRIO_ERR_ARGUMENT,
+    BRIO_REQUIRE(ctx, !from.is_map || o.blobbiness == 0, BRIO_ERR_ARGUMENT,
                  "%s: blobbiness %g: the file is a map, and blobbiness is of atoms", path, o.blobbiness);
-    BRIO_TRY(brio_iso_source_surface(ctx, &from, &o, out));
+    BRIO_TRY(brio_iso_source_surface(ctx, &from, level, &o, out));
 done:
     brio_iso_source_free(ctx, &from);
     return status;

@@ -12,10 +12,6 @@
 /* Bytes of a file in which its content may show the format. */
 enum { START = BRIO_IO_BLOCK < 4096 ? BRIO_IO_BLOCK : 4096 };
 
-static const brio_read_options STANDARD = {.size = sizeof STANDARD, .format = BRIO_FORMAT_AUTO};
-
-BRIO_OPTIONS_INIT(brio_read_options)
-
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
@@ -197,9 +193,9 @@ static void give_findings(brio_context *ctx, const brio_read_options *o, brio_re
     brio_read_job_free(ctx, job);
 }
 
-brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_options *options, brio_mesh **out) {
+brio_status brio_read(brio_context *ctx, const char *path, const brio_read_options *options, brio_mesh **out) {
     BRIO_DOOR;
-    brio_read_options o = STANDARD;
+    brio_read_options o = {0};
     *out = NULL;
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_read_options, options, &o));
     BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_read_notes, o.notes));
@@ -210,17 +206,10 @@ brio_status brio_read_as(brio_context *ctx, const char *path, const brio_read_op
     return BRIO_OK;
 }
 
-brio_status brio_read(brio_context *ctx, const char *path, brio_format format, brio_mesh **out) {
-    BRIO_DOOR;
-    brio_read_options o = STANDARD;
-    o.format = format;
-    return brio_read_as(ctx, path, &o, out);
-}
-
 brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
                              const brio_read_options *options, brio_mesh **out) {
     BRIO_DOOR;
-    brio_read_options o = STANDARD;
+    brio_read_options o = {0};
     const brio_bytes memory = {bytes, size};
     *out = NULL;
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_read_options, options, &o));
@@ -253,7 +242,7 @@ brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_rea
     brio_status status = BRIO_OK;
     block_call c = {ctx, take, user};
     const brio_sink sink = {call, &c};
-    brio_read_options o = STANDARD;
+    brio_read_options o = {0};
     brio_read_job job = {.path = path};
     brio_file_facts found = {.size = sizeof found};
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_file_facts, facts));

@@ -8,10 +8,6 @@
 #include "mesh/edge_rings.h"
 #include <string.h>
 
-static const brio_write_options STANDARD = {.size = sizeof STANDARD, .format = BRIO_FORMAT_AUTO};
-
-BRIO_OPTIONS_INIT(brio_write_options)
-
 /* --- what a format can hold --- */
 
 brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format format,
@@ -127,7 +123,7 @@ static brio_status check_mesh(brio_context *ctx, const char *path, const brio_me
 
 brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
     BRIO_DOOR;
-    brio_write_options o = STANDARD;
+    brio_write_options o = {0};
     brio_write_job job = {.mesh = mesh, .options = &o};
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_write_options, options, &o));
     brio_format format = o.format;

@@ -8,6 +8,7 @@
 enum { FIRST_RESOLUTION = 100, MOST_RESOLUTION = 1 << 15, MOST_ROUNDS = 5 };
 
 static const double CLOSE_ENOUGH = 0.02; /* share of the wanted number of vertices; chosen */
+static const double BLOBBINESS = 2;      /* that 0 stands for; chosen */
 
 /* Refuses a level over all values. Those of atoms are not all known. */
 static brio_status nothing_above(brio_context *ctx, const brio_iso_source *from, double level) {
@@ -21,19 +22,18 @@ static brio_status nothing_above(brio_context *ctx, const brio_iso_source *from,
                      level, (double)largest);
 }
 
-static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, const brio_iso_surface_options *o,
-                                size_t resolution, brio_mesh **out) {
+static brio_status make_surface(brio_context *ctx, const brio_iso_source *from, double level,
+                                const brio_iso_surface_options *o, size_t resolution, brio_mesh **out) {
     brio_status status = BRIO_OK;
     if (from->is_map)
-        BRIO_TRY(brio_volume_surface(ctx, &from->volume, o->level, resolution, o->conforming, out));
+        BRIO_TRY(brio_volume_surface(ctx, &from->volume, level, resolution, o->conforming, out));
     else
         BRIO_TRY(brio_density_surface(ctx, from->atoms, from->num_atoms,
-                                      &(brio_density_options){o->level, o->blobbiness, resolution, o->conforming},
-                                      out));
+                                      &(brio_density_options){level, o->blobbiness, resolution, o->conforming}, out));
     if ((*out)->num_faces) return BRIO_OK;
     brio_mesh_free(*out);
     *out = NULL;
-    status = nothing_above(ctx, from, o->level);
+    status = nothing_above(ctx, from, level);
 done:
     return status;
 }
@@ -49,13 +49,13 @@ static size_t next_resolution(double wanted, const double resolution[2], const d
 }
 
 /* Tries resolutions until the number of vertices is close to the wanted one; keeps the last try. */
-static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from,
+static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source *from, double level,
                                         const brio_iso_surface_options *o, brio_mesh **out) {
     double wanted = (double)o->vertices, tried[2] = {0, FIRST_RESOLUTION}, vertices[2] = {0, 0};
     for (int round = 0; round < MOST_ROUNDS; round++) {
         brio_mesh_free(*out);
         *out = NULL;
-        BRIO_FORWARD(make_surface(ctx, from, o, (size_t)tried[1], out));
+        BRIO_FORWARD(make_surface(ctx, from, level, o, (size_t)tried[1], out));
         vertices[1] = (double)(*out)->num_vertices;
         size_t next = next_resolution(wanted, tried, vertices);
         if (fabs(vertices[1] / wanted - 1) < CLOSE_ENOUGH || (double)next == tried[1]) break;
@@ -67,24 +67,24 @@ static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source
 }
 
 /* Converts a level in standard deviations to the map's unit. */
-static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, brio_iso_surface_options *o) {
+static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, double *level) {
     double mean, deviation;
-    if (!o->deviations) return BRIO_OK;
     BRIO_EXPECT(ctx, from->is_map, BRIO_ERR_ARGUMENT,
                 "a level in standard deviations is for maps: the density of atoms has no mean");
     brio_volume_statistics(&from->volume, &mean, &deviation);
-    o->level = mean + o->level * deviation;
-    o->deviations = 0;
+    *level = mean + *level * deviation;
     return BRIO_OK;
 }
 
-brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from,
+brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *from, double level,
                                     const brio_iso_surface_options *options, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_iso_surface_options o = *options;
     *out = NULL;
-    BRIO_TRY(settle_level(ctx, from, &o));
-    BRIO_TRY(o.vertices ? make_surface_of_size(ctx, from, &o, out) : make_surface(ctx, from, &o, o.resolution, out));
+    if (o.blobbiness == 0) o.blobbiness = BLOBBINESS;
+    if (o.deviations) BRIO_TRY(settle_level(ctx, from, &level));
+    BRIO_TRY(o.vertices ? make_surface_of_size(ctx, from, level, &o, out)
+                        : make_surface(ctx, from, level, &o, o.resolution, out));
 done:
     if (status != BRIO_OK) {
         brio_mesh_free(*out);

@@ -11,10 +11,6 @@ typedef struct {
     brio_natural *natural; /* of each thread */
 } interpolation_job;
 
-static const brio_interpolation STANDARD = {.size = sizeof STANDARD, .components = 1};
-
-BRIO_OPTIONS_INIT(brio_interpolation)
-
 /* Writes the mean of the values at some places to a row of the results. */
 static void write_mean(const interpolation_job *job, const uint32_t *place, const double *share, size_t count,
                        double *row) {
@@ -84,11 +80,12 @@ done:
 brio_status brio_locator_interpolate(brio_context *ctx, const brio_locator *l, const double *queries,
                                      size_t num_queries, const brio_interpolation *options, double *results) {
     BRIO_DOOR;
-    brio_interpolation o = STANDARD;
+    brio_interpolation o = {0};
     brio_status status = BRIO_OK;
     int threads = brio_query_threads(ctx, num_queries);
     interpolation_job job = {.o = &o, .l = l, .results = results};
     BRIO_TRY(BRIO_TAKE(ctx, brio_interpolation, options, &o));
+    if (!o.components) o.components = 1;
     BRIO_TRY(check_options(ctx, l, &o));
     if (l->flat) return interpolate_flat(ctx, l, queries, num_queries, &o, results);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, job.natural, (size_t)threads));

@@ -201,6 +201,19 @@ brio_status brio_mesh_add_face_property(brio_mesh *mesh, const char *name, brio_
     return BRIO_OK;
 }
 
+brio_status brio_mesh_add_samples(brio_mesh *mesh, size_t num_points, const uint32_t *samples) {
+    const brio_scalar type = num_points > INT32_MAX ? BRIO_SCALAR_FLOAT64 : BRIO_SCALAR_INT32;
+    void *data = NULL;
+    brio_status status = brio_mesh_add_property(mesh, "sample", type, &data);
+    for (size_t v = 0; status == BRIO_OK && v < mesh->num_vertices; v++) {
+        if (type == BRIO_SCALAR_INT32)
+            ((int32_t *)data)[v] = samples ? (int32_t)samples[v] : -1;
+        else
+            ((double *)data)[v] = samples ? (double)samples[v] : -1;
+    }
+    return status;
+}
+
 void brio_mesh_drop_properties(brio_mesh *mesh, size_t left) {
     while (mesh->num_properties > left) brio_release(mesh->context, mesh->properties[--mesh->num_properties].data);
 }

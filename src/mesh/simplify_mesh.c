@@ -154,10 +154,6 @@ done:
 
 enum { HUGE_EXPONENT = 100 };
 
-static const brio_mesh_simplify_options STANDARD = {.size = sizeof STANDARD};
-
-BRIO_OPTIONS_INIT(brio_mesh_simplify_options)
-
 /* Returns the exponent of the largest coordinate if that is out of range, or 0. */
 static int exponent_of(const brio_mesh *mesh) {
     int exponent = brio_exponent(brio_greatest(mesh->vertices, 3 * mesh->num_vertices));
@@ -174,7 +170,7 @@ static brio_status collapse(brio_context *ctx, brio_mesh *mesh, const brio_mesh_
 brio_status brio_mesh_simplify(brio_context *ctx, brio_mesh *mesh, const brio_mesh_simplify_options *options) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_mesh_simplify_options o = STANDARD;
+    brio_mesh_simplify_options o = {0};
     BRIO_TRY(BRIO_TAKE(ctx, brio_mesh_simplify_options, options, &o));
     BRIO_REQUIRE(ctx, o.tolerance >= 0 && o.tolerance < INFINITY, BRIO_ERR_ARGUMENT,
                  "a tolerance of %g, expected a finite number, 0 or more", o.tolerance);

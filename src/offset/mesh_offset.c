@@ -37,10 +37,6 @@ static const double LEAST_ERROR = 0x1p-38; /* of the greatest coordinate: what d
 static const double FARTHEST = 0x1p30; /* of the size: where an offset hardly differs from a point's; chosen */
 #define SWALLOWED "the offset by %g swallows the whole object: no inside is left"
 
-static const brio_mesh_offset_options STANDARD = {.size = sizeof STANDARD};
-
-BRIO_OPTIONS_INIT(brio_mesh_offset_options)
-
 static void offset_work_free(brio_offset_work *w) {
     brio_release(w->ctx, w->points);
     brio_release(w->ctx, w->triangles);
@@ -135,7 +131,7 @@ static double size_of(const brio_mesh *mesh) {
 
 brio_status brio_offset_settle(brio_context *ctx, const brio_mesh *mesh, double distance,
                                const brio_mesh_offset_options *options, brio_mesh_offset_options *o) {
-    *o = STANDARD;
+    *o = (brio_mesh_offset_options){0};
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_mesh_offset_options, options, o));
     BRIO_FORWARD(brio_mesh_check_faces(ctx, mesh));
     BRIO_FORWARD(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the mesh"));

@@ -5,6 +5,7 @@
 #include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/sort.h"
 #include "base/versioned.h"
 #include "plane/plane_insert.h"
@@ -125,10 +126,6 @@ static brio_status plane_represent(brio_plane_store *s) {
 /* --- the triangulation --- */
 
 enum { PROGRESS_EVERY = 1 << 14 };
-
-static const brio_delaunay2_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
-
-BRIO_OPTIONS_INIT(brio_delaunay2_options)
 
 /* Inserts the records after those of the first triangle. */
 static brio_status insert_all(brio_plane_store *s) {
@@ -281,12 +278,13 @@ done:
 static brio_status triangulate(brio_context *ctx, const brio_plane_input *given, const brio_delaunay2_options *options,
                                brio_triangulation2 **out) {
     brio_status status = BRIO_OK;
-    brio_delaunay2_options o = STANDARD;
+    brio_delaunay2_options o = {0};
     brio_plane_input input = {.own = NULL};
     size_t n = given->count;
     *out = NULL;
     brio_keep_begin(ctx);
     BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay2_options, options, &o));
+    if (!o.seed) o.seed = BRIO_SEED;
     BRIO_REQUIRE(ctx, n < (UINT32_C(1) << 29) - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^29 - 17", n);
     BRIO_REQUIRE(ctx, o.round_ratio >= 0 && o.round_ratio < 1, BRIO_ERR_ARGUMENT,
                  "round ratio %g is not between 0 and 1", o.round_ratio);

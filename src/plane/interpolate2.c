@@ -100,11 +100,12 @@ static brio_status check_options(brio_context *ctx, const brio_locator2 *l, cons
 brio_status brio_locator2_interpolate(brio_context *ctx, const brio_locator2 *l, const double *queries,
                                       size_t num_queries, const brio_interpolation *options, double *results) {
     BRIO_DOOR;
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     brio_status status = BRIO_OK;
     int threads = brio_plane_query_threads(ctx, num_queries);
     interpolation_job job = {&o, l, results, NULL};
     BRIO_TRY(BRIO_TAKE(ctx, brio_interpolation, options, &o));
+    if (!o.components) o.components = 1;
     BRIO_TRY(check_options(ctx, l, &o));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, job.natural, (size_t)threads));
     for (int i = 0; i < threads; i++) job.natural[i].ctx = ctx;

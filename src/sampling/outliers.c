@@ -36,13 +36,11 @@ enum { ORDINARY = 256 };
 
 /* Chosen on the sets of docs/algorithms.md, with the factor. */
 static const double DEVIATIONS = 8;
+/* That a factor of 0 stands for; chosen on them, too. */
+static const double FACTOR = 3;
 
 /* Half a unit in the last place of 1. */
 static const double ROUNDING = 0x1p-53;
-
-static const brio_outliers_options STANDARD = {.size = sizeof STANDARD, .factor = 3};
-
-BRIO_OPTIONS_INIT(brio_outliers_options)
 
 typedef struct {
     brio_point_tree tree;
@@ -177,9 +175,10 @@ brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_po
     BRIO_DOOR;
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(ctx);
-    brio_outliers_options o = STANDARD;
+    brio_outliers_options o = {0};
     search s = {.outlier = outlier};
     BRIO_TRY(BRIO_TAKE(ctx, brio_outliers_options, options, &o));
+    if (o.factor == 0) o.factor = FACTOR;
     BRIO_TRY(check(ctx, neighbours, o.factor));
     s.neighbours = (size_t)neighbours;
     s.factor = o.factor;

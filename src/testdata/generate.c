@@ -23,16 +23,14 @@ enum {
     MOST_RESOLUTION = 1 << 15,
     POINTS_A_THREAD = 1 << 10,
     CLUSTERS = 256,
+    VIEWS = 12,
     EXPONENT_DIGITS = 20 /* binary digits of the exponent of a cluster's radius */
 };
 
+static const double NOISE = 0.05; /* of a scan, and VIEWS: what 0 stands for */
 static const double TORUS_MAJOR = 1, TORUS_MINOR = 0.4, CYLINDER_HEIGHT = 4;
 static const double LARGEST_CLUSTER = 0.1,
                     CLUSTER_RANGE = 1e-6; /* largest radius, and the least radius as a share of the largest */
-
-static const brio_generate_options STANDARD = {.size = sizeof STANDARD, .seed = 1, .noise = 0.05, .views = 12};
-
-BRIO_OPTIONS_INIT(brio_generate_options)
 
 /* --- one point of a kind --- */
 
@@ -204,9 +202,16 @@ static brio_status fill(brio_context *ctx, brio_kind kind, uint64_t seed, brio_m
     return brio_progress(ctx, "generate", 1);
 }
 
+/* Fills in the defaults. */
+static void settle(brio_generate_options *o) {
+    if (!o->seed) o->seed = BRIO_SEED;
+    if (o->noise == 0) o->noise = NOISE;
+    if (o->noise < 0) o->noise = 0;
+    if (!o->views) o->views = VIEWS;
+}
+
 static brio_status check_options(brio_context *ctx, const brio_generate_options *options) {
-    BRIO_EXPECT(ctx, isfinite(options->noise) && options->noise >= 0, BRIO_ERR_ARGUMENT,
-                "noise %g: expected a finite number, 0 or more", options->noise);
+    BRIO_EXPECT(ctx, isfinite(options->noise), BRIO_ERR_ARGUMENT, "noise %g: expected a finite number", options->noise);
     BRIO_EXPECT(ctx, options->views >= 1 && options->views <= UINT16_MAX, BRIO_ERR_ARGUMENT,
                 "%d views: expected 1 to %d", options->views, UINT16_MAX);
     return BRIO_OK;
@@ -216,12 +221,13 @@ brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const bri
                           brio_mesh **out) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_generate_options o = STANDARD;
+    brio_generate_options o = {0};
     brio_mesh *mesh = NULL;
     *out = NULL;
     BRIO_REQUIRE(ctx, (unsigned)kind < BRIO_KIND_END, BRIO_ERR_ARGUMENT, "there is no kind %d of points", (int)kind);
     BRIO_REQUIRE(ctx, n <= MOST_POINTS, BRIO_ERR_NO_MEMORY, "out of memory: %zu points", n);
     BRIO_TRY(BRIO_TAKE(ctx, brio_generate_options, options, &o));
+    settle(&o);
     BRIO_TRY(check_options(ctx, &o));
     if (kind == BRIO_KIND_SCAN) return brio_scan(ctx, n, &o, out);
     BRIO_TRY(brio_mesh_new(ctx, &mesh));

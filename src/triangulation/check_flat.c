@@ -119,7 +119,7 @@ brio_status brio_check_flat(brio_context *ctx, const brio_triangulation *t, cons
     memcpy(lifted, points, 3 * n * sizeof *lifted);
     size_t total = add_apexes(lifted, n, reach_of(points, n));
     if (weights) BRIO_TRY(copy_weights(ctx, weights, n, total, &w));
-    brio_delaunay_options options = brio_delaunay_options_default();
+    brio_delaunay_options options = {0};
     options.leave_hidden = t->leaves_hidden;
     BRIO_TRY(brio_delaunay(ctx, lifted, w, total, &options, &solid));
     BRIO_REQUIRE(ctx, solid->stats.dimension == 3, BRIO_ERR_INTERNAL, "no point off a flat input was found");

@@ -16,12 +16,7 @@
 #include "triangulation/triangulation.h"
 #include <assert.h>
 
-enum { PROGRESS_EVERY = 8192 };
-
-static const brio_delaunay_options STANDARD = {
-    .size = sizeof STANDARD, .order = BRIO_ORDER_BRIO, .seed = 1, .max_tetrahedra = UINT32_C(1) << 30};
-
-BRIO_OPTIONS_INIT(brio_delaunay_options)
+enum { PROGRESS_EVERY = 8192, MOST_TETRAHEDRA = 1 << 30 };
 
 static brio_status check_count(brio_context *ctx, size_t n) {
     BRIO_EXPECT(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
@@ -29,6 +24,12 @@ static brio_status check_count(brio_context *ctx, size_t n) {
     BRIO_EXPECT(ctx, ctx->scratch || n < (UINT32_C(1) << 31) - 16, BRIO_ERR_TOO_LARGE,
                 "%zu points; at most 2^31 - 17 without a scratch folder", n);
     return BRIO_OK;
+}
+
+/* Fills in the defaults. */
+static void settle(brio_delaunay_options *o) {
+    if (!o->seed) o->seed = BRIO_SEED;
+    if (!o->max_tetrahedra) o->max_tetrahedra = MOST_TETRAHEDRA;
 }
 
 brio_status brio_delaunay_check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
@@ -47,7 +48,7 @@ brio_status brio_delaunay_check_options(brio_context *ctx, size_t n, const brio_
     BRIO_EXPECT(ctx, !o->cache_bytes || o->page_bytes, BRIO_ERR_ARGUMENT, "a cache of pages without a size of pages");
     BRIO_EXPECT(ctx, !o->all_conflicts || !o->first_conflict, BRIO_ERR_ARGUMENT,
                 "only one of all conflicts and the first conflict");
-    BRIO_EXPECT(ctx, o->max_tetrahedra <= UINT32_C(1) << 30, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
+    BRIO_EXPECT(ctx, o->max_tetrahedra <= MOST_TETRAHEDRA, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
                 o->max_tetrahedra);
     return BRIO_OK;
 }
@@ -219,7 +220,7 @@ done:
 brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                           const brio_delaunay_options *options, brio_triangulation **out) {
     BRIO_DOOR;
-    brio_delaunay_options o = STANDARD;
+    brio_delaunay_options o = {0};
     brio_store *store = NULL;
     brio_recorder recorder = {0};
     brio_status status = BRIO_OK;
@@ -228,6 +229,7 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
     BRIO_TRY(check_count(ctx, num_points));
     BRIO_TRY(brio_delaunay_check_options(ctx, num_points, &o));
+    settle(&o);
     recorder.every = o.record_every;
     double start = brio_seconds();
     BRIO_TRY(brio_store_new(ctx, &(brio_input){points, weights, num_points}, &o, &recorder.rounds, &store));

@@ -88,7 +88,7 @@ done:
 static brio_status locate(brio_context *ctx, uint64_t *sum) {
     brio_triangulation *t = NULL;
     brio_locator *l = NULL;
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     brio_status status = BRIO_OK;
     uint32_t found[N];
     double values[N];
@@ -112,17 +112,20 @@ static brio_status take_mesh(brio_status status, brio_mesh *const *m, uint64_t *
 
 static brio_status labeled_delaunay(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_labeled_delaunay(ctx, sphere, N, NULL, &m, NULL, NULL), &m, sum);
+    return take_mesh(brio_surface(ctx, sphere, N, &(brio_surface_options){.holes = BRIO_HOLES_CLOSED}, &m, NULL), &m,
+                     sum);
 }
 
 static brio_status power_crust(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_power_crust(ctx, sphere, N, NULL, &m, NULL, NULL), &m, sum);
+    return take_mesh(
+        brio_surface(ctx, sphere, N, &(brio_surface_options){.method = BRIO_SURFACE_POWER_CRUST}, &m, NULL), &m, sum);
 }
 
 static brio_status cocone(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_cocone(ctx, sphere, N, NULL, &m, NULL), &m, sum);
+    return take_mesh(brio_surface(ctx, sphere, N, &(brio_surface_options){.method = BRIO_SURFACE_COCONE}, &m, NULL), &m,
+                     sum);
 }
 
 static brio_status power_shape(brio_context *ctx, uint64_t *sum) {
@@ -132,12 +135,14 @@ static brio_status power_shape(brio_context *ctx, uint64_t *sum) {
 
 static brio_status offset_surface(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    return take_mesh(brio_offset_surface(ctx, sphere, N, 0.1, NULL, &m, NULL), &m, sum);
+    return take_mesh(
+        brio_surface(ctx, sphere, N, &(brio_surface_options){.method = BRIO_SURFACE_OFFSET, .distance = 0.1}, &m, NULL),
+        &m, sum);
 }
 
 static brio_status hull_simplified(brio_context *ctx, uint64_t *sum) {
     brio_mesh *m = NULL;
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     brio_status status = BRIO_OK;
     o.target_faces = 60;
     TRY(brio_convex_hull(ctx, sphere, N, NULL, &m, NULL));
@@ -149,7 +154,7 @@ done:
 
 static brio_status alpha_shape(brio_context *ctx, uint64_t *sum) {
     brio_triangulation *t = NULL;
-    brio_alpha_complex complex = {.size = sizeof complex};
+    brio_alpha_complex complex = {0};
     brio_mesh *m = NULL;
     brio_status status = BRIO_OK;
     double alpha;
@@ -201,7 +206,7 @@ static brio_status files(brio_context *ctx, const char *extension, uint64_t *sum
     path_in(first, a), path_in("b.npy", b);
     TRY(brio_convex_hull(ctx, sphere, N, NULL, &m, NULL));
     TRY(brio_write(ctx, a, m, NULL));
-    TRY(brio_read(ctx, a, BRIO_FORMAT_AUTO, &again));
+    TRY(brio_read(ctx, a, NULL, &again));
     TRY(brio_convert(ctx, a, b, NULL, NULL));
 done:
     brio_mesh_free(m);

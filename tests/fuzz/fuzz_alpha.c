@@ -44,7 +44,7 @@ static void expect_filtration(brio_context *ctx, const brio_alpha_complex *c) {
 
 static void expect_shape(brio_context *ctx, const site_set *s, const double *points, const brio_alpha_complex *c,
                          double alpha) {
-    brio_alpha_shape_stats stats = {.size = sizeof stats};
+    brio_alpha_shape_stats stats = {0};
     brio_mesh *m;
     int64_t volume = 0;
     size_t in = 0;
@@ -54,7 +54,7 @@ static void expect_shape(brio_context *ctx, const site_set *s, const double *poi
     FUZZ_EXPECT(status == (in ? BRIO_OK : BRIO_ERR_NO_ANSWER), "%s", brio_message(ctx));
     if (!m) return;
     expect_surface(ctx, m, true, "alpha shape");
-    brio_certificate certificate = {.size = sizeof certificate};
+    brio_certificate certificate = {0};
     FUZZ_EXPECT(brio_mesh_certificate(ctx, m, &certificate) == BRIO_OK);
     FUZZ_EXPECT(fabs(6 * certificate.volume - (double)volume) < 1e-6, "volume %g, not %g", certificate.volume,
                 (double)volume / 6);
@@ -79,7 +79,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     site_set s;
     double points[3 * MOST], weights[MOST];
     brio_triangulation *t;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     fuzz_sites(&in, MOST, &s);
     for (size_t i = 0; i < s.n; i++) {
         for (size_t k = 0; k < 3; k++) points[3 * i + k] = (double)s.p[i].x[k];

@@ -8,7 +8,7 @@ static void expect_arrays(const brio_cells *c, const brio_cells_options *o, size
     for (size_t i = 0; i < c->num_cells; i++) {
         FUZZ_EXPECT(c->site[i] < n && (!i || c->site[i - 1] < c->site[i]), "cell %zu", i);
         FUZZ_EXPECT(c->volume[i] >= 0, "cell %zu: volume %g", i, c->volume[i]);
-        FUZZ_EXPECT(!o->areas || c->area[i] >= 0, "cell %zu: area %g", i, c->area[i]);
+        FUZZ_EXPECT(o->no_areas || c->area[i] >= 0, "cell %zu: area %g", i, c->area[i]);
     }
     if (!c->face_offsets || !c->num_cells) return;
     uint64_t faces = c->face_offsets[c->num_cells];
@@ -82,9 +82,10 @@ static void hostile_cells(brio_context *ctx, fuzz_input *in, brio_cells_options 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     brio_context *ctx = fuzz_context();
     fuzz_input in = {bytes, size};
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     uint8_t bits = fuzz_byte(&in);
-    o.areas = bits & 1, o.centroids = bits >> 1 & 1, o.faces = bits >> 2 & 1, o.vertices = bits >> 3 & 1;
+    o.no_areas = !(bits & 1), o.no_centroids = !(bits >> 1 & 1), o.no_faces = !(bits >> 2 & 1);
+    o.vertices = bits >> 3 & 1;
     brio_context_set_threads(ctx, bits >= 240 ? 2 : 1);
     (bits & 16 ? hostile_cells : small_cells)(ctx, &in, &o);
     fuzz_end();

@@ -34,8 +34,8 @@ static size_t count_planes(const site_set *s) {
 }
 
 static void expect_hull(brio_context *ctx, const double *points, size_t n, bool polygons, size_t planes) {
-    brio_convex_hull_options o = brio_convex_hull_options_default();
-    brio_convex_hull_stats stats = {.size = sizeof stats};
+    brio_convex_hull_options o = {0};
+    brio_convex_hull_stats stats = {0};
     uint32_t samples[MOST + 1];
     brio_mesh *m;
     o.polygons = polygons, o.samples = samples;

@@ -54,9 +54,9 @@ static void expect_conforming(brio_context *ctx, const brio_mesh *m) {
     brio_triangulation_free(t);
 }
 
-static void expect_iso(brio_context *ctx, brio_iso_source *from, const brio_iso_surface_options *o) {
+static void expect_iso(brio_context *ctx, brio_iso_source *from, double level, const brio_iso_surface_options *o) {
     brio_mesh *m;
-    brio_status status = brio_iso_source_surface(ctx, from, o, &m);
+    brio_status status = brio_iso_source_surface(ctx, from, level, o, &m);
     fuzz_expect_failure(status);
     FUZZ_EXPECT((status == BRIO_OK) == (m != NULL), "status %d", (int)status);
     if (!m) return;
@@ -102,9 +102,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     brio_context *ctx = fuzz_context();
     fuzz_input in = {bytes, size};
     brio_iso_source from = {0};
-    brio_iso_surface_options o = {.size = sizeof o, .blobbiness = 2};
+    brio_iso_surface_options o = {0};
     uint8_t kind = fuzz_byte(&in), bits = fuzz_byte(&in);
-    o.level = levels[bits & 7], o.deviations = bits >> 3 & 1, o.conforming = bits >> 4 & 1;
+    o.deviations = bits >> 3 & 1, o.conforming = bits >> 4 & 1;
     o.resolution = resolutions[bits >> 5 & 3];
     o.vertices = bits & 128 && is_one_of_1024(bytes, size) ? 50 : 0;
     if (o.vertices) o.resolution = 0;
@@ -116,7 +116,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
         status = read_file(ctx, &in, &from);
     size_t values = (size_t)from.volume.size[0] * from.volume.size[1] * from.volume.size[2];
     bool small = from.is_map ? values <= MOST_VALUES : from.num_atoms <= 8 && o.resolution;
-    if (status == BRIO_OK && small) expect_iso(ctx, &from, &o);
+    if (status == BRIO_OK && small) expect_iso(ctx, &from, levels[bits & 7], &o);
     brio_iso_source_free(ctx, &from);
     fuzz_end();
     return 0;

@@ -55,7 +55,7 @@ static void expect_values(brio_context *ctx, const task *k, const brio_locator *
                           int dimension) {
     double values[MOST], results[QUERIES];
     uint32_t found[QUERIES];
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     for (size_t i = 0; i < k->n; i++) values[i] = linear(k->points + 3 * i);
     o.method = method, o.values = values;
     brio_status status = brio_locator_interpolate(ctx, l, k->x, k->queries, &o, results);

@@ -58,7 +58,7 @@ static brio_mesh *make_mesh(brio_context *ctx, fuzz_input *in) {
 }
 
 static void simplify(brio_context *ctx, fuzz_input *in, brio_mesh *m) {
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     surface_facts before = judge_surface(m);
     o.target_faces = fuzz_below(in, 16), o.tolerance = fuzz_byte(in) % 4 / 2.0;
     brio_status status = brio_mesh_simplify(ctx, m, &o);
@@ -84,7 +84,7 @@ static void components(brio_context *ctx, fuzz_input *in, brio_mesh *m) {
 
 /* Merging a second time changes nothing, as no two positions that are left are equal. */
 static void merge(fuzz_input *in, brio_mesh *m) {
-    brio_merge_stats stats = {.size = sizeof stats};
+    brio_merge_stats stats = {0};
     double distance = fuzz_flag(in) ? (double)fuzz_below(in, 4) : 0;
     size_t vertices = m->num_vertices, faces = m->num_faces;
     brio_status status = brio_mesh_merge_vertices(m, distance, &stats);
@@ -127,7 +127,7 @@ static void subdivide(brio_context *ctx, fuzz_input *in, const brio_mesh *m) {
 }
 
 static void measure(brio_context *ctx, fuzz_input *in, brio_mesh *m) {
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     brio_edges edges = {0};
     int64_t pairs = -1;
     fuzz_expect_failure(brio_mesh_self_intersections(ctx, m, &pairs));

@@ -168,7 +168,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     space_set s;
     double points[3 * MOST], weights[MOST];
     brio_triangulation2 *t;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     bool flat = fuzz_flag(&in);
     make_points(&in, flat, &s, points, weights);
     FUZZ_EXPECT((flat ? brio_delaunay2_flat : brio_delaunay2)(ctx, points, weights, s.n, NULL, &t) == BRIO_OK, "%s",

@@ -58,7 +58,7 @@ static void expect_values(brio_context *ctx, const task *k, const brio_locator2 
                           int dimension) {
     double values[2 * MOST], results[2 * QUERIES];
     uint32_t found[QUERIES];
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     for (size_t i = 0; i < k->n; i++) values[2 * i] = linear(k->points + 2 * i), values[2 * i + 1] = 1;
     o.method = method, o.values = values, o.components = 2;
     brio_status status = brio_locator2_interpolate(ctx, l, k->x, k->queries, &o, results);

@@ -19,7 +19,7 @@ static void expect_salvage(brio_context *ctx, const read_input *r, brio_read_opt
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     brio_context *ctx = fuzz_context();
     fuzz_input in = {bytes, size};
-    brio_read_options o = brio_read_options_default();
+    brio_read_options o = {0};
     brio_mesh *m = NULL;
     read_input r = fuzz_read_input(&in);
     o.columns = r.columns;

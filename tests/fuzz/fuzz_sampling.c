@@ -166,7 +166,7 @@ static void find_outliers(brio_context *ctx, fuzz_input *in, const cloud *c) {
     cloud other;
     size_t from[MOST];
     uint8_t outlier[MOST], turned[MOST];
-    brio_outliers_options o = brio_outliers_options_default();
+    brio_outliers_options o = {0};
     int neighbours = 1 + (int)fuzz_below(in, 12);
     o.factor = factors[fuzz_below(in, 8)];
     brio_status status = brio_outliers(ctx, c->p, c->n, neighbours, &o, outlier);

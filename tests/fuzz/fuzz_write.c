@@ -152,7 +152,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     static bool begun;
     brio_context *ctx = fuzz_context();
     fuzz_input in = {bytes, size};
-    brio_write_options o = brio_write_options_default();
+    brio_write_options o = {0};
     size_t kind = fuzz_below(&in, KINDS);
     uint8_t bits = fuzz_byte(&in);
     char comment[9] = {0};

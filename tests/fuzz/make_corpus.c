@@ -82,7 +82,7 @@ static void put_written(const char *name, const char *path, int choice, int part
 }
 
 static void put_all_written(void) {
-    const brio_write_options o = brio_write_options_default();
+    const brio_write_options o = {0};
     brio_write_options text = o, packed = o;
     text.ascii = 1, packed.compress = 1;
     put_written("ply", "a.ply", PLY, IO_FACES | IO_TETRAHEDRA | IO_PROPERTIES, o);

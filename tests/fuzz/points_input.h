@@ -35,7 +35,7 @@ static inline void sites_as_doubles(fuzz_input *in, const site_set *s, double *p
 /** Options of every kind.   edges  room for 16 pairs. */
 static inline brio_delaunay_options fuzz_options(fuzz_input *in, size_t n, uint32_t *edges) {
     static const double ratios[] = {0, 0.5, 0.01, 0.9};
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = (brio_order)fuzz_below(in, BRIO_ORDER_END);
     o.locate = (brio_location)fuzz_below(in, BRIO_LOCATION_END);
     uint8_t bits = fuzz_byte(in);

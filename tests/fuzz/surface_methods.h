@@ -36,11 +36,11 @@ static inline size_t fuzz_samples(fuzz_input *in, double *points) {
     return n;
 }
 
-static inline brio_pole_options fuzz_poles(fuzz_input *in) {
-    brio_pole_options o = brio_power_crust_options_default().poles;
+static inline brio_pole_options fuzz_poles(fuzz_input *in, brio_noise *noise) {
+    brio_pole_options o = {0};
     uint8_t bits = fuzz_byte(in);
     o.labeling = (brio_labeling)(bits % BRIO_LABELING_END);
-    o.noise = (brio_noise)(bits / 4 % BRIO_NOISE_END);
+    *noise = (brio_noise)(bits / 4 % BRIO_NOISE_END);
     o.sharp = bits >> 6 & 1;
     o.sampling_density = bits & 128 ? 0.3 : 0;
     return o;
@@ -49,36 +49,38 @@ static inline brio_pole_options fuzz_poles(fuzz_input *in) {
 /* A method's result for points whose unit of length is `unit`. */
 static inline reconstruction power_crust(brio_context *ctx, fuzz_input *in, const double *points, size_t n,
                                          double unit) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = {.method = BRIO_SURFACE_POWER_CRUST};
     reconstruction r = {.method = "power crust", .surface = true};
     double normals[3 * MOST_SAMPLES];
-    o.poles = fuzz_poles(in);
+    o.poles = fuzz_poles(in, &o.noise);
     uint8_t bits = fuzz_byte(in);
-    o.triangulate = bits & 1, o.simplify = bits >> 1 & 1, o.open = bits & 4 ? 1 + bits / 64.0 : 0;
+    o.simplify = bits >> 1 & 1, o.polygons = !(bits & 1) && !o.simplify, o.open = bits & 4 ? 1 + bits / 64.0 : 0;
     r.closed = o.open == 0;
+    o.normals = bits & 8 ? normals : NULL;
     (void)unit;
-    fuzz_expect_failure(brio_power_crust(ctx, points, n, &o, &r.mesh, bits & 8 ? normals : NULL, NULL));
+    fuzz_expect_failure(brio_surface(ctx, points, n, &o, &r.mesh, NULL));
     return r;
 }
 
 static inline reconstruction offset_surface(brio_context *ctx, fuzz_input *in, const double *points, size_t n,
                                             double unit) {
     static const double distances[] = {0, 0.1, -0.1, 1, -1, 100, 1e-30, -1e200};
-    brio_offset_surface_options o = brio_offset_surface_options_default();
+    brio_surface_options o = {.method = BRIO_SURFACE_OFFSET};
     reconstruction r = {.method = "offset", .surface = true, .closed = true};
-    o.poles = fuzz_poles(in);
+    o.poles = fuzz_poles(in, &o.noise);
     uint8_t bits = fuzz_byte(in);
-    o.triangulate = bits & 1, o.simplify = bits >> 1 & 1;
-    fuzz_expect_failure(brio_offset_surface(ctx, points, n, unit * distances[bits >> 2 & 7], &o, &r.mesh, NULL));
+    o.simplify = bits >> 1 & 1, o.polygons = !(bits & 1) && !o.simplify;
+    o.distance = unit * distances[bits >> 2 & 7];
+    fuzz_expect_failure(brio_surface(ctx, points, n, &o, &r.mesh, NULL));
     return r;
 }
 
 static inline reconstruction power_shape(brio_context *ctx, fuzz_input *in, const double *points, size_t n,
                                          double unit) {
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     reconstruction r = {.method = "crust of the power shape", .surface = true, .closed = true};
     brio_mesh *shape;
-    o.poles = fuzz_poles(in);
+    o.poles = fuzz_poles(in, &o.noise);
     uint8_t bits = fuzz_byte(in);
     o.sides = (brio_sides)(bits % BRIO_SIDES_END);
     o.scale = bits & 4 ? 1.2 : 1, o.redundancy = bits & 8 ? 0.1 : 0;
@@ -91,37 +93,38 @@ static inline reconstruction power_shape(brio_context *ctx, fuzz_input *in, cons
 
 static inline reconstruction labeled_delaunay(brio_context *ctx, fuzz_input *in, const double *points, size_t n,
                                               double unit) {
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = {.holes = BRIO_HOLES_CLOSED};
     reconstruction r = {.method = "labeled Delaunay", .surface = true};
-    uint32_t samples[MOST_SAMPLES + 1];
     double normals[3 * MOST_SAMPLES];
     uint8_t bits = fuzz_byte(in);
     o.noise = (brio_noise)(bits % BRIO_NOISE_END);
     o.confidence = bits >> 2 & 1, o.simplify = bits >> 3 & 1, o.open = bits & 16 ? 1 + bits / 64.0 : 0;
     r.closed = o.open == 0;
     (void)unit;
-    fuzz_expect_failure(brio_labeled_delaunay(ctx, points, n, &o, &r.mesh, samples, NULL));
+    o.normals = normals;
+    fuzz_expect_failure(brio_surface(ctx, points, n, &o, &r.mesh, NULL));
     if (!r.mesh) return r;
-    for (size_t v = 0; v < r.mesh->num_vertices; v++) FUZZ_EXPECT(samples[v] < n, "vertex %zu", v);
-    fuzz_expect_failure(brio_point_normals(ctx, points, n, r.mesh, samples, normals));
+    const int32_t *sample = brio_mesh_property(r.mesh, "sample")->data;
+    for (size_t v = 0; v < r.mesh->num_vertices; v++)
+        FUZZ_EXPECT(sample[v] >= 0 && (size_t)sample[v] < n, "vertex %zu", v);
     return r;
 }
 
 static inline reconstruction cocone(brio_context *ctx, fuzz_input *in, const double *points, size_t n, double unit) {
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = {.method = BRIO_SURFACE_COCONE};
     reconstruction r = {.method = "co-cone"};
     uint8_t bits = fuzz_byte(in);
     o.boundaries = bits & 1, o.density = bits >> 1 & 1;
     o.theta = bits & 4 ? 1.0 : o.theta;
     if (bits & 8)
-        o.tight = 1;
+        o.method = BRIO_SURFACE_TIGHT_COCONE;
     else if (bits & 16)
         o.pieces = 2 + (bits >> 5);
     else
         o.extraction = (brio_extraction)((bits >> 5) % BRIO_EXTRACTION_END);
-    r.surface = o.extraction == BRIO_EXTRACTION_LABELS, r.closed = o.tight;
+    r.surface = o.extraction == BRIO_EXTRACTION_LABELS, r.closed = o.method == BRIO_SURFACE_TIGHT_COCONE;
     (void)unit;
-    fuzz_expect_failure(brio_cocone(ctx, points, n, &o, &r.mesh, NULL));
+    fuzz_expect_failure(brio_surface(ctx, points, n, &o, &r.mesh, NULL));
     return r;
 }
 

@@ -2,7 +2,7 @@
 
 1. LIBRARY shows the functions that exported.txt lists and nothing else, and the headers declare the same.
 2. With CMAKE and CC: a shared library is built, all of whose structs of options, statistics and results have one more field, at
-   their end. It exports the same functions, and a program compiled with the frozen header of this version (brio_0_2.h) runs
+   their end. It exports the same functions, and a program compiled with the frozen headers of this version (brio_0_3) runs
    with it.
 """
 
@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-SIZED = re.compile(r"(typedef struct (brio_\w+) \{\n    size_t size;\n.*?)(\n\} \2;)", re.S)
+SIZED = re.compile(r"((?:typedef )?struct (brio_\w+) \{\n    size_t size;\n.*?)(\n\}(?: \2)?;)", re.S)
 
 
 def run(*command, **more):
@@ -72,8 +72,7 @@ def check_later_library(root, cmake, compiler, expected):
         grown = grow(later)
         library = build(later, cmake, compiler, folder / "build")
         check_names(root, library, expected)
-        (folder / "frozen/brio").mkdir(parents=True)
-        shutil.copy(here / "brio_0_2.h", folder / "frozen/brio/brio.h")
+        shutil.copytree(here / "brio_0_3", folder / "frozen/brio")
         run(compiler, "-O1", "-o", folder / "consumer", here / "consumer.c", "-I", folder / "frozen", library)
         output = run(folder / "consumer", env=dict(os.environ, LD_LIBRARY_PATH=str(library.parent)), cwd=folder)
     wanted = "dimension 3, 1500 vertices\ninterpolated 1\nclosed 1, genus 1, 1500 samples\noffset 0.1\nshape 1\ncocone 1\nlabeled 1500\nwhole\n"

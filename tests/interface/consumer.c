@@ -22,20 +22,14 @@ static void expect_guard(const char *name, const char *before, const char *after
         }
 }
 
-#define OPTIONS(type, name)                                                                                            \
+/* A struct of zeros: what it had at first; SIZED: with its size. */
+#define ZEROS(type, name)                                                                                              \
     GUARDED(type) name;                                                                                                \
     memset(&name, 0x5a, sizeof name);                                                                                  \
-    type##_init(&name.value, sizeof name.value);                                                                       \
-    expect_guard(#type, name.before, name.after);                                                                      \
-    {                                                                                                                  \
-        type standard = type##_default();                                                                              \
-        if (memcmp(&standard, &name.value, sizeof standard)) printf(#type ": two defaults\n"), broken = 1;             \
-    }
+    memset(&name.value, 0, sizeof name.value)
 
-#define RESULT(type, name)                                                                                             \
-    GUARDED(type) name;                                                                                                \
-    memset(&name, 0x5a, sizeof name);                                                                                  \
-    memset(&name.value, 0, sizeof name.value);                                                                         \
+#define SIZED(type, name)                                                                                              \
+    ZEROS(type, name);                                                                                                 \
     name.value.size = sizeof name.value
 
 #define TRY(call)                                                                                                      \
@@ -49,26 +43,22 @@ int main(void) {
     brio_mesh *points = NULL, *mesh = NULL, *crust = NULL;
     brio_triangulation *t = NULL;
     if (brio_context_new(NULL, &ctx)) return 1;
-    OPTIONS(brio_generate_options, generate);
-    OPTIONS(brio_delaunay_options, delaunay);
-    OPTIONS(brio_interpolation, interpolation);
-    OPTIONS(brio_power_crust_options, power_crust);
-    OPTIONS(brio_offset_surface_options, offset);
-    OPTIONS(brio_power_shape_options, power_shape);
-    OPTIONS(brio_cocone_options, cocone);
-    OPTIONS(brio_labeled_delaunay_options, labeled);
-    OPTIONS(brio_iso_surface_options, iso);
-    OPTIONS(brio_write_options, write);
-    OPTIONS(brio_read_options, read);
-    OPTIONS(brio_cells_options, cells_options);
+    ZEROS(brio_generate_options, generate);
+    ZEROS(brio_delaunay_options, delaunay);
+    SIZED(brio_interpolation, interpolation);
+    ZEROS(brio_surface_options, surface);
+    SIZED(brio_surface_options, sized_surface);
+    ZEROS(brio_power_shape_options, power_shape);
+    SIZED(brio_iso_surface_options, iso);
+    ZEROS(brio_write_options, write);
+    SIZED(brio_read_options, read);
+    ZEROS(brio_cells_options, cells_options);
     brio_cells *cells;
-    RESULT(brio_power_crust_stats, crust_stats);
-    RESULT(brio_offset_surface_stats, offset_stats);
-    RESULT(brio_power_shape_stats, shape_stats);
-    RESULT(brio_cocone_stats, cocone_stats);
-    RESULT(brio_labeled_delaunay_stats, labeled_stats);
-    RESULT(brio_certificate, certificate);
-    RESULT(brio_distance, distance);
+    ZEROS(brio_surface_stats, stats);
+    SIZED(brio_surface_stats, sized_stats);
+    ZEROS(brio_power_shape_stats, shape_stats);
+    ZEROS(brio_certificate, certificate);
+    SIZED(brio_distance, distance);
 
     TRY(brio_generate(ctx, BRIO_KIND_TORUS, 1500, &generate.value, &points));
     TRY(brio_delaunay(ctx, points->vertices, NULL, 1500, &delaunay.value, &t));
@@ -81,14 +71,17 @@ int main(void) {
     TRY(brio_locator_interpolate(ctx, locator, points->vertices, 1, &interpolation.value, &value));
     printf("interpolated %d\n", value == points->vertices[0]);
     brio_locator_free(locator);
-    TRY(brio_power_crust(ctx, points->vertices, 1500, &power_crust.value, &crust, NULL, &crust_stats.value));
-    expect_guard("brio_power_crust_stats", crust_stats.before, crust_stats.after);
+    surface.value.method = BRIO_SURFACE_POWER_CRUST;
+    TRY(brio_surface(ctx, points->vertices, 1500, &surface.value, &crust, &stats.value));
+    expect_guard("brio_surface_stats", stats.before, stats.after);
     TRY(brio_mesh_certificate(ctx, crust, &certificate.value));
     expect_guard("brio_certificate", certificate.before, certificate.after);
     printf("closed %d, genus %d, %d samples\n", certificate.value.closed, (int)certificate.value.genus,
-           (int)crust_stats.value.poles.samples);
-    TRY(brio_offset_surface(ctx, points->vertices, 1500, 0.05, &offset.value, &mesh, &offset_stats.value));
-    expect_guard("brio_offset_surface_stats", offset_stats.before, offset_stats.after);
+           (int)stats.value.samples);
+    sized_surface.value.method = BRIO_SURFACE_OFFSET;
+    sized_surface.value.distance = 0.05;
+    TRY(brio_surface(ctx, points->vertices, 1500, &sized_surface.value, &mesh, &sized_stats.value));
+    expect_guard("brio_surface_stats", sized_stats.before, sized_stats.after);
     TRY(brio_mesh_distance(ctx, crust, mesh, 1000, 1, &distance.value));
     expect_guard("brio_distance", distance.before, distance.after);
     printf("offset %.1f\n", distance.value.mean);
@@ -97,16 +90,18 @@ int main(void) {
     expect_guard("brio_power_shape_stats", shape_stats.before, shape_stats.after);
     printf("shape %d\n", mesh->num_vertices > 0);
     brio_mesh_free(mesh);
-    TRY(brio_cocone(ctx, points->vertices, 1500, &cocone.value, &mesh, &cocone_stats.value));
-    expect_guard("brio_cocone_stats", cocone_stats.before, cocone_stats.after);
-    printf("cocone %d\n", cocone_stats.value.candidates > 1000);
+    surface.value.method = BRIO_SURFACE_COCONE;
+    TRY(brio_surface(ctx, points->vertices, 1500, &surface.value, &mesh, &stats.value));
+    expect_guard("brio_surface_stats", stats.before, stats.after);
+    printf("cocone %d\n", stats.value.candidates > 1000);
     brio_mesh_free(mesh);
-    TRY(brio_labeled_delaunay(ctx, points->vertices, 1500, &labeled.value, &mesh, NULL, &labeled_stats.value));
-    expect_guard("brio_labeled_delaunay_stats", labeled_stats.before, labeled_stats.after);
-    printf("labeled %d\n", (int)labeled_stats.value.samples);
+    surface.value.method = BRIO_SURFACE_LABELED;
+    TRY(brio_surface(ctx, points->vertices, 1500, &surface.value, &mesh, &stats.value));
+    expect_guard("brio_surface_stats", stats.before, stats.after);
+    printf("labeled %d\n", (int)stats.value.samples);
     brio_mesh_free(mesh);
-    if (brio_iso_surface(ctx, "there is no such file.map", &iso.value, &mesh) != BRIO_ERR_OPEN) broken = 1;
-    if (brio_read_as(ctx, "there is no such file.xyz", &read.value, &mesh) != BRIO_ERR_OPEN) broken = 1;
+    if (brio_iso_surface(ctx, "there is no such file.map", 1, &iso.value, &mesh) != BRIO_ERR_OPEN) broken = 1;
+    if (brio_read(ctx, "there is no such file.xyz", &read.value, &mesh) != BRIO_ERR_OPEN) broken = 1;
     if (brio_write(ctx, "no such folder/x.ply", points, &write.value) != BRIO_ERR_WRITE) broken = 1;
     brio_certificate_free(&certificate.value);
     expect_guard("brio_certificate", certificate.before, certificate.after);

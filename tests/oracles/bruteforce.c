@@ -16,7 +16,7 @@ typedef struct {
 /* --- one input --- */
 
 static brio_delaunay_options any_options(dice *d) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = (brio_order)below(d, BRIO_ORDER_END);
     o.locate = (brio_location)below(d, BRIO_LOCATION_END);
     o.round_ratio = one_in(d, 2) ? 0 : 0.5;
@@ -67,8 +67,8 @@ static const char *try_plane(brio_context *ctx, const point_set *s, const exact_
 
 static const char *try_hull(brio_context *ctx, const point_set *s, const exact_answer *a) {
     uint32_t sample[MOST_POINTS + 1];
-    brio_convex_hull_options o = brio_convex_hull_options_default();
-    brio_convex_hull_stats stats = {.size = sizeof stats};
+    brio_convex_hull_options o = {0};
+    brio_convex_hull_stats stats = {0};
     brio_mesh *m;
     o.polygons = 1, o.samples = sample;
     if (brio_convex_hull(ctx, s->x, s->n, &o, &m, &stats)) return brio_message(ctx);

@@ -53,23 +53,26 @@ static inline void draw_samples(dice *d, changed_set *s) {
 /* --- methods --- */
 
 static inline brio_status run_cocone(brio_context *ctx, method how, const changed_set *s, brio_mesh **m) {
-    brio_cocone_options o = brio_cocone_options_default();
-    o.tight = how == TIGHT_COCONE, o.pieces = how == SUPER_COCONE ? 3 : 0;
-    return brio_cocone(ctx, s->x, s->n, &o, m, NULL);
+    brio_surface_options o = {.method = how == TIGHT_COCONE ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE};
+    o.pieces = how == SUPER_COCONE ? 3 : 0;
+    return brio_surface(ctx, s->x, s->n, &o, m, NULL);
 }
 
 /* unit: of length, which distances are multiples of. */
 static inline brio_status run_method(brio_context *ctx, method how, const changed_set *s, double unit, brio_mesh **m) {
+    const brio_surface_options closed = {.holes = BRIO_HOLES_CLOSED},
+                               crust = {.method = BRIO_SURFACE_POWER_CRUST, .polygons = 1},
+                               offset = {.method = BRIO_SURFACE_OFFSET, .polygons = 1, .distance = 0.0625 * unit};
     brio_mesh *shape = NULL;
     brio_status status;
     *m = NULL;
     switch (how) {
     case LABELED:
-        return brio_labeled_delaunay(ctx, s->x, s->n, NULL, m, NULL, NULL);
+        return brio_surface(ctx, s->x, s->n, &closed, m, NULL);
     case POWER_CRUST:
-        return brio_power_crust(ctx, s->x, s->n, NULL, m, NULL, NULL);
+        return brio_surface(ctx, s->x, s->n, &crust, m, NULL);
     case OFFSET_OUT:
-        return brio_offset_surface(ctx, s->x, s->n, 0.0625 * unit, NULL, m, NULL);
+        return brio_surface(ctx, s->x, s->n, &offset, m, NULL);
     case POWER_SHAPE:
         status = brio_power_shape(ctx, s->x, s->n, NULL, &shape, m, NULL);
         brio_mesh_free(shape);
@@ -127,7 +130,7 @@ static inline uint64_t faces_number(const brio_mesh *m, const undoing *u) {
 
 static inline void find_surface(brio_context *ctx, method how, const changed_set *s, const undoing *u,
                                 surface_answer *out) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     brio_mesh *m;
     memset(out, 0, sizeof *out);
     out->status = run_method(ctx, how, s, u->scale, &m);

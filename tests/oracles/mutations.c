@@ -158,7 +158,7 @@ static void mutate_faces(dice *d, face_list *l) {
 /* The certificate says everything as surface_oracle.h does. Right is a closed, oriented surface of one component, genus 0. */
 static void judge_faces(brio_context *ctx, const face_list *l, tally *sum) {
     uint64_t offsets[MOST_FACES + 1];
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     brio_mesh *m;
     for (size_t f = 0; f <= l->faces; f++) offsets[f] = 3 * f;
     if (brio_mesh_new(ctx, &m)) return;

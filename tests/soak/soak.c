@@ -57,7 +57,7 @@ static void triangulate(soak *s, brio_context *ctx, const double *points, const 
     brio_triangulation *t = NULL;
     brio_locator *locator = NULL;
     brio_cells *cells = NULL;
-    brio_alpha_complex complex = {.size = sizeof complex};
+    brio_alpha_complex complex = {0};
     brio_status status = brio_delaunay(ctx, points, NULL, POINTS, NULL, &t);
     count(s, status);
     if (status == BRIO_OK) {
@@ -82,15 +82,15 @@ static void write_and_read(soak *s, brio_context *ctx, const brio_mesh *mesh) {
         brio_mesh *read = NULL;
         snprintf(s->file, sizeof s->file, "%s/soak.%s", s->folder, extensions[i]);
         count(s, brio_write(ctx, s->file, mesh, NULL));
-        count(s, brio_read(ctx, s->file, BRIO_FORMAT_AUTO, &read));
+        count(s, brio_read(ctx, s->file, NULL, &read));
         brio_mesh_free(read);
     }
 }
 
 static void reconstruct(soak *s, brio_context *ctx, const double *points) {
     brio_mesh *mesh = NULL;
-    brio_certificate certificate = {.size = sizeof certificate};
-    brio_status status = brio_labeled_delaunay(ctx, points, POINTS, NULL, &mesh, NULL, NULL);
+    brio_certificate certificate = {0};
+    brio_status status = brio_surface(ctx, points, POINTS, NULL, &mesh, NULL);
     count(s, status);
     if (status == BRIO_OK) {
         status = brio_mesh_certificate(ctx, mesh, &certificate);
@@ -101,10 +101,11 @@ static void reconstruct(soak *s, brio_context *ctx, const double *points) {
     }
     brio_mesh_free(mesh);
     mesh = NULL;
-    count(s, brio_power_crust(ctx, points, POINTS / 4, NULL, &mesh, NULL, NULL));
+    count(s, brio_surface(ctx, points, POINTS / 4, &(brio_surface_options){.method = BRIO_SURFACE_POWER_CRUST}, &mesh,
+                          NULL));
     brio_mesh_free(mesh);
     mesh = NULL;
-    count(s, brio_cocone(ctx, points, POINTS, NULL, &mesh, NULL));
+    count(s, brio_surface(ctx, points, POINTS, &(brio_surface_options){.method = BRIO_SURFACE_COCONE}, &mesh, NULL));
     brio_mesh_free(mesh);
     mesh = NULL;
     count(s, brio_convex_hull(ctx, points, POINTS, NULL, &mesh, NULL));

@@ -205,14 +205,14 @@ static inline void e57_write_scan(const char *name, const e57_test_field *fields
 /* Reads a file that is right; NULL on failure. */
 static inline brio_mesh *e57_read_right(const char *name) {
     brio_mesh *m = NULL;
-    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(io_ctx, io_path(name), NULL, &m);
     EXPECT(status == BRIO_OK, "%s: %s", name, brio_message(io_ctx));
     return m;
 }
 
 static inline void e57_refused(const char *name, brio_status expected, const char *part) {
     brio_mesh *m = NULL;
-    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(io_ctx, io_path(name), NULL, &m);
     EXPECT(status == expected && !m, "%s: status %d, expected %d", part, (int)status, (int)expected);
     EXPECT(strstr(brio_message(io_ctx), part), "\"%s\" without \"%s\"", brio_message(io_ctx), part);
     EXPECT(strstr(brio_message(io_ctx), name), "\"%s\" without the file's name", brio_message(io_ctx));
@@ -228,7 +228,7 @@ static inline bool e57_is_read(void) {
                                      {"cartesianZ", "type=\"Float\"", 64, &zero}};
     brio_mesh *m = NULL;
     e57_write_scan("probe.e57", fields, 3, 1, "");
-    brio_status status = brio_read(io_ctx, io_path("probe.e57"), BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(io_ctx, io_path("probe.e57"), NULL, &m);
     brio_mesh_free(m);
     return status == BRIO_OK || !strstr(brio_message(io_ctx), "without the library expat");
 }

@@ -78,7 +78,7 @@ static inline char *io_get(const char *name, size_t *size) {
 static inline brio_mesh *io_read_bytes(const char *name, const void *bytes, size_t size, brio_status *status) {
     brio_mesh *mesh = NULL;
     io_put(name, bytes, size);
-    *status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &mesh);
+    *status = brio_read(io_ctx, io_path(name), NULL, &mesh);
     EXPECT((*status == BRIO_OK) == (mesh != NULL), "%s: status %d", name, (int)*status);
     return mesh;
 }
@@ -104,7 +104,7 @@ static inline void io_expect_error(const char *name, const char *text, brio_stat
 static inline brio_mesh *io_expect_sane(const char *name, const char *bytes, size_t size, const char *how, size_t at) {
     brio_mesh *mesh = NULL;
     io_put(name, bytes, size);
-    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &mesh);
+    brio_status status = brio_read(io_ctx, io_path(name), NULL, &mesh);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT || status == BRIO_ERR_NOT_FINITE ||
                status == BRIO_ERR_TOO_LARGE,
            "%s %s %zu: status %d: %s", name, how, at, (int)status, brio_message(io_ctx));

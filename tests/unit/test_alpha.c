@@ -177,8 +177,8 @@ static void shapes_bound_their_tetrahedra(void) {
         EXPECT(brio_alpha_auto(s.ctx, &s.c, &least) == BRIO_OK);
         for (size_t n = 0; n < s.c.counts[3]; n += 7) {
             double alpha = n ? s.c.values[3][n] : least, volume = 0;
-            brio_certificate c = {.size = sizeof c};
-            brio_alpha_shape_stats stats = {.size = sizeof stats};
+            brio_certificate c = {0};
+            brio_alpha_shape_stats stats = {0};
             brio_mesh *m;
             EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, alpha, &m, &stats) == BRIO_OK);
             EXPECT(brio_mesh_certificate(s.ctx, m, &c) == BRIO_OK);
@@ -242,7 +242,7 @@ static void hostile_inputs(void) {
     EXPECT(build(&s));
     EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, NAN, &m, NULL) == BRIO_ERR_ARGUMENT && !m);
     EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, -1, &m, NULL) == BRIO_ERR_NO_ANSWER && !m);
-    brio_alpha_complex other = {.size = sizeof other};
+    brio_alpha_complex other = {0};
     EXPECT(brio_alpha_values(s.ctx, s.t, s.p, NULL, N - 1, &other) == BRIO_ERR_ARGUMENT && !other.values[0]);
     drop(&s);
     make(&s, 0, 1);
@@ -255,7 +255,7 @@ static void hostile_inputs(void) {
 static brio_status run_alpha(brio_context *ctx) {
     static double p[3 * 60];
     brio_triangulation *t = NULL;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     brio_mesh *m = NULL;
     uint32_t order[4000];
     double alpha;
@@ -281,7 +281,7 @@ static void values_beyond_doubles_are_infinite(void) {
     static const double weights[4] = {-2e307, -2e307, -2e307, -2e307};
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     EXPECT(brio_delaunay(ctx, points, weights, 4, NULL, &t) == BRIO_OK);
     EXPECT(brio_alpha_values(ctx, t, points, weights, 4, &c) == BRIO_OK, "%s", brio_message(ctx));
     for (int k = 0; k < 4; k++)

@@ -200,7 +200,7 @@ static void hostile_inputs(void) {
     brio_mesh *mesh = NULL;
     make(&s, 0, 4);
     build(&s);
-    brio_alpha_complex other = {.size = sizeof other};
+    brio_alpha_complex other = {0};
     EXPECT(brio_alpha_values2(s.ctx, s.t, s.p, NULL, N - 1, &other) == BRIO_ERR_ARGUMENT && !other.values[0]);
     EXPECT(brio_alpha_values2(s.ctx, s.t, s.p, NULL, N, &(brio_alpha_complex){.size = 3}) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, 1, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
@@ -220,7 +220,7 @@ static void messages_count_hidden_points(void) {
     brio_context *ctx = new_context();
     brio_triangulation2 *plane;
     brio_triangulation *t;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     for (int i = 0; i < 5; i++) {
         p[2 * i] = p[2 * i + 1] = i;
         for (int k = 0; k < 3; k++) space[3 * i + k] = i;
@@ -245,7 +245,7 @@ static brio_status run_alpha(brio_context *ctx) {
     double p[2 * 60], alpha;
     uint32_t order[8 * 60];
     brio_triangulation2 *t = NULL;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     uniform_points(1, 40, p);
     brio_status status = brio_delaunay2(ctx, p, NULL, 60, NULL, &t);
     if (status == BRIO_OK) status = brio_alpha_values2(ctx, t, p, NULL, 60, &c);

@@ -8,7 +8,7 @@ static const double UNIT_BOX[6] = {0, 0, 0, 1, 1, 1}, WIDE_BOX[6] = {-2, -2, -2,
 
 static brio_cells *cells_of(brio_context *ctx, const double *points, const double *weights, size_t n, const double *box,
                             int vertices) {
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *cells;
     o.box = box;
     o.vertices = vertices;
@@ -159,7 +159,7 @@ static void a_polytope_clips(void) {
     double points[3 * N], box[6] = {0.125, 0.25, 0, 1, 1, 1};
     const double corner[] = {-1, 0, 0, 0, 0, -2, 0, 0, 0, 0, -1, 0, 3, 3, 3, 2.7}; /* x, y, z >= 0, x + y + z <= 0.9 */
     uniform_points(5, N, points);
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *cells;
     o.planes = corner, o.num_planes = 4;
     EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
@@ -298,9 +298,9 @@ static void flat_points_have_cells(void) {
 /* Only volumes, in another pass than the cells with faces. */
 static void expect_volumes(brio_context *ctx, const double *points, const double *weights, size_t n,
                            const double *box) {
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *whole = cells_of(ctx, points, weights, n, box, 0), *alone;
-    o.areas = o.centroids = o.faces = 0;
+    o.no_areas = o.no_centroids = o.no_faces = 1;
     o.box = box;
     EXPECT(brio_voronoi_cells(ctx, NULL, points, weights, n, &o, &alone) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(alone->num_cells == whole->num_cells && !alone->area && !alone->centroid && !alone->face_offsets);
@@ -350,10 +350,10 @@ static void volumes_alone_have_the_same_bits_with_threads(void) {
     enum { N = 30000 };
     brio_context *ctx = new_context();
     double *points = malloc(3 * N * sizeof *points);
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *one, *more;
     clustered_points(9, N, points);
-    o.areas = o.centroids = o.faces = 0;
+    o.no_areas = o.no_centroids = o.no_faces = 1;
     o.box = WIDE_BOX;
     brio_context_set_threads(ctx, 1);
     EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &one) == BRIO_OK);
@@ -449,7 +449,7 @@ static void wrong_regions_are_refused(void) {
     const double empty[6] = {0, 0, 0, 1, 0, 1}, endless[6] = {0, 0, 0, 1, INFINITY, 1};
     const double half[4] = {1, 0, 0, 1}, no_normal[4] = {0, 0, 0, 1};
     const double apart[8] = {1, 0, 0, 1, -1, 0, 0, -2};
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *cells;
 #define EXPECT_REFUSED(status) EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, 4, &o, &cells) == (status) && !cells)
     o.box = empty;
@@ -487,7 +487,7 @@ static void messages_say_what_is_wrong_with_a_region(void) {
     const double far[6] = {-INFINITY, -1, -1, 2, 2, 2}, nan[6] = {-1, -1, -1, 2, NAN, 2};
     const double planes[8] = {1, 0, 0, 1, 0, NAN, 0, 1}, distant[4] = {0, 1, 0, INFINITY}, no_normal[4] = {0, 0, 0, 1};
     const double endless[20] = {1, 0, 0, 1, -1, 0, 0, 0, 0, 1, 0, 1, 0, -1, 0, 0, 0, 0, 1, 1};
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     o.box = far;
     expect_region_message(&o, "number 0 of the box is not finite");
     o.box = nan;
@@ -505,7 +505,7 @@ static void messages_say_what_is_wrong_with_a_region(void) {
 static brio_status compute_some(brio_context *ctx) {
     enum { N = 60 };
     double points[3 * N];
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *cells;
     integer_points(2, N, 4, points);
     o.box = WIDE_BOX;
@@ -513,7 +513,8 @@ static brio_status compute_some(brio_context *ctx) {
     brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
     brio_cells_free(cells);
     if (status != BRIO_OK) return status;
-    o.vertices = o.faces = o.areas = o.centroids = 0;
+    o.vertices = 0;
+    o.no_faces = o.no_areas = o.no_centroids = 1;
     status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
     brio_cells_free(cells);
     if (status != BRIO_OK) return status;
@@ -529,7 +530,7 @@ static void a_region_too_flat_for_doubles_is_refused(void) {
     static const double point[3] = {-4, -4, -4}, box[6] = {-4, -4, -4, 2, -2, 3};
     static const double planes[16] = {1e77, 1e77, -4, -4, -4, 6, 1e77, 1e77, 10, 2, 2, 1.9e98, -4, -4, -4, -4};
     brio_context *ctx = new_context();
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *cells;
     o.box = box, o.planes = planes, o.num_planes = 4;
     EXPECT(brio_voronoi_cells(ctx, NULL, point, NULL, 1, &o, &cells) == BRIO_ERR_ARGUMENT && !cells);
@@ -545,9 +546,9 @@ static void a_region_much_larger_or_smaller_than_the_points(void) {
     for (size_t n = 1; n <= 4; n += 3)
         for (size_t k = 0; k < 4; k++) {
             double s = sizes[k], volume = 0, box[6] = {-s, -s, -s, s, s, s};
-            brio_cells_options o = brio_cells_options_default();
+            brio_cells_options o = {0};
             brio_cells *cells = NULL;
-            o.box = box, o.areas = 1, o.centroids = 1;
+            o.box = box;
             EXPECT(brio_voronoi_cells(ctx, NULL, points, NULL, n, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
             for (size_t c = 0; cells && c < cells->num_cells; c++) {
                 volume += cells->volume[c];
@@ -566,7 +567,7 @@ static void a_region_too_large_beside_the_points_is_refused(void) {
     brio_context *ctx = new_context();
     for (int exponent = 0; exponent < 1023; exponent++) {
         double s = ldexp(1, exponent + 1), box[6] = {-s, -s, -s, s, s, s};
-        brio_cells_options o = brio_cells_options_default();
+        brio_cells_options o = {0};
         brio_cells *cells = NULL;
         o.box = box;
         brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, 5, &o, &cells);
@@ -587,7 +588,7 @@ static void a_region_too_small_beside_its_sites_is_refused(void) {
     for (size_t i = 0; i < 3 * N; i++) points[i] -= 0.5;
     for (int exponent = 0; exponent < 100; exponent++) {
         double s = ldexp(1, -exponent), box[6] = {-s, -s, -s, s, s, s};
-        brio_cells_options o = brio_cells_options_default();
+        brio_cells_options o = {0};
         brio_cells *cells = NULL;
         o.box = box;
         brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
@@ -646,9 +647,9 @@ static void what_doubles_cannot_hold_is_infinite(void) {
     brio_context *ctx = new_context();
     for (int run = 0; run < 4; run++) {
         bool areas = run % 2;
-        brio_cells_options o = brio_cells_options_default();
+        brio_cells_options o = {0};
         brio_cells *cells;
-        o.areas = o.centroids = o.faces = areas;
+        o.no_areas = o.no_centroids = o.no_faces = !areas;
         EXPECT(brio_voronoi_cells(ctx, NULL, points[run / 2], run < 2 ? NULL : weights, run < 2 ? 5 : 12, &o, &cells) ==
                    BRIO_OK,
                "%s", brio_message(ctx));

@@ -6,6 +6,7 @@
 #include "known_surfaces.h"
 #include "points.h"
 #include "same_faces.h"
+#include "surface_calls.h"
 #include "reconstruct/cocone/cocone_candidates.h"
 
 static const double PI = 3.141592653589793, THETA = 0.39269908169872414;
@@ -19,17 +20,18 @@ static brio_context *serial_context(void) {
 
 /* --- any input --- */
 
-static int is_certified(brio_context *ctx, const double *p, size_t n, const brio_cocone_options *o, uint64_t trial) {
+static int is_certified(brio_context *ctx, const double *p, size_t n, const brio_surface_options *o, uint64_t trial) {
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_cocone_stats s = {.size = sizeof s};
-    brio_status status = brio_cocone(ctx, p, n, o, &mesh, &s);
+    brio_certificate c = {0};
+    brio_surface_stats s = {0};
+    brio_status status = make_cocone(ctx, p, n, o, &mesh, &s);
     EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "trial %llu: %s", (unsigned long long)trial,
            brio_message(ctx));
     if (status != BRIO_OK) return 0;
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
-    EXPECT(c.manifold && c.oriented && (c.closed || !o->tight), "trial %llu: manifold %d oriented %d closed %d",
-           (unsigned long long)trial, c.manifold, c.oriented, c.closed);
+    EXPECT(c.manifold && c.oriented && (c.closed || o->method != BRIO_SURFACE_TIGHT_COCONE),
+           "trial %llu: manifold %d oriented %d closed %d", (unsigned long long)trial, c.manifold, c.oriented,
+           c.closed);
     EXPECT(mesh->num_vertices == n && mesh->num_faces > 0 && s.unused < s.samples);
     brio_certificate_free(&c);
     brio_mesh_free(mesh);
@@ -44,9 +46,9 @@ static void small_inputs_are_manifold_oriented(void) {
     int surfaces = 0;
     brio_context *ctx = serial_context();
     for (uint64_t trial = 0; trial < TRIALS; trial++) {
-        brio_cocone_options o = brio_cocone_options_default();
+        brio_surface_options o = COCONE_OPTIONS;
         size_t n = 4 + trial % 37;
-        o.tight = trial & 1;
+        o.method = trial & 1 ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
         o.boundaries = trial >> 1 & 1;
         o.density = trial >> 2 & 1;
         if (trial % 3 == 0)
@@ -63,9 +65,9 @@ static void small_inputs_are_manifold_oriented(void) {
 static void large_noise_is_manifold_oriented(void) {
     static double p[3 * 20000];
     brio_context *ctx = serial_context();
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     for (int tight = 0; tight < 2; tight++) {
-        o.tight = tight;
+        o.method = tight ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
         uniform_points(5, 20000, p);
         is_certified(ctx, p, 20000, &o, 0);
         integer_points(6, 20000, 14, p);
@@ -78,16 +80,16 @@ static void inputs_without_a_surface_say_so(void) {
     const double three[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, flat[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, .5, .5, 0};
     const double bad[9] = {0, 0, 0, 1, NAN, 0, 0, 1, INFINITY};
     brio_context *ctx = serial_context();
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
-    EXPECT(brio_cocone(ctx, NULL, 0, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_cocone(ctx, three, 3, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_cocone(ctx, flat, 5, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_cocone(ctx, bad, 3, NULL, &mesh, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
-    o.theta = 0;
-    EXPECT(brio_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_cocone(ctx, NULL, 0, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_cocone(ctx, three, 3, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_cocone(ctx, flat, 5, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_cocone(ctx, bad, 3, NULL, &mesh, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
+    o.theta = -1;
+    EXPECT(make_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     o.theta = NAN;
-    EXPECT(brio_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }
@@ -101,12 +103,12 @@ typedef struct {
     double volume;
 } expectation;
 
-static void expect_surface(const double *p, size_t n, const brio_cocone_options *o, expectation e) {
+static void expect_surface(const double *p, size_t n, const brio_surface_options *o, expectation e) {
     brio_context *ctx = serial_context();
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_cocone_stats s = {.size = sizeof s};
-    EXPECT(brio_cocone(ctx, p, n, o, &mesh, &s) == BRIO_OK, "%s", brio_message(ctx));
+    brio_certificate c = {0};
+    brio_surface_stats s = {0};
+    EXPECT(make_cocone(ctx, p, n, o, &mesh, &s) == BRIO_OK, "%s", brio_message(ctx));
     if (mesh) {
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
         EXPECT(c.manifold && c.oriented && c.closed == e.closed && c.components == e.components && c.genus == e.genus,
@@ -122,9 +124,9 @@ static void expect_surface(const double *p, size_t n, const brio_cocone_options 
 
 static void closed_surfaces_have_their_genus_and_volume(void) {
     static double p[3 * 6000];
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     for (int tight = 0; tight < 2; tight++) {
-        o.tight = tight;
+        o.method = tight ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
         torus_points(1, 6000, p);
         expect_surface(p, 6000, &o, (expectation){1, 1, 0, 1, 2 * PI * PI * 0.16});
         sphere_points(1, 2000, p);
@@ -138,7 +140,7 @@ static void nested_spheres_bound_a_shell(void) {
     sphere_points(1, 3000, p);
     sphere_points(2, 1000, p + 9000);
     for (size_t i = 9000; i < 12000; i++) p[i] *= 0.5;
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     expect_surface(p, 4000, &o, (expectation){1, 2, 0, 0, 4.18879 * 0.875});
 }
 
@@ -153,18 +155,18 @@ static size_t bowl_points(double height, size_t n, double *p) {
 
 static void a_bowl_is_open_and_the_tight_cocone_closes_it(void) {
     static double p[3 * 4000];
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     size_t n = bowl_points(0.5, 4000, p);
     o.boundaries = 1;
     expect_surface(p, n, &o, (expectation){0, 1, 1, 0, 0});
     o.boundaries = 0;
-    o.tight = 1;
+    o.method = BRIO_SURFACE_TIGHT_COCONE;
     expect_surface(p, n, &o, (expectation){1, 1, 0, 0, PI * (2.0 / 3 + 0.5 - 0.125 / 3)});
 }
 
 static void a_sheet_is_one_open_piece(void) {
     static double p[3 * 2500];
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_rng rng = brio_rng_new(7);
     for (size_t i = 0; i < 2500; i++) {
         double x = (double)(i % 50) + 0.5 * brio_rng_double(&rng), y = (double)(i / 50) + 0.5 * brio_rng_double(&rng);
@@ -191,12 +193,12 @@ static size_t pierced_torus(int holes, double *p) {
 static void holes_cut_into_a_torus_are_loops_and_the_tight_cocone_closes_them(void) {
     static double p[3 * 12000];
     for (int holes = 0; holes < 4; holes++) {
-        brio_cocone_options o = brio_cocone_options_default();
+        brio_surface_options o = COCONE_OPTIONS;
         size_t n = pierced_torus(holes, p);
         o.boundaries = 1;
         expect_surface(p, n, &o, (expectation){holes == 0, 1, (size_t)holes, 1, 0});
         o.boundaries = 0;
-        o.tight = 1;
+        o.method = BRIO_SURFACE_TIGHT_COCONE;
         expect_surface(p, n, &o, (expectation){1, 1, 0, 1, 0});
     }
 }
@@ -214,11 +216,11 @@ static size_t pierced_sheet(double radius, double noise, double *p) {
     return count;
 }
 
-static size_t count_loops(const double *p, size_t n, const brio_cocone_options *o) {
+static size_t count_loops(const double *p, size_t n, const brio_surface_options *o) {
     brio_context *ctx = serial_context();
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    EXPECT(brio_cocone(ctx, p, n, o, &mesh, NULL) == BRIO_OK);
+    brio_certificate c = {0};
+    EXPECT(make_cocone(ctx, p, n, o, &mesh, NULL) == BRIO_OK);
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.manifold && c.oriented);
     size_t loops = c.boundary_loops;
     brio_certificate_free(&c);
@@ -230,7 +232,7 @@ static size_t count_loops(const double *p, size_t n, const brio_cocone_options *
 /* The hole of one missing sample is no wider than the gaps that noise leaves. */
 static void holes_without_room_for_a_sample_are_closed(void) {
     static double p[3 * 2500];
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     for (int step = 0; step < 16; step++) {
         double radius = 0.6 * (step % 2), noise = 0.1 * (step / 2);
         EXPECT(count_loops(p, pierced_sheet(radius, noise, p), &o) == 1, "radius %g, noise %g", radius, noise);
@@ -250,7 +252,7 @@ static void sharp_edges_are_no_openings(void) {
         p[3 * i + (axis + 1) % 3] = (double)(i % 30) + 0.3 + 0.4 * brio_rng_double(&rng);
         p[3 * i + (axis + 2) % 3] = (double)(i / 30 % 30) + 0.3 + 0.4 * brio_rng_double(&rng);
     }
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     o.boundaries = 1;
     expect_surface(p, 5400, &o, (expectation){1, 1, 0, 0, 27000});
 }
@@ -277,14 +279,14 @@ static void tips_of_high_degree_have_all_their_triangles(void) {
     static double p[3 * (N + 2)];
     brio_context *ctx = serial_context();
     for (int tight = 0; tight < 2; tight++) {
-        brio_cocone_options o = brio_cocone_options_default();
+        brio_surface_options o = COCONE_OPTIONS;
         brio_mesh *mesh = NULL;
-        o.tight = tight;
+        o.method = tight ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
         for (size_t i = 0; i < N; i++)
             p[3 * i] = cos(2 * PI * (double)i / N), p[3 * i + 1] = sin(2 * PI * (double)i / N), p[3 * i + 2] = 0;
         p[3 * N] = p[3 * N + 1] = 0, p[3 * N + 2] = 1;
         p[3 * N + 3] = p[3 * N + 4] = 0, p[3 * N + 5] = -1;
-        EXPECT(brio_cocone(ctx, p, N + 2, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(make_cocone(ctx, p, N + 2, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
         expect_double_cone(mesh, N);
         brio_mesh_free(mesh);
     }
@@ -304,8 +306,8 @@ static void shuffled_samples_give_the_same_faces(void) {
         brio_rng rng = brio_rng_new(3);
         for (int i = 0; noisy && i < 9000; i++) p[i] += 0.05 * brio_rng_double(&rng);
         shuffle_points(5, 3000, p, q, to);
-        EXPECT(brio_cocone(ctx, p, 3000, NULL, &a, NULL) == BRIO_OK);
-        EXPECT(brio_cocone(ctx, q, 3000, NULL, &b, NULL) == BRIO_OK);
+        EXPECT(make_cocone(ctx, p, 3000, NULL, &a, NULL) == BRIO_OK);
+        EXPECT(make_cocone(ctx, q, 3000, NULL, &b, NULL) == BRIO_OK);
         expect_same_faces(a, to, b);
         brio_mesh_free(a);
         brio_mesh_free(b);
@@ -319,9 +321,9 @@ static void duplicates_and_scale_change_nothing(void) {
     for (int i = 0; i < 12000; i++) q[i] = p[i % 6000] * 0x1p-400;
     brio_context *ctx = serial_context();
     brio_mesh *a, *b;
-    brio_cocone_stats s = {.size = sizeof s};
-    EXPECT(brio_cocone(ctx, p, 2000, NULL, &a, NULL) == BRIO_OK);
-    EXPECT(brio_cocone(ctx, q, 4000, NULL, &b, &s) == BRIO_OK && s.samples == 2000);
+    brio_surface_stats s = {0};
+    EXPECT(make_cocone(ctx, p, 2000, NULL, &a, NULL) == BRIO_OK);
+    EXPECT(make_cocone(ctx, q, 4000, NULL, &b, &s) == BRIO_OK && s.samples == 2000);
     expect_same_faces(a, NULL, b);
     EXPECT(!memcmp(b->vertices, q, sizeof q));
     brio_mesh_free(a);
@@ -334,11 +336,11 @@ static void density_of_a_sphere_is_measured(void) {
     sphere_points(1, 3000, p);
     for (int i = 0; i < 9000; i++) p[i] *= 3;
     brio_context *ctx = serial_context();
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
-    brio_cocone_stats s = {.size = sizeof s};
+    brio_surface_stats s = {0};
     o.density = 1;
-    EXPECT(brio_cocone(ctx, p, 3000, &o, &mesh, &s) == BRIO_OK);
+    EXPECT(make_cocone(ctx, p, 3000, &o, &mesh, &s) == BRIO_OK);
     const brio_property *size = brio_mesh_property(mesh, "feature_size"), *r = brio_mesh_property(mesh, "r");
     size_t outside = 0;
     EXPECT(size && r);
@@ -354,10 +356,10 @@ static void density_of_a_sphere_is_measured(void) {
 static brio_status small_cocone(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *mesh;
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     o.boundaries = o.density = 1;
     clustered_points(3, 60, p);
-    brio_status status = brio_cocone(ctx, p, 60, &o, &mesh, NULL);
+    brio_status status = make_cocone(ctx, p, 60, &o, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }
@@ -536,10 +538,10 @@ static void check_candidates(const theory *x) {
 /* Theorem 19: the right topology, near the surface everywhere (looked at on a grid in each triangle). */
 static void check_result(const theory *x) {
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_cocone_stats s = {.size = sizeof s};
+    brio_certificate c = {0};
+    brio_surface_stats s = {0};
     double limit = 1.3 * r_over(x->surface->r) * x->surface->feature_size;
-    EXPECT(brio_cocone(x->ctx, x->points, x->n, NULL, &mesh, &s) == BRIO_OK);
+    EXPECT(make_cocone(x->ctx, x->points, x->n, NULL, &mesh, &s) == BRIO_OK);
     EXPECT(brio_mesh_certificate(x->ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == x->surface->genus && s.unused == 0);
     EXPECT(s.relabeled == 0, "%zu", s.relabeled);

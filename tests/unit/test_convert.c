@@ -23,7 +23,7 @@ static brio_status convert(const char *from, const char *to) {
 
 static brio_mesh *read_back(const char *name) {
     brio_mesh *m = NULL;
-    EXPECT(brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &m) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path(name), NULL, &m) == BRIO_OK, "%s", brio_message(io_ctx));
     return m;
 }
 
@@ -72,7 +72,7 @@ static void progress_never_runs_backwards(void) {
     put_rows("in.csv", "x,y,z,a\n", "1,2,3,4\n", ROWS);
     strcpy(from, io_path("in.csv"));
     for (int i = 0; i < 6; i++) {
-        brio_convert_options o = brio_convert_options_default();
+        brio_convert_options o = {0};
         double last = 0;
         o.thin = i < 3 ? 0.5 : 0;
         o.drop_outliers = i < 3 ? 8 : 0;
@@ -155,8 +155,7 @@ static void an_npy_field_that_is_there_twice_is_refused(void) {
     memcpy(bytes + 10, header, length);
     io_put("in.npy", bytes, 10 + length + 32);
     brio_mesh *m = NULL;
-    EXPECT(brio_read(io_ctx, io_path("in.npy"), BRIO_FORMAT_AUTO, &m) == BRIO_ERR_FORMAT, "%zu",
-           m ? m->num_vertices : 0);
+    EXPECT(brio_read(io_ctx, io_path("in.npy"), NULL, &m) == BRIO_ERR_FORMAT, "%zu", m ? m->num_vertices : 0);
     EXPECT(strstr(brio_message(io_ctx), "two fields named x"), "%s", brio_message(io_ctx));
     brio_mesh_free(m);
 }

@@ -11,8 +11,8 @@ static const brio_order BRIOS[] = {BRIO_ORDER_BRIO, BRIO_ORDER_BRIO_OCTREE, BRIO
 /* Tetrahedra created, infinite ones too, over the number of vertices.   ratio  0: the default */
 static double created_a_point(brio_kind kind, size_t n, brio_order order, double ratio, uint64_t seed) {
     brio_context *ctx = new_context();
-    brio_delaunay_options o = brio_delaunay_options_default();
-    brio_generate_options generate = brio_generate_options_default();
+    brio_delaunay_options o = {0};
+    brio_generate_options generate = {0};
     brio_mesh *mesh = NULL;
     brio_triangulation *t = NULL;
     double created = 0;

@@ -4,6 +4,7 @@
 #include "known_balls.h"
 #include "query/nearest_points.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "reconstruct/labels/labeling.h"
 #include "mesh/closest_point.h"
 
@@ -193,12 +194,12 @@ static void check_samples_are_on(const theory *x, const brio_mesh *mesh) {
 /* Faces of a dense sample meet in common corners and edges only, as polygons, as triangles and simplified. */
 static void check_no_faces_cross(const theory *x) {
     for (int form = 0; form < 3; form++) {
-        brio_power_crust_options o = brio_power_crust_options_default();
+        brio_surface_options o = CRUST_OPTIONS;
         brio_mesh *mesh;
         int64_t pairs = -1;
-        o.triangulate = form == 1;
+        o.polygons = !(form == 1);
         o.simplify = form == 2;
-        EXPECT(brio_power_crust(x->ctx, x->points, x->n, &o, &mesh, NULL, NULL) == BRIO_OK);
+        EXPECT(make_crust(x->ctx, x->points, x->n, &o, &mesh, NULL, NULL) == BRIO_OK);
         EXPECT(brio_mesh_self_intersections(x->ctx, mesh, &pairs) == BRIO_OK);
         EXPECT(pairs == 0, "r = %g, form %d: %lld pairs of faces cross", x->r, form, (long long)pairs);
         brio_mesh_free(mesh);
@@ -208,8 +209,8 @@ static void check_no_faces_cross(const theory *x) {
 /* Theorem 54 and corollary 48. Returns the largest distance from the surface over r LFS. */
 static double check_crust(const theory *x) {
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    EXPECT(brio_power_crust(x->ctx, x->points, x->n, NULL, &mesh, NULL, NULL) == BRIO_OK);
+    brio_certificate c = {0};
+    EXPECT(make_crust(x->ctx, x->points, x->n, NULL, &mesh, NULL, NULL) == BRIO_OK);
     EXPECT(brio_mesh_certificate(x->ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == x->surface->genus, "genus %lld",
            (long long)c.genus);

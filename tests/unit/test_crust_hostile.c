@@ -4,6 +4,7 @@
  * test_crust_hostile [COUNT] sweeps COUNT inputs of up to 300 points; without it, a few. */
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 
 enum { MOST = 300, FEW = 400, KINDS = 4 };
 
@@ -53,11 +54,11 @@ static size_t hostile_points(uint64_t trial, double *p) {
     }
 }
 
-static brio_power_crust_options options_of(uint64_t trial) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+static brio_surface_options options_of(uint64_t trial) {
+    brio_surface_options o = CRUST_OPTIONS;
     uint64_t choice = trial / KINDS;
     o.poles.labeling = (brio_labeling)(choice % BRIO_LABELING_END);
-    o.triangulate = choice / 4 % 3 == 1;
+    o.polygons = !(choice / 4 % 3 == 1);
     o.simplify = choice / 4 % 3 == 2;
     o.poles.sharp = choice / 12 % 3 == 1;
     o.poles.sampling_density = choice / 12 % 3 == 2 ? 0.6 : 0;
@@ -68,11 +69,11 @@ static brio_power_crust_options options_of(uint64_t trial) {
 static int sweep_one(brio_context *ctx, uint64_t trial) {
     static double p[3 * MOST];
     size_t n = hostile_points(trial, p);
-    brio_power_crust_options o = options_of(trial);
-    brio_power_crust_stats s = {.size = sizeof s};
+    brio_surface_options o = options_of(trial);
+    brio_surface_stats s = {0};
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, NULL, &s);
+    brio_certificate c = {0};
+    brio_status status = make_crust(ctx, p, n, &o, &mesh, NULL, &s);
     EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "input %llu: %s", (unsigned long long)trial,
            brio_message(ctx));
     if (status != BRIO_OK) return 0;

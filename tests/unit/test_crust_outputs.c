@@ -2,6 +2,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "mesh/closest_point.h"
 
 /* Small inputs: one thread is faster. */
@@ -11,16 +12,16 @@ static brio_context *new_small_context(void) {
     return ctx;
 }
 
-static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, const brio_power_crust_options *o,
-                        brio_power_crust_stats *s) {
+static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, const brio_surface_options *o,
+                        brio_surface_stats *s) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_power_crust(ctx, p, n, o, &mesh, NULL, s);
+    brio_status status = make_crust(ctx, p, n, o, &mesh, NULL, s);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     return mesh;
 }
 
 static brio_certificate certify(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     return c;
 }
@@ -31,16 +32,16 @@ static void simplified_torus_is_a_quarter_and_the_same(void) {
     static double p[3 * 6000];
     torus_points(1, 6000, p);
     brio_context *ctx = new_small_context();
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *whole = crust(ctx, p, 6000, &o, NULL), *simple;
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     o.simplify = 1;
     simple = crust(ctx, p, 6000, &o, NULL);
     brio_certificate c = certify(ctx, simple);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == 1);
     EXPECT(fabs(c.volume - 3.158273) < 0.02 * 3.158273, "volume %g", c.volume);
     EXPECT(simple->num_faces <= whole->num_faces / 4 + 2, "%zu of %zu", simple->num_faces, whole->num_faces);
-    EXPECT(simple->num_properties == 0);
+    EXPECT(simple->num_properties == 1 && brio_mesh_property(simple, "sample"));
     EXPECT(brio_mesh_distance(ctx, simple, whole, 20000, 1, &d) == BRIO_OK);
     EXPECT(d.mean < 5e-4 * d.diagonal && d.hausdorff < 0.02 * d.diagonal, "mean %g, most %g", d.mean / d.diagonal,
            d.hausdorff / d.diagonal);
@@ -58,12 +59,12 @@ static void simplified_anything_stays_the_same_manifold(void) {
     brio_context *ctx = new_small_context();
     for (uint64_t trial = 0; trial < 120; trial++) {
         size_t n = 4 + trial % 37;
-        brio_power_crust_options o = brio_power_crust_options_default();
+        brio_surface_options o = CRUST_OPTIONS;
         if (trial % 2)
             clustered_points(trial, n, p);
         else
             integer_points(trial, n, 3 + (uint32_t)(trial % 3), p);
-        o.triangulate = 1;
+        o.polygons = 0;
         brio_mesh *whole = crust(ctx, p, n, &o, NULL);
         if (!whole) continue;
         o.simplify = 1;
@@ -88,13 +89,13 @@ static void simplified_anything_stays_the_same_manifold(void) {
 static void an_infinite_size_of_holes_is_refused(void) {
     const double p[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     brio_context *ctx = new_small_context();
-    brio_power_crust_options crust = brio_power_crust_options_default();
-    brio_labeled_delaunay_options labeled = brio_labeled_delaunay_options_default();
+    brio_surface_options crust = CRUST_OPTIONS;
+    brio_surface_options labeled = LABELED_OPTIONS;
     brio_mesh *mesh;
     crust.open = labeled.open = INFINITY;
-    EXPECT(brio_power_crust(ctx, p, 4, &crust, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_crust(ctx, p, 4, &crust, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(strstr(brio_message(ctx), "expected a finite number, 0 or more"), "%s", brio_message(ctx));
-    EXPECT(brio_labeled_delaunay(ctx, p, 4, &labeled, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_labeled(ctx, p, 4, &labeled, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(strstr(brio_message(ctx), "expected a finite number, 0 or more"), "%s", brio_message(ctx));
     brio_context_free(ctx);
 }
@@ -108,8 +109,8 @@ static void hole_of_the_samples_stays_open_on_request(void) {
         if (p[3 * i + 2] < 0.5) memmove(p + 3 * n++, p + 3 * i, 3 * sizeof *p);
     for (int simplify = 0; simplify < 2; simplify++) {
         brio_context *ctx = new_small_context();
-        brio_power_crust_options o = brio_power_crust_options_default();
-        brio_power_crust_stats s = {.size = sizeof s};
+        brio_surface_options o = CRUST_OPTIONS;
+        brio_surface_stats s = {0};
         o.simplify = simplify;
         brio_mesh *mesh = crust(ctx, p, n, &o, &s);
         brio_certificate c = certify(ctx, mesh);
@@ -180,11 +181,11 @@ static size_t far_from_rim(const brio_mesh *m, double *farthest) {
 static void hole_inside_the_hull_stays_open_on_request(void) {
     static double p[3 * 8000];
     brio_context *ctx = new_small_context();
-    brio_power_crust_options o = brio_power_crust_options_default();
-    brio_power_crust_stats s = {.size = sizeof s};
+    brio_surface_options o = CRUST_OPTIONS;
+    brio_surface_stats s = {0};
     double farthest;
     size_t n = hollow_ball(p);
-    o.triangulate = 1;
+    o.polygons = 0;
     brio_mesh *mesh = crust(ctx, p, n, &o, &s);
     brio_certificate c = certify(ctx, mesh);
     EXPECT(c.closed && c.components == 2 && c.genus == 0 && s.left_out == 0, "%zu components", c.components);
@@ -208,8 +209,8 @@ static void open_anything_is_manifold(void) {
     brio_context *ctx = new_small_context();
     for (uint64_t trial = 0; trial < 120; trial++) {
         size_t n = 20 + trial % 40;
-        brio_power_crust_options o = brio_power_crust_options_default();
-        brio_power_crust_stats s = {.size = sizeof s};
+        brio_surface_options o = CRUST_OPTIONS;
+        brio_surface_stats s = {0};
         o.open = 0.5 + (double)(trial % 4);
         o.simplify = trial % 3 == 0;
         if (trial % 2)
@@ -254,8 +255,8 @@ static void cube_comes_out_with_its_edges(void) {
     static double p[3 * 6000];
     cube_points(2, 6000, p);
     brio_context *ctx = new_small_context();
-    brio_power_crust_options o = brio_power_crust_options_default();
-    brio_power_crust_stats s = {.size = sizeof s};
+    brio_surface_options o = CRUST_OPTIONS;
+    brio_surface_stats s = {0};
     brio_mesh *plain = crust(ctx, p, 6000, &o, &s);
     EXPECT(s.poles.bad_cells == 0);
     o.poles.sharp = 1;
@@ -305,7 +306,7 @@ static void edges_without_samples_come_out_sharp(void) {
     for (uint64_t trial = 1; trial <= TRIALS; trial++) {
         cube_points(trial, N, p);
         for (int i = 0; i < 3; i++) {
-            brio_power_crust_options o = brio_power_crust_options_default();
+            brio_surface_options o = CRUST_OPTIONS;
             double mean;
             o.poles.sharp = i > 0;
             o.poles.sampling_density = i == 2 ? 0.4 : 0;
@@ -332,8 +333,8 @@ static void dome_whose_inner_poles_are_beyond_its_box_has_an_inside(void) {
     }
     brio_context *ctx = new_context();
     brio_mesh *mesh = NULL;
-    brio_certificate c = {.size = sizeof c};
-    EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    brio_certificate c = {0};
+    EXPECT(make_crust(ctx, p, N, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.closed && c.genus == 0 && c.components == 1);
     EXPECT(fabs(c.volume - 1.0621) < 0.03, "%g", c.volume);
     brio_certificate_free(&c);
@@ -347,13 +348,13 @@ static void sampling_density_out_of_range_is_refused(void) {
     brio_context *ctx = new_small_context();
     const double bad[] = {-0.1, 1, 2, NAN};
     for (int i = 0; i < 4; i++) {
-        brio_power_crust_options o = brio_power_crust_options_default();
+        brio_surface_options o = CRUST_OPTIONS;
         brio_mesh *mesh;
         o.poles.sampling_density = bad[i];
-        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+        EXPECT(make_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
         o.poles.sampling_density = 0;
         o.open = bad[i] == 1 || bad[i] == 2 ? -1 : bad[i];
-        EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+        EXPECT(make_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     }
     brio_context_free(ctx);
 }
@@ -366,12 +367,12 @@ static void normals_of_samples_are_those_of_the_sphere(void) {
     memcpy(p + 6000, p, 600 * sizeof *p); /* 200 duplicates */
     for (int sharp = 0; sharp < 2; sharp++) {
         brio_context *ctx = new_small_context();
-        brio_power_crust_options o = brio_power_crust_options_default();
+        brio_surface_options o = CRUST_OPTIONS;
         double worst = 1;
         o.poles.sampling_density = sharp ? 0.05 : 0; /* many samples then have no poles */
         o.poles.sharp = sharp;
         brio_mesh *mesh;
-        EXPECT(brio_power_crust(ctx, p, 2200, &o, &mesh, normals, NULL) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(make_crust(ctx, p, 2200, &o, &mesh, normals, NULL) == BRIO_OK, "%s", brio_message(ctx));
         for (size_t i = 0; i < 2200; i++) {
             const double *n = normals + 3 * i, *x = p + 3 * i;
             worst = fmin(worst, n[0] * x[0] + n[1] * x[1] + n[2] * x[2]);
@@ -405,13 +406,13 @@ static void normals_of_vertices_point_outwards(void) {
 
 static brio_status everything_small(brio_context *ctx) {
     double p[3 * 40], normals[3 * 40];
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh;
     sphere_points(3, 40, p);
     o.simplify = o.poles.sharp = 1;
     o.open = 1;
     o.poles.sampling_density = 0.5;
-    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, normals, NULL);
+    brio_status status = make_crust(ctx, p, 40, &o, &mesh, normals, NULL);
     if (status == BRIO_OK) status = brio_mesh_add_normals(mesh);
     brio_mesh_free(mesh);
     return status;

@@ -134,7 +134,7 @@ static void equal_centroids_make_a_tree(void) {
 /* --- distances --- */
 
 static brio_distance distance(brio_mesh *a, brio_mesh *b, size_t samples) {
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     EXPECT(brio_mesh_distance(ctx, a, b, samples, 1, &d) == BRIO_OK, "%s", brio_message(ctx));
     brio_mesh_free(a);
     brio_mesh_free(b);
@@ -220,7 +220,7 @@ static void surface_without_area_is_refused(void) {
     const double vertices[] = {0, 0, 0, 1, 0, 0, 2, 0, 0};
     const uint32_t corners[] = {0, 1, 2};
     brio_mesh *line = mesh_new(ctx, vertices, 3, corners, 1, 3), *plane = square(ctx, 1, 0), *empty;
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     brio_mesh_new(ctx, &empty);
     EXPECT(brio_mesh_distance(ctx, line, plane, 10, 1, &d) == BRIO_ERR_ARGUMENT);
     EXPECT(strstr(brio_message(ctx), "first") != NULL, "%s", brio_message(ctx));
@@ -237,7 +237,7 @@ static void surface_without_area_is_refused(void) {
 /* The message was "the faces of the first mesh have area nan". */
 static void surface_with_nan_is_refused(void) {
     brio_mesh *good = square(ctx, 1, 0), *bad = square(ctx, 1, 1);
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     bad->vertices[4] = NAN;
     EXPECT(brio_mesh_distance(ctx, bad, good, 10, 1, &d) == BRIO_ERR_NOT_FINITE);
     EXPECT(strstr(brio_message(ctx), "vertex 1 of the first mesh: y is NaN"), "%s", brio_message(ctx));
@@ -253,7 +253,7 @@ static void surface_without_triangles_says_so(void) {
     const double vertices[] = {0, 0, 0, 1, 0, 0};
     const uint32_t corners[] = {0, 1};
     brio_mesh *edge = mesh_new(ctx, vertices, 2, corners, 1, 2), *plane = square(ctx, 1, 0);
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     EXPECT(brio_mesh_distance(ctx, edge, plane, 10, 1, &d) == BRIO_ERR_ARGUMENT);
     EXPECT(strstr(brio_message(ctx), "no face of the mesh has three corners"), "%s", brio_message(ctx));
     brio_mesh_free(edge);
@@ -307,7 +307,7 @@ static void distances_beyond_doubles_are_refused(void) {
 
 static brio_status compare_squares_of(brio_context *context, double side) {
     brio_mesh *a = square(context, side, 0), *b = square(context, side, side);
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     brio_status status = a && b ? brio_mesh_distance(context, a, b, 50, 1, &d) : BRIO_ERR_NO_MEMORY;
     brio_mesh_free(a);
     brio_mesh_free(b);
@@ -334,7 +334,7 @@ static int cancel(const char *stage, double fraction, void *user) {
 
 static void cancelling_leaves_nothing(void) {
     brio_mesh *a = square(ctx, 1, 0);
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     size_t before = brio_context_memory(ctx);
     brio_context_set_progress(ctx, cancel, NULL);
     EXPECT(brio_mesh_distance(ctx, a, a, 100, 1, &d) == BRIO_ERR_CANCELLED);

@@ -2,6 +2,7 @@
  * room that is set aside for growth, which threads do for themselves. */
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <limits.h>
 #include <string.h>
 
@@ -146,7 +147,7 @@ static void every_way_of_location_takes_what_was_estimated(void) {
     for (uint32_t i = 0; i < N; i++) edges[2 * i] = i, edges[2 * i + 1] = (i + 1) % N;
     for (int way = BRIO_LOCATION_WALK; way < BRIO_LOCATION_END; way++) {
         brio_context *ctx = new_context();
-        brio_delaunay_options o = brio_delaunay_options_default();
+        brio_delaunay_options o = {0};
         uint64_t bytes;
         o.locate = (brio_location)way;
         if (way == BRIO_LOCATION_TRACE || way == BRIO_LOCATION_NEIGHBOUR) o.edges = edges, o.num_edges = N;
@@ -170,17 +171,17 @@ static void surfaces_take_what_was_estimated(void) {
         uint64_t bytes = 0;
         brio_context_set_threads(ctx, 1);
         if (method == 0) {
-            EXPECT(brio_estimate_power_crust(ctx, n, NULL, &bytes) == BRIO_OK);
-            EXPECT(brio_power_crust(ctx, p, n, NULL, &mesh, NULL, NULL) == BRIO_OK);
+            EXPECT(brio_estimate_surface(ctx, n, &(brio_surface_options)CRUST_OPTIONS, &bytes) == BRIO_OK);
+            EXPECT(make_crust(ctx, p, n, NULL, &mesh, NULL, NULL) == BRIO_OK);
         } else if (method == 1) {
-            EXPECT(brio_estimate_offset_surface(ctx, n, NULL, &bytes) == BRIO_OK);
-            EXPECT(brio_offset_surface(ctx, p, n, 0.02, NULL, &mesh, NULL) == BRIO_OK);
+            EXPECT(brio_estimate_surface(ctx, n, &(brio_surface_options)OFFSET_OPTIONS, &bytes) == BRIO_OK);
+            EXPECT(make_offset(ctx, p, n, 0.02, NULL, &mesh, NULL) == BRIO_OK);
         } else if (method == 2) {
             EXPECT(brio_estimate_power_shape(ctx, n, NULL, &bytes) == BRIO_OK);
             EXPECT(brio_power_shape(ctx, p, n, NULL, &mesh, NULL, NULL) == BRIO_OK);
         } else {
-            EXPECT(brio_estimate_cocone(ctx, n, NULL, &bytes) == BRIO_OK);
-            EXPECT(brio_cocone(ctx, p, n, NULL, &mesh, NULL) == BRIO_OK);
+            EXPECT(brio_estimate_surface(ctx, n, &(brio_surface_options)COCONE_OPTIONS, &bytes) == BRIO_OK);
+            EXPECT(make_cocone(ctx, p, n, NULL, &mesh, NULL) == BRIO_OK);
         }
         double ratio = (double)bytes / (double)brio_context_memory_peak(ctx);
         EXPECT(ratio > 0.8 && ratio < 1.7, "method %d: %g", method, ratio);
@@ -201,22 +202,22 @@ static void pieces_of_the_cocone_count(void) {
     uint64_t whole = 0, in_pieces = 0;
     for (int i = 0; i < (SHORT_TESTS ? 1 : 3) && scan; i++) {
         brio_context *ctx = new_context();
-        brio_cocone_options o = brio_cocone_options_default();
+        brio_surface_options o = COCONE_OPTIONS;
         brio_mesh *mesh = NULL;
         uint64_t bytes = 0;
         brio_context_set_threads(ctx, 1);
         o.pieces = pieces[i];
-        EXPECT(brio_estimate_cocone(ctx, scan->num_vertices, &o, &bytes) == BRIO_OK);
-        EXPECT(brio_cocone(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL) == BRIO_OK);
+        EXPECT(brio_estimate_surface(ctx, scan->num_vertices, &o, &bytes) == BRIO_OK);
+        EXPECT(make_cocone(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL) == BRIO_OK);
         double ratio = (double)bytes / (double)brio_context_memory_peak(ctx);
         EXPECT(ratio > 0.8 && ratio < 2.5, "%zu pieces: %g", pieces[i], ratio);
         brio_mesh_free(mesh);
         brio_context_free(ctx);
     }
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     o.pieces = 30;
-    EXPECT(brio_estimate_cocone(scanner, 1000000, NULL, &whole) == BRIO_OK);
-    EXPECT(brio_estimate_cocone(scanner, 1000000, &o, &in_pieces) == BRIO_OK && in_pieces < whole / 2);
+    EXPECT(brio_estimate_surface(scanner, 1000000, &(brio_surface_options)COCONE_OPTIONS, &whole) == BRIO_OK);
+    EXPECT(brio_estimate_surface(scanner, 1000000, &o, &in_pieces) == BRIO_OK && in_pieces < whole / 2);
     brio_mesh_free(scan);
     brio_context_free(scanner);
 }
@@ -227,9 +228,11 @@ static void wrong_arguments_are_refused(void) {
     uniform_points(1, 5000, points);
     points[3 * 4000] = NAN;
     EXPECT(brio_estimate_delaunay(ctx, points, NULL, 5000, NULL, &bytes) == BRIO_ERR_NOT_FINITE && bytes == 0);
-    EXPECT(brio_estimate_delaunay(ctx, points, NULL, 50, &(brio_delaunay_options){0}, &bytes) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_estimate_delaunay(ctx, points, NULL, 50, &(brio_delaunay_options){.size = 4}, &bytes) ==
+           BRIO_ERR_ARGUMENT);
     EXPECT(brio_estimate_delaunay(ctx, NULL, NULL, 0, NULL, &bytes) == BRIO_OK && bytes < 4096);
-    EXPECT(brio_estimate_cocone(ctx, 9, &(brio_cocone_options){0}, &bytes) == BRIO_ERR_ARGUMENT && bytes == 0);
+    EXPECT(brio_estimate_surface(ctx, 9, &(brio_surface_options){.size = 4}, &bytes) == BRIO_ERR_ARGUMENT &&
+           bytes == 0);
     EXPECT(brio_estimate_generate(SIZE_MAX) > SIZE_MAX / 2 && brio_estimate_mesh_subdivide(1000, 2) > 64000);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
@@ -249,7 +252,7 @@ static void options_that_are_refused_have_no_estimate(void) {
     brio_delaunay_options wrong[6];
     brio_context *ctx = new_context();
     uniform_points(1, 50, points);
-    for (int i = 0; i < 6; i++) wrong[i] = brio_delaunay_options_default();
+    for (int i = 0; i < 6; i++) wrong[i] = (brio_delaunay_options){0};
     wrong[0].order = (brio_order)99;
     wrong[1].locate = (brio_location)-5;
     wrong[2].round_ratio = 1;

@@ -3,6 +3,7 @@
 #include "base/float_state.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <fenv.h>
 #include <math.h>
 #include <string.h>
@@ -90,7 +91,7 @@ static uint64_t crust_in(const host_state *h, int threads) {
     uint64_t sum = 0;
     brio_context_set_threads(ctx, threads);
     enter(h);
-    brio_status status = brio_power_crust(ctx, set, N, NULL, &crust, NULL, NULL);
+    brio_status status = make_crust(ctx, set, N, NULL, &crust, NULL, NULL);
     EXPECT(leave(h), "%s", h->name);
     EXPECT(status == BRIO_OK, "%s: %s", h->name, brio_message(ctx));
     for (size_t i = 0; status == BRIO_OK && i < 3 * crust->num_vertices; i++) {

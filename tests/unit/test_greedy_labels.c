@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "reconstruct/power_crust/labeled_poles.h"
 
 enum { OUT = 0, IN = 1 };
@@ -130,13 +131,13 @@ typedef struct {
 
 static void compare_labels(const double *points, size_t n, const char *name, totals *sum) {
     brio_context *ctx = new_context();
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_pole_request request;
     brio_labeled_poles l;
     o.poles.labeling = BRIO_LABELING_GREEDY;
-    o.poles.noise = BRIO_NOISE_KEEP;
+    o.noise = BRIO_NOISE_KEEP;
     brio_context_set_threads(ctx, 1);
-    EXPECT(brio_pole_request_of(ctx, &o.poles, o.seed, &request) == BRIO_OK);
+    EXPECT(brio_pole_request_of(ctx, &o.poles, o.noise, o.seed, &request) == BRIO_OK);
     brio_status status = brio_labeled_poles_find(ctx, points, n, &request, &l);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     if (status == BRIO_OK) {

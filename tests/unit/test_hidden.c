@@ -16,7 +16,7 @@ static void crowded_points(int dimension) {
 }
 
 static brio_triangulation *triangulation_of(brio_context *ctx, int leaves) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     brio_triangulation *t;
     o.leave_hidden = leaves;
     EXPECT(brio_delaunay(ctx, points, weights, MOST, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
@@ -57,7 +57,7 @@ static void only_hidden_points_lack_a_representative(void) {
 
 static void option_means_nothing_without_weights(void) {
     brio_context *ctx = new_context();
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     brio_triangulation *t;
     o.leave_hidden = 1;
     crowded_points(3);

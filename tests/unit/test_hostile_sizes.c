@@ -1,6 +1,7 @@
 /* Counts from a caller that no array can have: refused before anything is read or allocated by them. */
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <stdint.h>
 
 static double points[3] = {1, 2, 3};
@@ -33,19 +34,19 @@ static brio_status convex_hull(size_t n) {
 }
 static brio_status labeled_delaunay(size_t n) {
     brio_mesh *mesh = NULL;
-    return brio_labeled_delaunay(ctx, points, n, NULL, &mesh, NULL, NULL);
+    return make_labeled(ctx, points, n, NULL, &mesh, NULL, NULL);
 }
 static brio_status power_crust(size_t n) {
     brio_mesh *mesh = NULL;
-    return brio_power_crust(ctx, points, n, NULL, &mesh, NULL, NULL);
+    return make_crust(ctx, points, n, NULL, &mesh, NULL, NULL);
 }
 static brio_status cocone(size_t n) {
     brio_mesh *mesh = NULL;
-    return brio_cocone(ctx, points, n, NULL, &mesh, NULL);
+    return make_cocone(ctx, points, n, NULL, &mesh, NULL);
 }
 static brio_status offset_surface(size_t n) {
     brio_mesh *mesh = NULL;
-    return brio_offset_surface(ctx, points, n, 1, NULL, &mesh, NULL);
+    return make_offset(ctx, points, n, 1, NULL, &mesh, NULL);
 }
 static brio_status power_shape(size_t n) {
     brio_mesh *shape = NULL;
@@ -81,7 +82,7 @@ static brio_status estimate_tetrahedra(size_t n) {
 /* Edges were read by their number before it was held against any limit, and twice that number wrapped. */
 static brio_status edges(size_t n) {
     brio_triangulation *t = NULL;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.locate = BRIO_LOCATION_NEIGHBOUR;
     o.edges = indices;
     o.num_edges = n;

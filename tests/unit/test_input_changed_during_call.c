@@ -5,6 +5,7 @@
 #include "harness.h"
 #include "order/order.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
@@ -75,7 +76,7 @@ static brio_status regular(brio_context *ctx) {
 }
 
 static brio_status in_order(brio_context *ctx, brio_order order) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = order, o.block_size = 20;
     return space(ctx, NULL, &o);
 }
@@ -87,7 +88,7 @@ static brio_status kdtree(brio_context *ctx) {
 }
 
 static brio_status traced(brio_context *ctx) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.locate = BRIO_LOCATION_TRACE, o.edges = now.edges, o.num_edges = N;
     return space(ctx, NULL, &o);
 }
@@ -126,7 +127,7 @@ static brio_status plane_queries(brio_context *ctx) {
     brio_diagram2 *d = NULL;
     static uint32_t found[QUERIES];
     static double values[N], out[QUERIES];
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     o.values = values;
     status = brio_delaunay2(ctx, now.points, NULL, N, NULL, &t);
     if (status == BRIO_OK) status = brio_locator2_new(ctx, t, now.points, NULL, N, &l);
@@ -146,7 +147,7 @@ static brio_status space_queries(brio_context *ctx) {
     brio_locator *l = NULL;
     static uint32_t found[3 * QUERIES];
     static double values[N], out[QUERIES];
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     o.values = values;
     status = brio_delaunay(ctx, now.points, NULL, N, NULL, &t);
     if (status == BRIO_OK) status = brio_locator_new(ctx, t, now.points, NULL, N, &l);
@@ -170,7 +171,7 @@ static brio_status hull(brio_context *ctx) {
 
 static brio_status cells(brio_context *ctx) {
     const double box[6] = {-1, -1, -1, 2, 2, 2};
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *out;
     o.box = box, o.vertices = 1;
     brio_status status = brio_voronoi_cells(ctx, NULL, now.points, now.weights, N, &o, &out);
@@ -183,10 +184,10 @@ static brio_status cells(brio_context *ctx) {
 /* Of a triangulation that is there, perhaps of other points. */
 static brio_status cells_of_triangulation(brio_context *ctx) {
     const double box[6] = {-1, -1, -1, 2, 2, 2};
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_triangulation *t = NULL;
     brio_cells *out = NULL;
-    o.box = box, o.vertices = o.faces = 1;
+    o.box = box, o.vertices = 1;
     brio_status status = brio_delaunay(ctx, now.points, now.weights, N, NULL, &t);
     if (status == BRIO_OK) status = brio_voronoi_cells(ctx, t, now.points, now.weights, N, &o, &out);
     for (size_t i = 0; out && i < out->num_cells; i++) sum += out->site[i];
@@ -197,7 +198,7 @@ static brio_status cells_of_triangulation(brio_context *ctx) {
 
 static brio_status alpha(brio_context *ctx) {
     brio_triangulation *t = NULL;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     brio_status status = brio_delaunay(ctx, now.points, now.weights, N, NULL, &t);
     if (status == BRIO_OK) status = brio_alpha_values(ctx, t, now.points, now.weights, N, &c);
     for (size_t i = 0; i < c.counts[0]; i++) sum += c.simplices[0][i];
@@ -208,7 +209,7 @@ static brio_status alpha(brio_context *ctx) {
 
 static brio_status alpha_plane(brio_context *ctx) {
     brio_triangulation2 *t = NULL;
-    brio_alpha_complex c = {.size = sizeof c};
+    brio_alpha_complex c = {0};
     brio_status status = brio_delaunay2(ctx, now.points, now.weights, N, NULL, &t);
     if (status == BRIO_OK) status = brio_alpha_values2(ctx, t, now.points, now.weights, N, &c);
     for (size_t i = 0; i < c.counts[0]; i++) sum += c.simplices[0][i];
@@ -230,26 +231,26 @@ static brio_status outliers(brio_context *ctx) {
 /* The surfaces promise nothing, but they copy their samples first. */
 static brio_status labeled(brio_context *ctx) {
     brio_mesh *mesh;
-    brio_status status = brio_labeled_delaunay(ctx, now.points, N, NULL, &mesh, NULL, NULL);
+    brio_status status = make_labeled(ctx, now.points, N, NULL, &mesh, NULL, NULL);
     if (status == BRIO_OK) brio_mesh_free(mesh);
     return status;
 }
 static brio_status crust(brio_context *ctx) {
     brio_mesh *mesh;
-    brio_status status = brio_power_crust(ctx, now.points, N, NULL, &mesh, NULL, NULL);
+    brio_status status = make_crust(ctx, now.points, N, NULL, &mesh, NULL, NULL);
     if (status == BRIO_OK) brio_mesh_free(mesh);
     return status;
 }
 static brio_status cocone(brio_context *ctx) {
     brio_mesh *mesh;
-    brio_status status = brio_cocone(ctx, now.points, N, NULL, &mesh, NULL);
+    brio_status status = make_cocone(ctx, now.points, N, NULL, &mesh, NULL);
     if (status == BRIO_OK) brio_mesh_free(mesh);
     return status;
 }
 
 static brio_status offset(brio_context *ctx) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_offset_surface(ctx, now.points, N, 0.1, NULL, &mesh, NULL);
+    brio_status status = make_offset(ctx, now.points, N, 0.1, NULL, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }
@@ -423,7 +424,7 @@ static void *move_points(void *user) {
 static void expect_permutation(brio_context *ctx, brio_order order) {
     static uint32_t found[MANY];
     static uint8_t seen[MANY];
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     size_t twice = 0;
     o.order = order, o.block_size = 50;
     EXPECT(brio_order_points(ctx, &(brio_input){many, NULL, MANY}, &o, found, NULL, NULL, NULL) == BRIO_OK);

@@ -2,6 +2,7 @@
 #include "harness.h"
 #include "instruction_sets.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "predicates/circumcentre.h"
 
 enum { POINTS = 4000, BATCHES = 200 };
@@ -100,10 +101,10 @@ static digest digest_of_surfaces(void) {
     digest d = digest_begin();
     brio_mesh *mesh = NULL;
     torus_points(9, POINTS, points);
-    EXPECT(brio_power_crust(ctx, points, POINTS, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_crust(ctx, points, POINTS, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
     add_mesh(mesh, &d);
     mesh = NULL;
-    EXPECT(brio_cocone(ctx, points, POINTS, NULL, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_cocone(ctx, points, POINTS, NULL, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
     add_mesh(mesh, &d);
     brio_context_free(ctx);
     return d;

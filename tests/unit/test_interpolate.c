@@ -27,7 +27,7 @@ static void fixture_free(fixture *f) {
 
 static brio_status interpolate(const fixture *f, int method, const double *values, size_t components, const double *x,
                                size_t count, double *results) {
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     o.method = (brio_interpolation_method)method;
     o.values = values;
     o.components = components;
@@ -276,7 +276,7 @@ static void planes_of_points(void) {
     enum { POINTS = 300 };
     double p[3 * POINTS], turned[3 * POINTS];
     brio_context *ctx = new_context();
-    brio_plane_frame f = {.size = sizeof f}, g = {.size = sizeof g};
+    brio_plane_frame f = {0}, g = {.size = sizeof g};
     uniform_points(6, POINTS, p);
     for (int i = 0; i < POINTS; i++) p[3 * i + 2] = 0.5 * p[3 * i] + 2 + 0.01 * (p[3 * i + 2] - 0.5);
     for (int i = 0; i < POINTS; i++) memcpy(turned + 3 * i, p + 3 * (POINTS - 1 - i), 3 * sizeof *p);

@@ -44,14 +44,14 @@ static void points_stay_points(void) {
 }
 
 static void columns_that_the_caller_names_make_it_a_text(void) {
-    brio_read_options o = brio_read_options_default();
+    brio_read_options o = {0};
     brio_mesh *m = NULL;
     o.columns = "-,x,y,z";
     io_put("a.xyz", water, strlen(water));
-    EXPECT(brio_read_as(io_ctx, io_path("a.xyz"), &o, &m) == BRIO_ERR_FORMAT, "the comment is no row");
+    EXPECT(brio_read(io_ctx, io_path("a.xyz"), &o, &m) == BRIO_ERR_FORMAT, "the comment is no row");
     io_put("a.xyz", "2\nwater\n", 8);
     o.format = BRIO_FORMAT_CHEMICAL;
-    EXPECT(brio_read_as(io_ctx, io_path("a.xyz"), &o, &m) == BRIO_ERR_ARGUMENT && !m);
+    EXPECT(brio_read(io_ctx, io_path("a.xyz"), &o, &m) == BRIO_ERR_ARGUMENT && !m);
 }
 
 static void of_several_frames_the_first(void) {
@@ -152,7 +152,7 @@ static const char *current;
 
 static brio_status read_current(brio_context *ctx) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_read(ctx, io_path(current), BRIO_FORMAT_AUTO, &mesh);
+    brio_status status = brio_read(ctx, io_path(current), NULL, &mesh);
     brio_mesh_free(mesh);
     return status;
 }

@@ -21,22 +21,22 @@ static void expect_first(const char *text, size_t count, size_t properties) {
 }
 
 static brio_status read_as(const char *name, const char *text, const char *columns, brio_mesh **m) {
-    brio_read_options o = brio_read_options_default();
+    brio_read_options o = {0};
     o.columns = columns;
     io_put(name, text, strlen(text));
-    return brio_read_as(io_ctx, io_path(name), &o, m);
+    return brio_read(io_ctx, io_path(name), &o, m);
 }
 
 /* --- what is noted --- */
 
 static brio_read_notes notes_of(const char *text, const char *columns) {
-    brio_read_notes notes = {.size = sizeof notes};
-    brio_read_options o = brio_read_options_default();
+    brio_read_notes notes = {0};
+    brio_read_options o = {0};
     brio_mesh *m = NULL;
     o.columns = columns;
     o.notes = &notes;
     io_put("n.xyz", text, strlen(text));
-    EXPECT(brio_read_as(io_ctx, io_path("n.xyz"), &o, &m) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path("n.xyz"), &o, &m) == BRIO_OK, "%s", brio_message(io_ctx));
     brio_mesh_free(m);
     return notes;
 }
@@ -265,16 +265,16 @@ static void every_prefix_and_changed_byte(void) {
 
 static brio_status read_with_columns(brio_context *ctx) {
     brio_mesh *mesh = NULL;
-    brio_read_options o = brio_read_options_default();
+    brio_read_options o = {0};
     o.columns = "-,x,y,z";
-    brio_status status = brio_read_as(ctx, io_path("a.csv"), &o, &mesh);
+    brio_status status = brio_read(ctx, io_path("a.csv"), &o, &mesh);
     brio_mesh_free(mesh);
     return status;
 }
 
 static brio_status read_by_names(brio_context *ctx) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_read_as(ctx, io_path("a.csv"), NULL, &mesh);
+    brio_status status = brio_read(ctx, io_path("a.csv"), NULL, &mesh);
     brio_mesh_free(mesh);
     return status;
 }

@@ -60,7 +60,7 @@ static void expect_variant(const variant *v, brio_status expected, const char *p
 
 static void expect_sane(const char *name, const char *how, size_t at) {
     brio_mesh *m = NULL;
-    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_E57, &m);
+    brio_status status = brio_read(io_ctx, io_path(name), &(brio_read_options){.format = BRIO_FORMAT_E57}, &m);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT || status == BRIO_ERR_NOT_FINITE ||
                status == BRIO_ERR_TOO_LARGE,
            "%s %zu: status %d: %s", how, at, (int)status, brio_message(io_ctx));
@@ -79,7 +79,7 @@ static void every_truncation_is_refused(void) {
     for (size_t n = 0; n < size; n++) {
         brio_mesh *m = NULL;
         io_put("t.e57", bytes, n);
-        brio_status status = brio_read(io_ctx, io_path("t.e57"), BRIO_FORMAT_AUTO, &m);
+        brio_status status = brio_read(io_ctx, io_path("t.e57"), NULL, &m);
         EXPECT(!m && (status == BRIO_ERR_FORMAT), "%zu bytes: status %d", n, (int)status);
         brio_mesh_free(m);
     }
@@ -104,7 +104,7 @@ static void every_changed_byte_is_refused(void) {
         brio_mesh *m = NULL;
         bytes[i] ^= (uint8_t)(1 << i % 8);
         io_put("c.e57", bytes, size);
-        brio_status status = brio_read(io_ctx, io_path("c.e57"), BRIO_FORMAT_E57, &m);
+        brio_status status = brio_read(io_ctx, io_path("c.e57"), &(brio_read_options){.format = BRIO_FORMAT_E57}, &m);
         EXPECT(status == BRIO_ERR_FORMAT && !m, "byte %zu: status %d", i, (int)status);
         EXPECT(i < E57_HEADER || strstr(brio_message(io_ctx), "is damaged: its checksum is"), "byte %zu: %s", i,
                brio_message(io_ctx));
@@ -175,7 +175,7 @@ static void lying_numbers(void) {
         e57_store(&f, "l.e57");
         free(f.bytes);
         brio_mesh *m = NULL;
-        brio_status status = brio_read(io_ctx, io_path("l.e57"), BRIO_FORMAT_E57, &m);
+        brio_status status = brio_read(io_ctx, io_path("l.e57"), &(brio_read_options){.format = BRIO_FORMAT_E57}, &m);
         EXPECT(status == BRIO_ERR_FORMAT && !m, "%s: status %d", cases[k].part, (int)status);
         EXPECT(strstr(brio_message(io_ctx), cases[k].part), "\"%s\" without \"%s\"", brio_message(io_ctx),
                cases[k].part);
@@ -333,7 +333,7 @@ static void a_tag_without_an_end(void) {
 
 static brio_status read_right_file(brio_context *ctx) {
     brio_mesh *m = NULL;
-    brio_status status = brio_read(ctx, io_path("m.e57"), BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(ctx, io_path("m.e57"), NULL, &m);
     brio_mesh_free(m);
     return status;
 }

@@ -20,7 +20,7 @@ typedef brio_status (*work_fn)(brio_context *ctx);
 static const char *sample, *target; /* names of files in the folder */
 static const brio_mesh *mesh;
 static const brio_cells *cells;
-static brio_alpha_complex complex_of_points = {.size = sizeof complex_of_points};
+static brio_alpha_complex complex_of_points = {0};
 static uint32_t order[64];
 static int way;          /* of writing, cells_formats, filtrations */
 static char comment[64]; /* its length moves what is behind it over the blocks */
@@ -89,13 +89,13 @@ static void expect_full_disk_at_every_byte(work_fn work) {
 
 static brio_status read_sample(brio_context *ctx) {
     brio_mesh *m = NULL;
-    brio_status status = brio_read(ctx, io_path(sample), BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(ctx, io_path(sample), NULL, &m);
     brio_mesh_free(m);
     return status;
 }
 
 static brio_write_options options_of_way(void) {
-    brio_write_options o = brio_write_options_default();
+    brio_write_options o = {0};
     o.ascii = way & 1;
     o.compress = way >> 1 & 1;
     o.neighbours = o.faces = o.edges = way & 1;
@@ -109,7 +109,7 @@ static brio_status write_mesh(brio_context *ctx) {
 }
 
 static brio_status convert_sample(brio_context *ctx) {
-    brio_convert_options o = brio_convert_options_default();
+    brio_convert_options o = {0};
     brio_write_options to = options_of_way();
     o.to = &to;
     o.crop = way & 1;
@@ -168,7 +168,7 @@ static void read_it(void) {
 
 static void write_it(void) {
     brio_mesh *m = NULL;
-    EXPECT(brio_read(io_ctx, io_path(sample), BRIO_FORMAT_AUTO, &m) == BRIO_OK);
+    EXPECT(brio_read(io_ctx, io_path(sample), NULL, &m) == BRIO_OK);
     mesh = m;
     for (size_t i = 0; m && i < TARGETS; i++)
         for (way = 0; way < 3; way++) {
@@ -205,10 +205,10 @@ static void writing_cells_and_filtrations_fails_cleanly(void) {
     static const double points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.25, 0.5, 0.25};
     brio_cells *c = NULL;
     brio_triangulation *t = NULL;
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     const double box[] = {-1, -1, -1, 2, 2, 2};
     o.box = box;
-    o.areas = o.centroids = o.faces = o.vertices = 1;
+    o.vertices = 1;
     EXPECT(brio_voronoi_cells(io_ctx, NULL, points, NULL, 5, &o, &c) == BRIO_OK, "%s", brio_message(io_ctx));
     EXPECT(brio_delaunay(io_ctx, points, NULL, 5, NULL, &t) == BRIO_OK);
     EXPECT(brio_alpha_values(io_ctx, t, points, NULL, 5, &complex_of_points) == BRIO_OK, "%s", brio_message(io_ctx));

@@ -88,7 +88,7 @@ static void written_reads_back(void) {
     for (int k = 0; k < SAMPLES; k++) {
         brio_mesh *a = read_right("a.laz", samples[k].compressed, samples[k].compressed_size), *b = NULL;
         EXPECT(brio_write(io_ctx, io_path("b.las"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path("b.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("b.las"), NULL, &b) == BRIO_OK, "%s", brio_message(io_ctx));
         expect_same(a, b, samples[k].name);
         brio_mesh_free(a);
         brio_mesh_free(b);
@@ -100,7 +100,7 @@ static void written_compressed_reads_back(void) {
     for (int k = 0; k < SAMPLES; k++) {
         brio_mesh *a = read_right("a.laz", samples[k].compressed, samples[k].compressed_size), *b = NULL;
         EXPECT(brio_write(io_ctx, io_path("b.laz"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path("b.laz"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("b.laz"), NULL, &b) == BRIO_OK, "%s", brio_message(io_ctx));
         expect_same(a, b, samples[k].name);
         brio_mesh_free(a);
         brio_mesh_free(b);
@@ -154,7 +154,7 @@ static void chunks_of_every_form_read_back(void) {
         brio_mesh *a = make_jumping(counts[k / 4], k & 1, k & 2), *b = NULL;
         brio_context_set_threads(io_ctx, k % 3 ? 3 : 1);
         EXPECT(brio_write(io_ctx, io_path("j.laz"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path("j.laz"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("j.laz"), NULL, &b) == BRIO_OK, "%s", brio_message(io_ctx));
         EXPECT(a && b && io_same_points(a, b), "case %zu", k);
         for (size_t i = 0; a && b && i < a->num_properties; i++) {
             const brio_property *p = &a->properties[i], *q = brio_mesh_property(b, p->name);
@@ -220,7 +220,7 @@ static void grids_are_found(void) {
             a->vertices[i] = k == 2 ? (double)(float)(500000 + n * 0.0625) : n * cases[k][0] + (k == 1 ? -3 : 0);
         }
         EXPECT(brio_write(io_ctx, io_path("g.las"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path("g.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("g.las"), NULL, &b) == BRIO_OK, "%s", brio_message(io_ctx));
         EXPECT(b && io_same_points(a, b), "case %zu", k);
         brio_mesh_free(a);
         brio_mesh_free(b);
@@ -228,7 +228,7 @@ static void grids_are_found(void) {
     brio_mesh *a = io_make(9, 0), *b = NULL;
     for (size_t i = 0; i < 27; i++) a->vertices[i] = (double)i / 7;
     EXPECT(brio_write(io_ctx, io_path("h.las"), a, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
-    EXPECT(brio_read(io_ctx, io_path("h.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path("h.las"), NULL, &b) == BRIO_OK, "%s", brio_message(io_ctx));
     for (size_t i = 0; b && i < 27; i++)
         EXPECT(fabs(a->vertices[i] - b->vertices[i]) <= 0.51 * b->coordinate_step[i % 3], "%zu", i);
     brio_mesh_free(a);
@@ -243,12 +243,12 @@ static void coordinates_at_the_ends_of_doubles_read_back(void) {
                                {-least, 0, 1e9 * least}, {0, 7e9 * least, 1e-310}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         brio_mesh *a = io_make(3, 0), *b = NULL;
-        brio_write_options o = brio_write_options_default();
+        brio_write_options o = {0};
         double moved, step = 0, size = fmax(fabs(cases[k][0]), fmax(fabs(cases[k][1]), fabs(cases[k][2])));
         o.moved = &moved;
         for (size_t i = 0; i < 9; i++) a->vertices[i] = cases[k][i / 3];
         EXPECT(brio_write(io_ctx, io_path("e.las"), a, &o) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path("e.las"), BRIO_FORMAT_AUTO, &b) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("e.las"), NULL, &b) == BRIO_OK, "%s", brio_message(io_ctx));
         for (size_t i = 0; b && i < 9; i++) {
             step = b->coordinate_step[i % 3];
             EXPECT(fabs(a->vertices[i] - b->vertices[i]) <= step, "case %zu, number %zu: %g, not %g", k, i,
@@ -266,7 +266,7 @@ static void coordinates_at_the_ends_of_doubles_read_back(void) {
 static void expect_status(const char *name, const uint8_t *bytes, size_t size, const char *how, size_t at) {
     brio_mesh *mesh = NULL;
     io_put(name, bytes, size);
-    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &mesh);
+    brio_status status = brio_read(io_ctx, io_path(name), NULL, &mesh);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT || status == BRIO_ERR_NOT_FINITE ||
                status == BRIO_ERR_TOO_LARGE,
            "%s %zu: status %d: %s", how, at, (int)status, brio_message(io_ctx));
@@ -352,7 +352,7 @@ static const sample *current;
 
 static brio_status read_current(brio_context *ctx) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_read(ctx, io_path("a.laz"), BRIO_FORMAT_AUTO, &mesh);
+    brio_status status = brio_read(ctx, io_path("a.laz"), NULL, &mesh);
     brio_mesh_free(mesh);
     return status;
 }

@@ -30,11 +30,11 @@ static double greatest_distance(const brio_mesh *a, const brio_mesh *b) {
 static double check_moved(const double *points, const char *name, int float32) {
     brio_mesh *back = NULL, *mesh = triangles(points, N, strstr(name, "stl") != NULL);
     double moved = -1;
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.float32 = float32;
     options.moved = &moved;
     EXPECT(brio_write(io_ctx, io_path(name), mesh, &options) == BRIO_OK, "%s: %s", name, brio_message(io_ctx));
-    EXPECT(brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path(name), NULL, &back) == BRIO_OK, "%s", brio_message(io_ctx));
     if (back) EXPECT(moved == greatest_distance(mesh, back), "%s: %.17g", name, moved);
     brio_mesh_free(mesh);
     brio_mesh_free(back);
@@ -63,7 +63,7 @@ static void the_distance_that_points_move_is_the_one_that_is_read(void) {
 
 static void the_largest_double_that_a_single_holds(void) {
     static const double fits[3] = {0x1.fffffefffffffp127}, not [3] = {0x1.ffffffp127};
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     double moved;
     options.float32 = 1;
     options.moved = &moved;
@@ -99,7 +99,7 @@ static void names_that_become_equal_get_numbers(void) {
     for (int f = 0; f < 4; f++) {
         brio_mesh *back = NULL;
         EXPECT(brio_write(io_ctx, io_path(files[f]), mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path(files[f]), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path(files[f]), NULL, &back) == BRIO_OK, "%s", brio_message(io_ctx));
         EXPECT(back && back->num_properties == 9, "%s", files[f]);
         for (int i = 0; back && i < 7; i++) {
             const brio_property *p = brio_mesh_property(back, found[i]);

@@ -27,7 +27,7 @@ static void expect_same_as_file(const char *name) {
     size_t size;
     char *bytes = io_get(name, &size);
     brio_mesh *file = NULL;
-    brio_status status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &file), from_memory;
+    brio_status status = brio_read(io_ctx, io_path(name), NULL, &file), from_memory;
     char *copy = malloc(size + 1); /* of its size alone, so that a read behind the end is seen */
     memcpy(copy, bytes, size);
     brio_mesh *memory = read_bytes(copy, size, name, &from_memory);
@@ -135,7 +135,7 @@ static void long_texts_read_the_same(void) {
 
 static void the_name_chooses_the_format(void) {
     static const char obj[] = "v 1 2 3\nv 4 5 6\nv 7 8 9\nf 1 2 3\n", rows[] = "1 2 3\n4 5 6\n";
-    brio_read_options o = brio_read_options_default();
+    brio_read_options o = {0};
     brio_status status;
     brio_mesh *m = read_bytes(obj, strlen(obj), "A.Obj", &status);
     EXPECT(m && m->num_faces == 1);

@@ -130,7 +130,7 @@ static void expect_edges(const brio_mesh *m) {
 }
 
 static brio_write_options all_files(void) {
-    brio_write_options o = brio_write_options_default();
+    brio_write_options o = {0};
     o.neighbours = o.faces = o.edges = 1;
     return o;
 }
@@ -147,7 +147,7 @@ static void against_brute_force(void) {
         long long hull;
         brio_mesh *m = triangulated(cases[i].kind, cases[i].n), *again = NULL;
         EXPECT(brio_write(io_ctx, io_path("a.node"), m, &o) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path("a.node"), BRIO_FORMAT_AUTO, &again) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("a.node"), NULL, &again) == BRIO_OK, "%s", brio_message(io_ctx));
         EXPECT(io_same_points(m, again) && io_same_tetrahedra(m, again));
         expect_neighbours(m, &hull);
         expect_faces(m, hull);
@@ -201,7 +201,7 @@ static void without_tetrahedra(void) {
 
 static void only_what_is_asked_for(void) {
     brio_mesh *m = io_make(7, IO_TETRAHEDRA);
-    brio_write_options o = brio_write_options_default();
+    brio_write_options o = {0};
     o.faces = 1;
     EXPECT(brio_write(io_ctx, io_path("a.node"), m, &o) == BRIO_OK, "%s", brio_message(io_ctx));
     EXPECT(io_count_files("") == 3 && io_count_files(".face") == 1);

@@ -70,7 +70,7 @@ static void extension_under_the_packing_decides(void) {
     m = read_sample("n.node.gz", &s);
     EXPECT(m && m->num_tetrahedra == 1, "the .ele.gz beside");
     brio_mesh_free(m);
-    EXPECT(brio_read(io_ctx, io_path("n.ele.gz"), BRIO_FORMAT_AUTO, &m) == BRIO_OK && m->num_vertices == 4);
+    EXPECT(brio_read(io_ctx, io_path("n.ele.gz"), NULL, &m) == BRIO_OK && m->num_vertices == 4);
     brio_mesh_free(m);
     s.size = 0;
     pack(&s, false, "1 2 3\n");
@@ -182,7 +182,7 @@ static const char *current;
 
 static brio_status read_current(brio_context *ctx) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_read(ctx, io_path(current), BRIO_FORMAT_AUTO, &mesh);
+    brio_status status = brio_read(ctx, io_path(current), NULL, &mesh);
     brio_mesh_free(mesh);
     return status;
 }

@@ -144,11 +144,11 @@ static void edges_come_back(void) {
     EXPECT(brio_mesh_new(io_ctx, &mesh) == BRIO_OK && brio_mesh_set_vertices(mesh, p, 4) == BRIO_OK);
     EXPECT(brio_mesh_set_edges(mesh, edges, 3) == BRIO_OK);
     for (int ascii = 0; ascii < 2; ascii++) {
-        brio_write_options o = brio_write_options_default();
+        brio_write_options o = {0};
         brio_mesh *back = NULL;
         o.ascii = ascii;
         EXPECT(brio_write(io_ctx, io_path("e.ply"), mesh, &o) == BRIO_OK);
-        EXPECT(brio_read(io_ctx, io_path("e.ply"), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("e.ply"), NULL, &back) == BRIO_OK, "%s", brio_message(io_ctx));
         EXPECT(back && back->num_edges == 3 && !memcmp(back->edges, edges, sizeof edges));
         brio_mesh_free(back);
     }
@@ -221,7 +221,7 @@ static void false_promises_of_a_pipe(void) {
         EXPECT(pipe(ends) == 0 && write(ends[1], content, strlen(content)) > 0);
         close(ends[1]);
         dup2(ends[0], 0);
-        brio_status status = brio_read(io_ctx, "-", BRIO_FORMAT_AUTO, &m);
+        brio_status status = brio_read(io_ctx, "-", NULL, &m);
         dup2(in, 0);
         close(in);
         close(ends[0]);

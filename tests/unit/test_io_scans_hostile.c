@@ -154,7 +154,7 @@ static void random_changes_are_a_status(void) {
                 f.bytes[io_random(&state) % f.size] ^= (char)(1 << io_random(&state) % 8);
             brio_mesh *m = NULL;
             io_put(s->name, f.bytes, f.size);
-            brio_status status = brio_read(io_ctx, io_path(s->name), BRIO_FORMAT_AUTO, &m);
+            brio_status status = brio_read(io_ctx, io_path(s->name), NULL, &m);
             EXPECT(status == BRIO_OK || status == BRIO_ERR_FORMAT || status == BRIO_ERR_NOT_FINITE,
                    "%s, change %zu: status %d: %s", s->name, n, (int)status, brio_message(io_ctx));
             EXPECT(status == BRIO_OK || strstr(brio_message(io_ctx), s->name), "%s", brio_message(io_ctx));
@@ -276,7 +276,7 @@ static const sample *current;
 
 static brio_status read_current(brio_context *ctx) {
     brio_mesh *m = NULL;
-    brio_status status = brio_read(ctx, io_path(current->name), BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(ctx, io_path(current->name), NULL, &m);
     brio_mesh_free(m);
     return status;
 }

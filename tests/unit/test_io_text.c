@@ -16,9 +16,10 @@ static void format_of_names(void) {
 
 static void missing_files_and_unknown_formats(void) {
     brio_mesh *m;
-    EXPECT(brio_read(io_ctx, io_path("none.ply"), BRIO_FORMAT_AUTO, &m) == BRIO_ERR_OPEN && !m);
+    EXPECT(brio_read(io_ctx, io_path("none.ply"), NULL, &m) == BRIO_ERR_OPEN && !m);
     EXPECT(strstr(brio_message(io_ctx), "none.ply: No such file"), "%s", brio_message(io_ctx));
-    EXPECT(brio_read(io_ctx, io_folder, BRIO_FORMAT_XYZ, &m) == BRIO_ERR_OPEN && !m, "a folder");
+    EXPECT(brio_read(io_ctx, io_folder, &(brio_read_options){.format = BRIO_FORMAT_XYZ}, &m) == BRIO_ERR_OPEN && !m,
+           "a folder");
     io_expect_error("a.what", "1 2 3\n", BRIO_ERR_FORMAT, "unknown format");
 }
 
@@ -208,7 +209,7 @@ static void node_with_attributes_and_tetrahedra(void) {
     io_empty_folder();
     io_put("n.ele", "# c\n1 10 1\n1 1 2 3 4 0 0 0 0 0 0 7\n", 35);
     brio_mesh *m = NULL;
-    brio_status status = brio_read(io_ctx, io_path("n.ele"), BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(io_ctx, io_path("n.ele"), NULL, &m);
     EXPECT(status == BRIO_ERR_OPEN && strstr(brio_message(io_ctx), "n.node"), "%s", brio_message(io_ctx));
     io_put("n.ele", "# c\n1 10 1\n1 1 2 3 4 1 1 1 1 1 1 7\n", 35);
     static const char node[] = "4 3 1 1\n1 0 0 0 0.5 1\n2 1 0 0 1.5 1 # c\n\n3 0 1 0 2.5 0\n4 0 0 1 3.5 -1\n";
@@ -218,7 +219,7 @@ static void node_with_attributes_and_tetrahedra(void) {
     const brio_property *marker = m ? brio_mesh_property(m, "boundary_marker") : NULL;
     EXPECT(marker && marker->type == BRIO_SCALAR_INT32 && brio_property_value(marker, 3) == -1);
     brio_mesh_free(m);
-    EXPECT(brio_read(io_ctx, io_path("n.ele"), BRIO_FORMAT_AUTO, &m) == BRIO_OK && m->num_vertices == 4, "%s",
+    EXPECT(brio_read(io_ctx, io_path("n.ele"), NULL, &m) == BRIO_OK && m->num_vertices == 4, "%s",
            brio_message(io_ctx));
     brio_mesh_free(m);
     m = io_read_text("zero.node", "2 3\n0 1 2 3\n1 4 5 6\n");

@@ -25,7 +25,7 @@ static void check_way(const char *name, way w, size_t n, int parts, bool edges) 
     options.float32 = parts & IO_SINGLE;
     if (edges) EXPECT(brio_mesh_set_edges(mesh, ends, 3) == BRIO_OK);
     EXPECT(brio_write(io_ctx, io_path(name), mesh, &options) == BRIO_OK, "%s", brio_message(io_ctx));
-    EXPECT(brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path(name), NULL, &back) == BRIO_OK, "%s", brio_message(io_ctx));
     if (back)
         EXPECT(io_same_points(mesh, back) && io_same_faces(mesh, back) && io_same_tetrahedra(mesh, back) &&
                    same_edges(mesh, back) && same_properties(mesh, back),
@@ -269,7 +269,7 @@ static void names_of_control_characters_stay_distinct(void) {
             *(uint8_t *)data = (uint8_t)(10 + i);
         }
         EXPECT(brio_write(io_ctx, io_path(FILES[f]), mesh, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
-        EXPECT(brio_read(io_ctx, io_path(FILES[f]), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path(FILES[f]), NULL, &back) == BRIO_OK, "%s", brio_message(io_ctx));
         for (size_t i = 0; i < 4; i++) {
             const brio_property *p = brio_mesh_property(back, WRITTEN[i]);
             EXPECT(p && *(const uint8_t *)p->data == 10 + i, "%s", WRITTEN[i]);
@@ -284,7 +284,7 @@ static void vertices_beyond_doubles_are_no_part_of_files(void) {
     static const double points[18] = {0,     0,     0,     1e300, 0,     0, 0,     1e300, 0,
                                       1e300, 1e300, 1e290, 5e299, 4e299, 1, 5e299, 5e299, -1e299};
     brio_context *ctx = io_ctx;
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *cells = NULL;
     brio_mesh *mesh = NULL;
     size_t infinite = 0;
@@ -294,7 +294,7 @@ static void vertices_beyond_doubles_are_no_part_of_files(void) {
     EXPECT(infinite > 0 && infinite < cells->num_vertices);
     EXPECT(brio_cells_write(ctx, io_path("beyond.vtu"), cells, BRIO_CELLS_FORMAT_AUTO, NULL) == BRIO_OK, "%s",
            brio_message(ctx));
-    EXPECT(brio_read(ctx, io_path("beyond.vtu"), BRIO_FORMAT_AUTO, &mesh) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_read(ctx, io_path("beyond.vtu"), NULL, &mesh) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(mesh && mesh->num_vertices == cells->num_vertices - infinite);
     brio_mesh_free(mesh);
     brio_cells_free(cells);

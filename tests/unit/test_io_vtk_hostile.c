@@ -200,9 +200,9 @@ static void bomb_is_held_against_the_limit(void) {
     brio_mesh_free(mesh);
     EXPECT(stat(io_path("bomb.vtp"), &facts) == 0 && facts.st_size < 100000, "%zu bytes", (size_t)facts.st_size);
     brio_context_set_memory_limit(io_ctx, 8 << 20);
-    EXPECT(brio_read(io_ctx, io_path("bomb.vtp"), BRIO_FORMAT_AUTO, &back) == BRIO_ERR_NO_MEMORY && !back);
+    EXPECT(brio_read(io_ctx, io_path("bomb.vtp"), NULL, &back) == BRIO_ERR_NO_MEMORY && !back);
     brio_context_set_memory_limit(io_ctx, 0);
-    EXPECT(brio_read(io_ctx, io_path("bomb.vtp"), BRIO_FORMAT_AUTO, &back) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, io_path("bomb.vtp"), NULL, &back) == BRIO_OK, "%s", brio_message(io_ctx));
     EXPECT(back && back->num_vertices == POINTS && back->vertices[3 * POINTS - 1] == 0);
     brio_mesh_free(back);
 }

@@ -7,7 +7,7 @@ static brio_mesh *write_and_read(const brio_mesh *mesh, const char *name, brio_w
     brio_mesh *back = NULL;
     brio_status status = brio_write(io_ctx, io_path(name), mesh, &options);
     EXPECT(status == BRIO_OK, "%s: %s", name, brio_message(io_ctx));
-    status = brio_read(io_ctx, io_path(name), BRIO_FORMAT_AUTO, &back);
+    status = brio_read(io_ctx, io_path(name), NULL, &back);
     EXPECT(status == BRIO_OK, "%s: %s", name, brio_message(io_ctx));
     EXPECT(io_count_files(".part-") == 0, "a temporary file is left");
     return back;
@@ -31,7 +31,7 @@ static void expect_properties(const brio_mesh *a, const brio_mesh *b, bool types
 }
 
 static void check_ply(int parts, int ascii, int float32) {
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.ascii = ascii;
     options.float32 = float32;
     options.comment = "two\nlines";
@@ -54,7 +54,7 @@ static void ply_reads_back(void) {
 }
 
 static void vtu_reads_back(void) {
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.comment = "-- > <";
     for (int parts = 0; parts < 32; parts++) {
         options.float32 = parts >= IO_SINGLE;
@@ -87,7 +87,7 @@ static void texts_read_back(void) {
                  {"c.ele", IO_TETRAHEDRA, true}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         brio_mesh *mesh = io_make(500, cases[i].parts);
-        brio_write_options options = brio_write_options_default();
+        brio_write_options options = {0};
         options.comment = "a comment";
         brio_mesh *back = write_and_read(mesh, cases[i].name, options);
         if (back) {
@@ -104,7 +104,7 @@ static void texts_read_back(void) {
 static void empty_mesh_reads_back(void) {
     static const char *const names[] = {"e.ply", "e.xyz", "e.obj", "e.off", "e.vtu", "e.node"};
     for (size_t i = 0; i < 6; i++) {
-        brio_mesh *mesh = io_make(0, 0), *back = write_and_read(mesh, names[i], brio_write_options_default());
+        brio_mesh *mesh = io_make(0, 0), *back = write_and_read(mesh, names[i], (brio_write_options){0});
         EXPECT(back && back->num_vertices == 0 && !back->vertices && !back->face_offsets && !back->tetrahedra, "%s",
                names[i]);
         brio_mesh_free(mesh);
@@ -115,8 +115,8 @@ static void empty_mesh_reads_back(void) {
 /* New points without tetrahedra must not be read with the tetrahedra of the old ones. */
 static void node_replaces_old_tetrahedra(void) {
     brio_mesh *old = io_make(50, IO_TETRAHEDRA), *new = io_make(40, 0);
-    brio_mesh_free(write_and_read(old, "r.node", brio_write_options_default()));
-    brio_mesh *back = write_and_read(new, "r.node", brio_write_options_default());
+    brio_mesh_free(write_and_read(old, "r.node", (brio_write_options){0}));
+    brio_mesh *back = write_and_read(new, "r.node", (brio_write_options){0});
     EXPECT(back && back->num_vertices == 40 && back->num_tetrahedra == 0);
     brio_mesh_free(old);
     brio_mesh_free(new);
@@ -127,8 +127,8 @@ static void property_names_become_words(void) {
     brio_mesh *mesh = io_make(5, 0);
     void *data;
     EXPECT(brio_mesh_add_property(mesh, "two words,\n", BRIO_SCALAR_INT32, &data) == BRIO_OK);
-    brio_mesh *ply = write_and_read(mesh, "n.ply", brio_write_options_default());
-    brio_mesh *vtu = write_and_read(mesh, "n.vtu", brio_write_options_default());
+    brio_mesh *ply = write_and_read(mesh, "n.ply", (brio_write_options){0});
+    brio_mesh *vtu = write_and_read(mesh, "n.vtu", (brio_write_options){0});
     EXPECT(ply && brio_mesh_property(ply, "two_words__"));
     EXPECT(vtu && vtu->num_properties == 1);
     brio_mesh_free(mesh);
@@ -173,7 +173,7 @@ static void numbered_names_are_whole_characters(void) {
     }
     static const char *const files[] = {"m.ply", "m.vtu", "m.npy"};
     for (size_t k = 0; k < 3; k++) {
-        brio_mesh *again = write_and_read(mesh, files[k], brio_write_options_default());
+        brio_mesh *again = write_and_read(mesh, files[k], (brio_write_options){0});
         EXPECT(again && again->num_properties == 12, "%s", files[k]);
         for (size_t i = 0; again && i < 12; i++)
             EXPECT(!strstr(again->properties[i].name, "\xc3\x83"), "%s: %s", files[k], again->properties[i].name);
@@ -192,7 +192,7 @@ static void names_that_texts_take_for_something_else(void) {
     for (size_t i = 0; i < count; i++)
         EXPECT(brio_mesh_add_property(mesh, names[i][0], BRIO_SCALAR_FLOAT64, NULL) == BRIO_OK);
     for (size_t k = 0; k < 2; k++) {
-        brio_mesh *again = write_and_read(mesh, files[k], brio_write_options_default());
+        brio_mesh *again = write_and_read(mesh, files[k], (brio_write_options){0});
         EXPECT(again && again->num_properties == count, "%s", brio_message(io_ctx));
         for (size_t i = 0; again && i < count; i++)
             EXPECT(!strcmp(again->properties[i].name, names[i][1]), "%s: %s", files[k], again->properties[i].name);
@@ -209,7 +209,7 @@ static void refuse_what_the_format_cannot_hold(void) {
         EXPECT(io_count_files("t.") == 0, "%s", names[i]);
     }
     EXPECT(brio_write(io_ctx, "-", mesh, NULL) == BRIO_ERR_ARGUMENT, "standard output without a format");
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.format = BRIO_FORMAT_NODE;
     EXPECT(brio_write(io_ctx, "-", mesh, &options) == BRIO_ERR_ARGUMENT, "two files");
     mesh->vertices[4] = 1e300;
@@ -228,7 +228,7 @@ static void coordinates_that_are_no_numbers_are_refused(void) {
     for (size_t i = 0; i < 3 * sizeof names / sizeof *names; i++) {
         const char *name = names[i / 3];
         brio_mesh *mesh = io_make(10, IO_FACES | IO_SINGLE);
-        brio_write_options options = brio_write_options_default();
+        brio_write_options options = {0};
         double moved = -1;
         options.moved = &moved;
         options.float32 = i % 2;
@@ -247,7 +247,7 @@ static void coordinates_that_are_no_numbers_are_refused(void) {
 static void full_disk_is_a_status(void) {
     if (access("/dev/full", W_OK) != 0) return;
     brio_mesh *mesh = io_make(100000, 0);
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.format = BRIO_FORMAT_PLY;
     EXPECT(brio_write(io_ctx, "/dev/full", mesh, &options) == BRIO_ERR_WRITE);
     EXPECT(strstr(brio_message(io_ctx), "/dev/full: No space left on device"), "%s", brio_message(io_ctx));
@@ -281,13 +281,13 @@ static void cancelled_write_leaves_the_old_file(void) {
         if (status == BRIO_OK) break;
         EXPECT(status == BRIO_ERR_CANCELLED, "status %d", (int)status);
         EXPECT(io_count_files(".part-") == 0);
-        EXPECT(brio_read(io_ctx, io_path("c.ply"), BRIO_FORMAT_AUTO, &back) == BRIO_OK && back->num_vertices == 10);
+        EXPECT(brio_read(io_ctx, io_path("c.ply"), NULL, &back) == BRIO_OK && back->num_vertices == 10);
         brio_mesh_free(back);
     }
     EXPECT(allowed >= 5, "only %d reports for 5 MB", allowed);
     reports = 2;
     brio_context_set_progress(io_ctx, cancel, &reports);
-    EXPECT(brio_read(io_ctx, io_path("c.ply"), BRIO_FORMAT_AUTO, &back) == BRIO_ERR_CANCELLED && !back);
+    EXPECT(brio_read(io_ctx, io_path("c.ply"), NULL, &back) == BRIO_ERR_CANCELLED && !back);
     brio_context_set_progress(io_ctx, NULL, NULL);
     brio_mesh_free(old);
     brio_mesh_free(new);
@@ -393,7 +393,7 @@ static void file_without_a_name_is_written_in_place(void) {
     EXPECT(status == BRIO_OK && io_count_files("") == 0, "%s", brio_message(io_ctx));
     int in = dup(0);
     EXPECT(lseek(file, 0, SEEK_SET) == 0 && dup2(file, 0) == 0);
-    EXPECT(brio_read(io_ctx, "-", BRIO_FORMAT_AUTO, &back) == BRIO_OK && io_same_points(mesh, back));
+    EXPECT(brio_read(io_ctx, "-", NULL, &back) == BRIO_OK && io_same_points(mesh, back));
     dup2(in, 0);
     close(in);
     close(out);
@@ -417,8 +417,10 @@ static void expect_cancelled_wait(int other_side) {
         char taken[4096]; /* what was written must not be there to be read */
         while (other >= 0 && read(other, taken, sizeof taken) > 0) {}
         left = allowed;
-        EXPECT(brio_read(io_ctx, io_path("fifo"), BRIO_FORMAT_PLY, &back) == BRIO_ERR_CANCELLED && !back, "%s",
-               brio_message(io_ctx));
+        EXPECT(brio_read(io_ctx, io_path("fifo"), &(brio_read_options){.format = BRIO_FORMAT_PLY}, &back) ==
+                       BRIO_ERR_CANCELLED &&
+                   !back,
+               "%s", brio_message(io_ctx));
     }
     brio_context_set_progress(io_ctx, NULL, NULL);
     if (other >= 0) close(other);
@@ -437,7 +439,7 @@ static void fifo_with_a_stalled_side_can_be_cancelled(void) {
 /* Writes to standard output and reads from standard input, both a file in place of the terminal. */
 static void standard_streams(void) {
     brio_mesh *mesh = io_make(300, IO_FACES | IO_PROPERTIES), *back = NULL;
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.format = BRIO_FORMAT_PLY;
     int out = dup(1), in = dup(0), file = open(io_path("s"), O_RDWR | O_CREAT, 0600);
     dup2(file, 1);
@@ -446,7 +448,7 @@ static void standard_streams(void) {
     EXPECT(status == BRIO_OK, "%s", brio_message(io_ctx));
     EXPECT(lseek(file, 0, SEEK_SET) == 0);
     dup2(file, 0);
-    status = brio_read(io_ctx, "-", BRIO_FORMAT_AUTO, &back);
+    status = brio_read(io_ctx, "-", NULL, &back);
     dup2(in, 0);
     EXPECT(status == BRIO_OK && io_same_points(mesh, back) && io_same_faces(mesh, back), "%s", brio_message(io_ctx));
     close(in);
@@ -462,7 +464,7 @@ static void numbers_from_a_pipe(void) {
     EXPECT(pipe(ends) == 0 && write(ends[1], "1 2 3\n4 5 6", 11) == 11);
     close(ends[1]);
     dup2(ends[0], 0);
-    brio_status status = brio_read(io_ctx, "-", BRIO_FORMAT_AUTO, &m);
+    brio_status status = brio_read(io_ctx, "-", NULL, &m);
     dup2(in, 0);
     EXPECT(status == BRIO_OK && m->num_vertices == 2 && m->vertices[5] == 6, "%s", brio_message(io_ctx));
     close(in);

@@ -20,7 +20,7 @@ static uint64_t checksum(const brio_mesh *mesh, const brio_delaunay_options *opt
 
 static uint64_t checksum_along(const brio_mesh *mesh, brio_location location, brio_order order, brio_subgraph kind,
                                brio_delaunay_stats *stats) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     brio_edges edges;
     EXPECT(brio_mesh_subgraph(ctx, mesh, kind, &edges) == BRIO_OK, "%s", brio_message(ctx));
     o.locate = location;
@@ -179,7 +179,7 @@ static brio_status everything(brio_context *failing) {
     brio_implicit_grid grid = {chain_value, &c, {-2.1, -2.1, -1}, 0.3, {14, 14, 8}};
     BRIO_TRY(brio_marched_surface(failing, &grid, &mesh));
     for (int kind = 0; kind < BRIO_SUBGRAPH_END; kind++) {
-        brio_delaunay_options o = brio_delaunay_options_default();
+        brio_delaunay_options o = {0};
         BRIO_TRY(brio_mesh_subgraph(failing, mesh, (brio_subgraph)kind, &edges));
         o.locate = ALONG[kind % 2];
         o.edges = edges.ends;

@@ -7,6 +7,7 @@
 #include "points.h"
 #include "reconstruct/labeled_delaunay/vote_weight.h"
 #include "same_faces.h"
+#include "surface_calls.h"
 #include <math.h>
 #include <string.h>
 
@@ -22,9 +23,9 @@ static brio_context *context_of(int threads) {
 
 static int is_certified(brio_context *ctx, const double *p, size_t n, uint64_t trial) {
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
-    brio_status status = brio_labeled_delaunay(ctx, p, n, NULL, &mesh, NULL, &s);
+    brio_certificate c = {0};
+    brio_surface_stats s = {0};
+    brio_status status = make_labeled(ctx, p, n, NULL, &mesh, NULL, &s);
     EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "trial %llu: %s", (unsigned long long)trial,
            brio_message(ctx));
     if (status != BRIO_OK) return 0;
@@ -71,14 +72,14 @@ static void inputs_without_a_solid_say_so(void) {
     const double three[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, flat[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, .5, .5, 0};
     const double bad[9] = {0, 0, 0, 1, NAN, 0, 0, 1, INFINITY};
     brio_context *ctx = context_of(1);
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = LABELED_OPTIONS;
     brio_mesh *mesh;
-    EXPECT(brio_labeled_delaunay(ctx, NULL, 0, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_labeled_delaunay(ctx, three, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_labeled_delaunay(ctx, flat, 5, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_labeled_delaunay(ctx, bad, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
+    EXPECT(make_labeled(ctx, NULL, 0, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_labeled(ctx, three, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_labeled(ctx, flat, 5, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_labeled(ctx, bad, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
     o.noise = (brio_noise)77;
-    EXPECT(brio_labeled_delaunay(ctx, flat, 5, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_labeled(ctx, flat, 5, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }
@@ -88,9 +89,9 @@ static void inputs_without_a_solid_say_so(void) {
 static void expect_genus(const double *p, size_t n, int64_t genus, int smoothed) {
     brio_context *ctx = context_of(1);
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
-    EXPECT(brio_labeled_delaunay(ctx, p, n, NULL, &mesh, NULL, &s) == BRIO_OK, "%s", brio_message(ctx));
+    brio_certificate c = {0};
+    brio_surface_stats s = {0};
+    EXPECT(make_labeled(ctx, p, n, NULL, &mesh, NULL, &s) == BRIO_OK, "%s", brio_message(ctx));
     if (mesh) {
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
         EXPECT(c.closed && c.components == 1 && c.genus == genus && c.volume > 0, "%zu components, genus %lld",
@@ -131,7 +132,7 @@ static void noise_is_seen_and_reduced(void) {
         noisy[i] = p[i] + 0.3 * spacing * sum;
     }
     expect_genus(noisy, MANY, 0, 1);
-    EXPECT(brio_labeled_delaunay(ctx, noisy, MANY, NULL, &mesh, NULL, NULL) == BRIO_OK);
+    EXPECT(make_labeled(ctx, noisy, MANY, NULL, &mesh, NULL, NULL) == BRIO_OK);
     for (size_t i = 0; i < MANY; i++) before += fabs(sphere_value(noisy + 3 * i)) / MANY;
     for (size_t v = 0; v < mesh->num_vertices; v++)
         after += fabs(sphere_value(mesh->vertices + 3 * v)) / (double)mesh->num_vertices;
@@ -165,7 +166,7 @@ static void a_thin_wall_stays(void) {
 static brio_mesh *surface_of(const double *p, size_t n, int threads, uint32_t *samples) {
     brio_context *ctx = context_of(threads);
     brio_mesh *mesh;
-    EXPECT(brio_labeled_delaunay(ctx, p, n, NULL, &mesh, samples, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_labeled(ctx, p, n, NULL, &mesh, samples, NULL) == BRIO_OK, "%s", brio_message(ctx));
     for (size_t v = 0; v < mesh->num_vertices; v++) {
         EXPECT(v == 0 || samples[v] > samples[v - 1]);
         EXPECT(!memcmp(mesh->vertices + 3 * v, p + 3 * (size_t)samples[v], 24));
@@ -231,10 +232,10 @@ static void log_odds_rise_with_the_cosine(void) {
 static brio_status make_surface(brio_context *ctx) {
     static double p[3 * 300];
     brio_mesh *mesh;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = LABELED_OPTIONS;
     o.noise = BRIO_NOISE_SMOOTH;
     sphere_points(1, 300, p);
-    brio_status status = brio_labeled_delaunay(ctx, p, 300, &o, &mesh, NULL, NULL);
+    brio_status status = make_labeled(ctx, p, 300, &o, &mesh, NULL, NULL);
     brio_mesh_free(mesh);
     return status;
 }

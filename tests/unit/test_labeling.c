@@ -3,17 +3,17 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "reconstruct/labels/tetrahedra_flow.h"
 
 static const brio_labeling ALL[] = {BRIO_LABELING_GREEDY, BRIO_LABELING_NAIVE, BRIO_LABELING_THEORETICAL,
                                     BRIO_LABELING_GLOBAL};
 
-static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_labeling labeling,
-                        brio_power_crust_stats *s) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_labeling labeling, brio_surface_stats *s) {
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh = NULL;
     o.poles.labeling = labeling;
-    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, NULL, s);
+    brio_status status = make_crust(ctx, p, n, &o, &mesh, NULL, s);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "labeling %d: %s", (int)labeling, brio_message(ctx));
     return mesh;
 }
@@ -36,7 +36,7 @@ static void all_agree_on_dense_samples(void) {
         else
             sphere_points(4, 3000, p);
         for (int l = 0; l < BRIO_LABELING_END; l++) {
-            brio_power_crust_stats s = {.size = sizeof s};
+            brio_surface_stats s = {0};
             brio_mesh *mesh = crust(ctx, p, 3000, ALL[l], &s);
             EXPECT(s.poles.unreached == 0 && s.poles.undecided == 0 && s.poles.toggled == 0, "labeling %d", l);
             EXPECT(s.poles.energy < 1e-6 * (double)s.poles.poles, "labeling %d: %g", l, s.poles.energy);
@@ -65,8 +65,8 @@ static void anything_is_labeled_and_global_is_no_worse(void) {
         else
             integer_points(trial, n, 4, p);
         for (int l = 0; l < BRIO_LABELING_END; l++) {
-            brio_power_crust_stats s = {.size = sizeof s};
-            brio_certificate c = {.size = sizeof c};
+            brio_surface_stats s = {0};
+            brio_certificate c = {0};
             brio_mesh *mesh = crust(ctx, p, n, ALL[l], &s);
             if (!mesh) continue;
             EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
@@ -90,7 +90,7 @@ static void shuffled_samples_give_the_same_global_labels(void) {
     clustered_points(8, 400, p);
     shuffle_points(3, 400, p, q, to);
     brio_context *ctx = new_context();
-    brio_power_crust_stats s = {.size = sizeof s}, t = {.size = sizeof t};
+    brio_surface_stats s = {0}, t = {.size = sizeof t};
     brio_mesh *a = crust(ctx, p, 400, BRIO_LABELING_GLOBAL, &s), *b = crust(ctx, q, 400, BRIO_LABELING_GLOBAL, &t);
     EXPECT(a && b && same_mesh(a, b));
     EXPECT(s.poles.energy == t.poles.energy && s.poles.toggled == t.poles.toggled);
@@ -103,10 +103,10 @@ static void unknown_labeling_is_refused(void) {
     double p[3 * 20];
     uniform_points(1, 20, p);
     brio_context *ctx = new_context();
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh;
     o.poles.labeling = BRIO_LABELING_END;
-    EXPECT(brio_power_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_crust(ctx, p, 20, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     brio_context_free(ctx);
 }
 
@@ -242,11 +242,11 @@ static void cuts_of_tetrahedra_are_those_of_their_graph(void) {
 
 static brio_status small_global_crust(brio_context *ctx) {
     double p[3 * 40];
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh;
     o.poles.labeling = BRIO_LABELING_GLOBAL;
     clustered_points(3, 40, p);
-    brio_status status = brio_power_crust(ctx, p, 40, &o, &mesh, NULL, NULL);
+    brio_status status = make_crust(ctx, p, 40, &o, &mesh, NULL, NULL);
     brio_mesh_free(mesh);
     return status;
 }

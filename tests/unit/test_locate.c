@@ -199,7 +199,7 @@ static void values_have_the_same_bits_in_every_order(void) {
     EXPECT(brio_delaunay(ctx, p, NULL, N, NULL, &t) == BRIO_OK);
     EXPECT(brio_locator_new(ctx, t, p, NULL, N, &l) == BRIO_OK);
     for (int method = 0; method < 2; method++) {
-        brio_interpolation o = brio_interpolation_default();
+        brio_interpolation o = {0};
         o.method = (brio_interpolation_method)method;
         o.values = p + N; /* any numbers */
         brio_context_set_threads(ctx, 1);
@@ -267,7 +267,7 @@ static brio_status query_everything(brio_context *ctx) {
     static uint32_t found[300];
     brio_triangulation *t = NULL;
     brio_locator *l = NULL;
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     brio_incidences lists = {0};
     brio_edges edges = {0};
     uniform_points(4, 200, p);
@@ -295,7 +295,7 @@ static void memory_may_run_out_anywhere(void) {
 static void check_file(const char *path) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    EXPECT(brio_read(ctx, path, BRIO_FORMAT_AUTO, &mesh) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_read(ctx, path, NULL, &mesh) == BRIO_OK, "%s", brio_message(ctx));
     const char *slash = strrchr(path, '/');
     if (mesh && mesh->num_vertices && mesh->num_vertices <= MOST)
         check_set(&(set){slash ? slash + 1 : path, mesh->vertices, NULL, mesh->num_vertices});

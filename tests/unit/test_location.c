@@ -18,7 +18,7 @@ static const char *const names[] = {"walk", "jump", "hierarchy", "history", "tra
 enum { STRATEGIES = BRIO_LOCATION_END + 4 };
 
 static brio_delaunay_options strategy(int s) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     int other = s - BRIO_LOCATION_END;
     o.all_conflicts = other == 0 || other == 1;
     o.first_conflict = other > 1;
@@ -153,7 +153,7 @@ static void walks_are_short(void) {
     uint32_t *pairs;
     double *many = paired_points(MANY, &pairs);
     for (int i = 0; i < 3; i++) {
-        brio_delaunay_options o = brio_delaunay_options_default();
+        brio_delaunay_options o = {0};
         o.order = BRIO_ORDER_RANDOM, o.locate = walks[i], o.edges = pairs, o.num_edges = MANY / 2;
         result r = run(many, NULL, MANY, &o);
         double steps = (double)r.stats.walk_steps / MANY;
@@ -180,7 +180,7 @@ static void history_tests_grow_as_the_logarithm(void) {
         double *p = malloc(3 * n * sizeof *p);
         uniform_points(1, n, p);
         for (int all = 0; all < 2; all++) {
-            brio_delaunay_options o = brio_delaunay_options_default();
+            brio_delaunay_options o = {0};
             o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_HISTORY, o.all_conflicts = all;
             brio_delaunay_stats s = run(p, NULL, n, &o).stats;
             double tests = (double)s.history_tests / (double)n, most = most_history_tests(&s, all);
@@ -197,7 +197,7 @@ static void history_tests_of_sorted_points_are_many(void) {
     double *p = malloc(3 * MANY * sizeof *p);
     uniform_points(1, MANY, p);
     for (size_t i = 0; i < MANY; i++) p[3 * i] = (double)i;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = BRIO_ORDER_INPUT, o.locate = BRIO_LOCATION_HISTORY;
     brio_delaunay_stats s = run(p, NULL, MANY, &o).stats;
     double tests = (double)s.history_tests / MANY, most = most_history_tests(&s, false);
@@ -212,7 +212,7 @@ static void traced_pairs_save_their_history_tests(void) {
     uint32_t *pairs;
     double *many = paired_points(MANY, &pairs);
     for (int all = 0; all < 2; all++) {
-        brio_delaunay_options o = brio_delaunay_options_default();
+        brio_delaunay_options o = {0};
         o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_HISTORY, o.all_conflicts = all;
         brio_delaunay_stats plain = run(many, NULL, MANY, &o).stats;
         o.locate = BRIO_LOCATION_TRACE;
@@ -468,7 +468,7 @@ static void tracing_is_linear_on_a_sphere(void) {
         double *p = malloc(3 * n * sizeof *p);
         sphere_points(9, n, p);
         uint32_t *edge = hull_edges(p, n, &num_edges);
-        brio_delaunay_options o = brio_delaunay_options_default();
+        brio_delaunay_options o = {0};
         o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_TRACE, o.edges = edge, o.num_edges = num_edges;
         result traced = run(p, NULL, n, &o);
         o.locate = BRIO_LOCATION_HISTORY;

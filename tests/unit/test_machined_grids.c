@@ -7,6 +7,7 @@
  * Without an argument: small grids, each option once. With a number: large grids too, at least that many runs. */
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <math.h>
 
 enum { MOST_SAMPLES = 90000, OPTIONS = 7 };
@@ -67,15 +68,15 @@ static uint64_t fingerprint(const brio_mesh *m) {
 }
 
 static brio_status surface_with(brio_context *ctx, int option, brio_mesh **out) {
-    brio_power_crust_options o = brio_power_crust_options_default();
-    brio_cocone_options c = brio_cocone_options_default();
-    if (option == 1) o.poles.noise = BRIO_NOISE_KEEP;
-    if (option == 2) o.triangulate = 1;
+    brio_surface_options o = CRUST_OPTIONS;
+    brio_surface_options c = COCONE_OPTIONS;
+    if (option == 1) o.noise = BRIO_NOISE_KEEP;
+    if (option == 2) o.polygons = 0;
     if (option == 3) o.poles.labeling = BRIO_LABELING_GREEDY;
-    if (option == 4) o.poles.noise = BRIO_NOISE_SMOOTH;
-    c.tight = option == 6;
-    return option < 5 ? brio_power_crust(ctx, samples, num_samples, &o, out, NULL, NULL)
-                      : brio_cocone(ctx, samples, num_samples, &c, out, NULL);
+    if (option == 4) o.noise = BRIO_NOISE_SMOOTH;
+    c.method = option == 6 ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
+    return option < 5 ? make_crust(ctx, samples, num_samples, &o, out, NULL, NULL)
+                      : make_cocone(ctx, samples, num_samples, &c, out, NULL);
 }
 
 static uint64_t run(int option, int threads) {

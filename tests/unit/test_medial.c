@@ -4,6 +4,7 @@
 #include "harness.h"
 #include "medial_shapes.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "reconstruct/power_crust/ball_cover.h"
 #include "reconstruct/power_crust/labeled_poles.h"
 #include "mesh/solid.h"
@@ -58,9 +59,9 @@ static void shape_is_the_dual_between_inner_poles(void) {
     cloud c = medial_sample(&medial_ellipsoid, 0.35, 1);
     brio_labeled_poles l;
     brio_pole_request request;
-    brio_power_crust_options surface = brio_power_crust_options_default();
+    brio_surface_options surface = CRUST_OPTIONS;
     brio_mesh *shape = shape_of(ctx, c.points, c.count, NULL);
-    EXPECT(brio_pole_request_of(ctx, &surface.poles, surface.seed, &request) == BRIO_OK);
+    EXPECT(brio_pole_request_of(ctx, &surface.poles, surface.noise, surface.seed, &request) == BRIO_OK);
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
     uint32_t *number = malloc(l.poles.count * sizeof *number);
     size_t n = number_inner(&l, number), edges = 0, triangles = 0;
@@ -104,7 +105,7 @@ static void shape_is_the_dual_between_inner_poles(void) {
 static void radii_are_distances_to_samples_and_sides_are_told(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_torus, 0.3, 1);
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     size_t inner = 0, outer = 0;
     o.sides = BRIO_SIDES_BOTH;
     brio_mesh *shape = shape_of(ctx, c.points, c.count, &o);
@@ -139,7 +140,7 @@ static void shuffled_samples_give_the_same_shape(void) {
     static double p[3 * 1000], q[3 * 1000];
     static size_t to[1000];
     brio_context *ctx = new_context();
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     torus_points(2, 1000, p);
     shuffle_points(5, 1000, p, q, to);
     for (int simplified = 0; simplified < 2; simplified++) {
@@ -162,7 +163,7 @@ static void crust_of_all_balls_is_the_power_crust(void) {
     brio_mesh *shape, *crust, *expected;
     torus_points(4, 1000, p);
     EXPECT(brio_power_shape(ctx, p, 1000, NULL, &shape, &crust, NULL) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, p, 1000, NULL, &expected, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, p, 1000, NULL, &expected, NULL, NULL) == BRIO_OK);
     expect_same(crust, expected);
     brio_mesh_free(shape);
     brio_mesh_free(crust);
@@ -230,10 +231,10 @@ static double largest_norm(const brio_mesh *mesh) {
 static void simplification_takes_the_noise_of_a_sphere_away(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_sphere, 0.15, 1);
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     brio_mesh *all, *few, *crust;
-    brio_power_shape_stats s = {.size = sizeof s};
-    brio_certificate certificate = {.size = sizeof certificate};
+    brio_power_shape_stats s = {0};
+    brio_certificate certificate = {0};
     for (size_t i = 0; i < c.count; i++) {
         double r = 1 + 0.02 * (brio_rng_double(&c.rng) - 0.5);
         for (size_t k = 0; k < 3; k++) c.points[3 * i + k] *= r;
@@ -282,7 +283,7 @@ static brio_mesh *box_mesh(brio_context *ctx, bool split, bool turn, size_t face
 static void poles_of_a_known_box_are_labeled_by_where_they_are(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.2, 1);
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     o.sides = BRIO_SIDES_BOTH;
     for (int kind = 0; kind < 4; kind++) {
         brio_mesh *box = box_mesh(ctx, kind & 1, kind & 2, 6);
@@ -306,15 +307,15 @@ static void poles_of_a_known_box_are_labeled_by_where_they_are(void) {
 static void points_within_a_larger_solid_have_closed_crusts(void) {
     brio_context *ctx = new_context();
     brio_mesh *box = box_mesh(ctx, false, false, 6), *mesh, *shape;
-    brio_power_shape_options medial = brio_power_shape_options_default();
-    brio_power_crust_options surface = brio_power_crust_options_default();
+    brio_power_shape_options medial = {0};
+    brio_surface_options surface = CRUST_OPTIONS;
     double p[3 * 50];
     uniform_points(1, 50, p);
     for (size_t i = 0; i < 3 * box->num_vertices; i++) box->vertices[i] *= 1e4;
     medial.poles.solid = surface.poles.solid = box;
     for (int kind = 0; kind < 2; kind++) {
-        brio_certificate c = {.size = sizeof c};
-        brio_status status = kind ? brio_power_crust(ctx, p, 50, &surface, &mesh, NULL, NULL)
+        brio_certificate c = {0};
+        brio_status status = kind ? make_crust(ctx, p, 50, &surface, &mesh, NULL, NULL)
                                   : brio_power_shape(ctx, p, 50, &medial, &shape, &mesh, NULL);
         EXPECT(status == BRIO_OK && brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK, "%s", brio_message(ctx));
         EXPECT(c.closed && c.manifold && c.oriented);
@@ -330,9 +331,9 @@ static void poles_that_are_kept_keep_what_is_theirs(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_torus, 0.3, 1);
     brio_labeled_poles l, all;
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_pole_request request;
-    EXPECT(brio_pole_request_of(ctx, &o.poles, o.seed, &request) == BRIO_OK);
+    EXPECT(brio_pole_request_of(ctx, &o.poles, o.noise, o.seed, &request) == BRIO_OK);
     request.spacing = true;
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &l) == BRIO_OK);
     EXPECT(brio_labeled_poles_find(ctx, c.points, c.count, &request, &all) == BRIO_OK);
@@ -356,7 +357,7 @@ static void poles_that_are_kept_keep_what_is_theirs(void) {
 static void open_mesh_is_no_solid(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.5, 1);
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     brio_mesh *shape, *crust, *box = box_mesh(ctx, true, false, 5);
     o.poles.solid = box;
     EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &shape, &crust, NULL) == BRIO_ERR_NO_ANSWER && !shape &&
@@ -371,11 +372,11 @@ static void open_mesh_is_no_solid(void) {
 static void solid_with_nan_is_refused(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.5, 1);
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *crust, *box = box_mesh(ctx, false, false, 6);
     o.poles.solid = box;
     box->vertices[7] = NAN;
-    EXPECT(brio_power_crust(ctx, c.points, c.count, &o, &crust, NULL, NULL) == BRIO_ERR_NOT_FINITE && !crust);
+    EXPECT(make_crust(ctx, c.points, c.count, &o, &crust, NULL, NULL) == BRIO_ERR_NOT_FINITE && !crust);
     EXPECT(strstr(brio_message(ctx), "vertex 2 of the solid: y is NaN"), "%s", brio_message(ctx));
     brio_mesh_free(box);
     EXPECT(brio_context_memory(ctx) == 0);
@@ -411,7 +412,7 @@ static void winding_numbers_of_a_curved_mesh_are_right(void) {
     brio_rng rng = brio_rng_new(7);
     brio_mesh *crust;
     brio_solid solid;
-    EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, c.points, c.count, NULL, &crust, NULL, NULL) == BRIO_OK);
     EXPECT(brio_solid_new(ctx, crust, &solid) == BRIO_OK);
     for (int i = 0; i < 2000; i++) {
         double p[3] = {3 * brio_rng_double(&rng) - 1.5, 3 * brio_rng_double(&rng) - 1.5, brio_rng_double(&rng) - 0.5};
@@ -433,9 +434,9 @@ static void small_inputs_have_shapes_and_closed_crusts_or_say_so(void) {
     brio_context_set_threads(ctx, 1);
     for (uint64_t trial = 0; trial < 2000; trial += BRIEF_TESTS ? 7 : 1) {
         size_t n = 1 + trial % 40;
-        brio_power_shape_options o = brio_power_shape_options_default();
+        brio_power_shape_options o = {0};
         brio_mesh *shape, *crust;
-        brio_certificate certificate = {.size = sizeof certificate};
+        brio_certificate certificate = {0};
         o.sides = (brio_sides)(trial / 40 % 3);
         o.scale = trial % 2 ? 1.1 : 1;
         o.redundancy = trial % 5 ? 0.05 : 0;
@@ -465,7 +466,7 @@ static void wrong_options_are_refused(void) {
     double p[3 * 60];
     sphere_points(3, 60, p);
     for (int kind = 0; kind < 5; kind++) {
-        brio_power_shape_options o = brio_power_shape_options_default();
+        brio_power_shape_options o = {0};
         brio_mesh *shape;
         if (kind == 0) o.scale = 0.5;
         if (kind == 1) o.redundancy = -1;
@@ -494,8 +495,8 @@ static void work_can_be_cancelled_at_any_time(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_box, 0.2, 1);
     brio_mesh *box = box_mesh(ctx, false, false, 6), *shape, *crust, *offset;
-    brio_power_shape_options medial = brio_power_shape_options_default();
-    brio_offset_surface_options surface = brio_offset_surface_options_default();
+    brio_power_shape_options medial = {0};
+    brio_surface_options surface = OFFSET_OPTIONS;
     size_t held = brio_context_memory(ctx);
     medial.poles.solid = surface.poles.solid = box;
     medial.redundancy = 0.01;
@@ -506,7 +507,7 @@ static void work_can_be_cancelled_at_any_time(void) {
         for (; status == BRIO_ERR_CANCELLED && calls < 500; calls++) {
             canceller at = {calls, 0};
             brio_context_set_progress(ctx, cancel_later, &at);
-            status = kind ? brio_offset_surface(ctx, c.points, c.count, 0.1, &surface, &offset, NULL)
+            status = kind ? make_offset(ctx, c.points, c.count, 0.1, &surface, &offset, NULL)
                           : brio_power_shape(ctx, c.points, c.count, &medial, &shape, &crust, NULL);
             if (status != BRIO_OK) EXPECT(status == BRIO_ERR_CANCELLED && brio_context_memory(ctx) == held);
         }
@@ -524,7 +525,7 @@ static void work_can_be_cancelled_at_any_time(void) {
 static brio_status small_shape(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *shape, *crust;
-    brio_power_shape_options o = brio_power_shape_options_default();
+    brio_power_shape_options o = {0};
     sphere_points(3, 60, p);
     o.redundancy = 0.01;
     brio_status status = brio_power_shape(ctx, p, 60, &o, &shape, &crust, NULL);

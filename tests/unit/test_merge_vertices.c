@@ -68,7 +68,7 @@ static void sets_are_those_of_brute_force(void) {
         for (size_t i = 0; i < 3 * n; i++) points[i] = (double)below(side) - side / 2.0 + (below(9) ? 0 : -0.0);
         brute_force(points, n, distance, stands);
         brio_mesh *mesh = cloud(ctx, points, n);
-        brio_merge_stats stats = {.size = sizeof stats};
+        brio_merge_stats stats = {0};
         EXPECT(brio_mesh_merge_vertices(mesh, distance, &stats) == BRIO_OK, "%s", brio_message(ctx));
         for (size_t i = 0; i < n; i++) {
             if (stands[i] != i) continue;
@@ -138,7 +138,7 @@ static void faces_share_vertices_and_degenerate_ones_go(void) {
     static const uint32_t corners[] = {0, 1, 2, 1, 3, 2, 0, 1, 3, 2};
     brio_context *ctx = new_context();
     brio_mesh *mesh = parts(ctx);
-    brio_merge_stats stats = {.size = sizeof stats};
+    brio_merge_stats stats = {0};
     EXPECT(brio_mesh_merge_vertices(mesh, 0, &stats) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(stats.vertices == 3 && stats.faces == 2 && stats.tetrahedra == 1 && stats.edges == 1);
     EXPECT(mesh->num_vertices == 5 && index_of(mesh, 3) == 4 && index_of(mesh, 4) == 7);

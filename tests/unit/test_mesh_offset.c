@@ -103,7 +103,7 @@ static brio_mesh *sphere(brio_context *ctx) {
 /* --- judging --- */
 
 static double volume_of(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     double volume = c.volume;
     brio_certificate_free(&c);
@@ -111,7 +111,7 @@ static double volume_of(brio_context *ctx, const brio_mesh *mesh) {
 }
 
 static void expect_sound(brio_context *ctx, const brio_mesh *mesh, size_t components, int64_t genus, const char *what) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     int64_t pairs = -1;
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented, "%s", what);
@@ -187,7 +187,7 @@ static double missed(const brio_mesh *solid_mesh, const brio_mesh *mesh, double 
 static void expect_offset_of(brio_context *ctx, const brio_mesh *mesh, double distance, double volume, int64_t genus,
                              const char *name) {
     brio_mesh *out = NULL;
-    brio_mesh_offset_stats s = {.size = sizeof s};
+    brio_mesh_offset_stats s = {0};
     double most, mean, size = fabs(distance);
     EXPECT(brio_mesh_offset(ctx, mesh, distance, NULL, &out, &s) == BRIO_OK, "%s: %s", name, brio_message(ctx));
     if (out) {
@@ -281,7 +281,7 @@ static void machined_parts(void) {
         for (int j = 0; j < 4 && !mesh; j++) {
             char path[4096];
             snprintf(path, sizeof path, "%s/data/corpus/%s.ply", folders[j] ? folders[j] : ".", parts[i].name);
-            if (brio_read(ctx, path, BRIO_FORMAT_AUTO, &mesh) != BRIO_OK) mesh = NULL;
+            if (brio_read(ctx, path, NULL, &mesh) != BRIO_OK) mesh = NULL;
         }
         if (mesh) {
             expect_offset_of(ctx, mesh, 0.03, 0, parts[i].genus[0], parts[i].name);
@@ -372,7 +372,7 @@ static void smaller_error_is_met_with_more_vertices(void) {
     brio_mesh *a = cube(ctx, 0, 1), *p = NULL;
     size_t last = 0;
     for (double error = 0.01; error > 0.0005; error /= 4) {
-        brio_mesh_offset_options o = brio_mesh_offset_options_default();
+        brio_mesh_offset_options o = {0};
         double most, mean;
         o.error = error;
         EXPECT(brio_mesh_offset(ctx, a, 0.1, &o, &p, NULL) == BRIO_OK, "%s", brio_message(ctx));
@@ -390,7 +390,7 @@ static void wrong_distances_and_errors_are_refused(void) {
     brio_context *ctx = new_context();
     brio_mesh *a = cube(ctx, 0, 1), *out = NULL;
     static const double wrong[] = {0, NAN, INFINITY, 1e308, 1e100};
-    brio_mesh_offset_options o = brio_mesh_offset_options_default(), unset = {0};
+    brio_mesh_offset_options o = {0}, unset = {0};
     uint64_t bytes;
     for (int i = 0; i < 5; i++) {
         EXPECT(brio_mesh_offset(ctx, a, wrong[i], NULL, &out, NULL) == BRIO_ERR_ARGUMENT && !out, "%g", wrong[i]);

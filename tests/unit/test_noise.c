@@ -3,6 +3,7 @@
 #include "harness.h"
 #include "query/nearest_points.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "reconstruct/noise/sample_noise.h"
 #include "reconstruct/noise/smooth_surface.h"
 
@@ -180,11 +181,11 @@ static void smoothing_keeps_quadratic_shapes(void) {
 
 /* --- the crust --- */
 
-static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_noise noise, brio_power_crust_stats *s) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+static brio_mesh *crust(brio_context *ctx, const double *p, size_t n, brio_noise noise, brio_surface_stats *s) {
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh = NULL;
-    o.poles.noise = noise;
-    EXPECT(brio_power_crust(ctx, p, n, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
+    o.noise = noise;
+    EXPECT(make_crust(ctx, p, n, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
     return mesh;
 }
 
@@ -204,10 +205,10 @@ static double crust_distance(const brio_mesh *mesh, double (*distance)(const dou
 
 static void check_noisy_crust(brio_context *ctx, const double *p, double sigma, size_t genus,
                               double (*distance)(const double *)) {
-    brio_power_crust_stats kept = {.size = sizeof kept}, smoothed = {.size = sizeof smoothed};
-    brio_certificate c = {.size = sizeof c};
+    brio_surface_stats kept = {0}, smoothed = {.size = sizeof smoothed};
+    brio_certificate c = {0};
     brio_mesh *rough = crust(ctx, p, N, BRIO_NOISE_KEEP, &kept), *calm = crust(ctx, p, N, BRIO_NOISE_AUTO, &smoothed);
-    EXPECT(kept.poles.noise == 0 && !kept.poles.smoothed && smoothed.poles.noise > 0 && smoothed.poles.smoothed);
+    EXPECT(kept.noise == 0 && !kept.smoothed && smoothed.noise > 0 && smoothed.smoothed);
     double before = crust_distance(rough, distance), after = crust_distance(calm, distance);
     EXPECT(before > 0.5 * sigma && after < 0.35 * sigma, "%g and %g sigma", before / sigma, after / sigma);
     EXPECT(smoothed.poles.energy < 0.2 * kept.poles.energy, "%g and %g", kept.poles.energy, smoothed.poles.energy);
@@ -235,13 +236,13 @@ static void crust_of_noisy_samples_runs_through_their_middle(void) {
 static void crust_of_clean_samples_is_the_exact_one(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
-    brio_power_crust_stats s = {.size = sizeof s};
+    brio_surface_stats s = {0};
     torus_points(13, N, p);
     brio_mesh *kept = crust(ctx, p, N, BRIO_NOISE_KEEP, NULL), *found = crust(ctx, p, N, BRIO_NOISE_AUTO, &s);
-    EXPECT(s.poles.noise == 0 && !s.poles.smoothed && kept->num_vertices == found->num_vertices &&
+    EXPECT(s.noise == 0 && !s.smoothed && kept->num_vertices == found->num_vertices &&
            !memcmp(kept->vertices, found->vertices, 3 * kept->num_vertices * sizeof *kept->vertices));
     brio_mesh *smooth = crust(ctx, p, N, BRIO_NOISE_SMOOTH, &s);
-    EXPECT(s.poles.noise == 0 && s.poles.smoothed);
+    EXPECT(s.noise == 0 && s.smoothed);
     brio_mesh_free(kept);
     brio_mesh_free(found);
     brio_mesh_free(smooth);
@@ -251,23 +252,23 @@ static void crust_of_clean_samples_is_the_exact_one(void) {
 static void solids_keep_the_samples(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
-    brio_power_crust_options o = brio_power_crust_options_default();
-    brio_power_crust_stats s = {.size = sizeof s};
+    brio_surface_options o = CRUST_OPTIONS;
+    brio_surface_stats s = {0};
     brio_mesh *mesh;
     sphere_points(14, N, p);
     disturb(15, N, 0.01, p);
     brio_mesh *solid = crust(ctx, p, N, BRIO_NOISE_AUTO, &s);
-    EXPECT(s.poles.smoothed);
+    EXPECT(s.smoothed);
     o.poles.solid = solid;
-    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_OK && !s.poles.smoothed);
+    EXPECT(make_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_OK && !s.smoothed);
     brio_mesh_free(mesh);
-    o.poles.noise = BRIO_NOISE_END;
-    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_ERR_ARGUMENT);
-    o.poles.noise = BRIO_NOISE_AUTO;
+    o.noise = BRIO_NOISE_END;
+    EXPECT(make_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_ERR_ARGUMENT);
+    o.noise = BRIO_NOISE_AUTO;
     brio_mesh_free(solid);
     EXPECT(brio_mesh_new(ctx, &solid) == BRIO_OK);
     o.poles.solid = solid;
-    EXPECT(brio_power_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
+    EXPECT(make_crust(ctx, p, N, &o, &mesh, NULL, &s) == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     brio_mesh_free(solid);
     brio_context_free(ctx);
 }
@@ -275,16 +276,16 @@ static void solids_keep_the_samples(void) {
 static void medial_axis_of_noisy_samples_is_that_of_smoothed_ones(void) {
     static double p[3 * N];
     brio_context *ctx = new_context();
-    brio_power_shape_options o = brio_power_shape_options_default();
-    brio_power_shape_stats s = {.size = sizeof s};
+    brio_power_shape_options o = {0};
+    brio_power_shape_stats s = {0};
     brio_mesh *shape;
     double mean[2] = {0, 0};
     sphere_points(16, N, p);
     disturb(17, N, 0.01, p);
     for (int i = 0; i < 2; i++) {
-        o.poles.noise = i ? BRIO_NOISE_AUTO : BRIO_NOISE_KEEP;
-        EXPECT(brio_power_shape(ctx, p, N, &o, &shape, NULL, &s) == BRIO_OK && s.poles.smoothed == (size_t)i &&
-               (s.poles.noise > 0) == i);
+        o.noise = i ? BRIO_NOISE_AUTO : BRIO_NOISE_KEEP;
+        EXPECT(brio_power_shape(ctx, p, N, &o, &shape, NULL, &s) == BRIO_OK && s.smoothed == (size_t)i &&
+               (s.noise > 0) == i);
         for (size_t v = 0; v < shape->num_vertices; v++)
             mean[i] += (1 + sphere_distance(shape->vertices + 3 * v)) / (double)shape->num_vertices;
         brio_mesh_free(shape);
@@ -321,7 +322,7 @@ static void smoothing_can_be_cancelled(void) {
     sphere_points(20, N, p);
     disturb(21, N, 0.01, p);
     brio_context_set_progress(ctx, stop, NULL);
-    EXPECT(brio_power_crust(ctx, p, N, NULL, &mesh, NULL, NULL) == BRIO_ERR_CANCELLED && !mesh);
+    EXPECT(make_crust(ctx, p, N, NULL, &mesh, NULL, NULL) == BRIO_ERR_CANCELLED && !mesh);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }

@@ -4,9 +4,10 @@
 #include "harness.h"
 #include "medial_shapes.h"
 #include "points.h"
+#include "surface_calls.h"
 
 static void expect_closed(brio_context *ctx, const brio_mesh *mesh, const char *what) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.boundary_edges == 0 && c.flipped_edges == 0, "%s", what);
     for (size_t i = 0; i < 3 * mesh->num_vertices; i++) EXPECT(isfinite(mesh->vertices[i]));
@@ -25,8 +26,8 @@ static double error_of(const medial_shape *shape, double h, double distance) {
     cloud c = medial_sample(shape, h, 1);
     brio_mesh *mesh;
     double most = 0;
-    EXPECT(brio_offset_surface(ctx, c.points, c.count, distance, NULL, &mesh, NULL) == BRIO_OK, "%s by %g: %s",
-           shape->name, distance, brio_message(ctx));
+    EXPECT(make_offset(ctx, c.points, c.count, distance, NULL, &mesh, NULL) == BRIO_OK, "%s by %g: %s", shape->name,
+           distance, brio_message(ctx));
     expect_closed(ctx, mesh, shape->name);
     expect_no_crossings(ctx, mesh, shape->name);
     for (size_t v = 0; v < mesh->num_vertices; v++)
@@ -62,8 +63,8 @@ static void offsets_of_torus_are_as_far_off_as_the_square_of_the_spacing(void) {
 static void expect_genus(const double *p, size_t n, double distance, size_t components, int64_t genus) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    EXPECT(brio_offset_surface(ctx, p, n, distance, NULL, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    brio_certificate c = {0};
+    EXPECT(make_offset(ctx, p, n, distance, NULL, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.components == components && c.genus == genus,
            "by %g: %zu components, genus %lld", distance, c.components, (long long)c.genus);
@@ -96,9 +97,9 @@ static void offset_that_swallows_everything_says_so(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_torus, 0.2, 4);
     brio_mesh *mesh;
-    EXPECT(brio_offset_surface(ctx, c.points, c.count, -0.45, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_offset(ctx, c.points, c.count, -0.45, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     EXPECT(strstr(brio_message(ctx), "swallows the whole object"), "%s", brio_message(ctx));
-    EXPECT(brio_offset_surface(ctx, c.points, c.count, -1e300, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_offset(ctx, c.points, c.count, -1e300, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
     free(c.points);
@@ -108,9 +109,9 @@ static void offset_by_nothing_is_the_power_crust(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_torus, 0.2, 5);
     brio_mesh *offset, *crust;
-    brio_distance d = {.size = sizeof d};
-    EXPECT(brio_offset_surface(ctx, c.points, c.count, 0, NULL, &offset, NULL) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, c.points, c.count, NULL, &crust, NULL, NULL) == BRIO_OK);
+    brio_distance d = {0};
+    EXPECT(make_offset(ctx, c.points, c.count, 0, NULL, &offset, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, c.points, c.count, NULL, &crust, NULL, NULL) == BRIO_OK);
     EXPECT(brio_mesh_distance(ctx, offset, crust, 2000, 1, &d) == BRIO_OK && d.hausdorff < 1e-9, "%g", d.hausdorff);
     expect_no_crossings(ctx, offset, "torus by 0");
     brio_mesh_free(offset);
@@ -120,7 +121,7 @@ static void offset_by_nothing_is_the_power_crust(void) {
 }
 
 static void expect_components(brio_context *ctx, const brio_mesh *mesh, size_t components, double volume) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.components == components && fabs(c.volume - volume) < 0.05 * volume, "%zu components, %g",
            c.components, c.volume);
@@ -131,22 +132,21 @@ static void expect_components(brio_context *ctx, const brio_mesh *mesh, size_t c
 static void known_solid_decides_the_labels(void) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(&medial_sphere, 0.15, 7);
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *solid, *mesh;
     size_t n = c.count;
-    EXPECT(brio_power_crust(ctx, c.points, n, NULL, &solid, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, c.points, n, NULL, &solid, NULL, NULL) == BRIO_OK);
     for (size_t i = 0; i < n; i++)
         cloud_add(&c, 0.5 * c.points[3 * i], 0.5 * c.points[3 * i + 1], 0.5 * c.points[3 * i + 2]);
     for (int known = 0; known < 2; known++) {
         double ball = 4.18879;
         o.poles.solid = known ? solid : NULL;
-        EXPECT(brio_power_crust(ctx, c.points, c.count, &o, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(make_crust(ctx, c.points, c.count, &o, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
         expect_components(ctx, mesh, known ? 1 : 2, known ? ball : ball * (1 - 0.125));
         brio_mesh_free(mesh);
-        brio_offset_surface_options moved = brio_offset_surface_options_default();
+        brio_surface_options moved = OFFSET_OPTIONS;
         moved.poles = o.poles;
-        EXPECT(brio_offset_surface(ctx, c.points, c.count, 0.1, &moved, &mesh, NULL) == BRIO_OK, "%s",
-               brio_message(ctx));
+        EXPECT(make_offset(ctx, c.points, c.count, 0.1, &moved, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
         expect_components(ctx, mesh, known ? 1 : 2, ball * (1.331 - (known ? 0 : 0.064)));
         brio_mesh_free(mesh);
     }
@@ -171,7 +171,7 @@ static void small_inputs_are_closed_at_any_distance(void) {
         else
             integer_points(trial, n, 3 + (uint32_t)(trial % 3), p);
         double distance = (trial % 2 ? 1 : -1) * pow(10, 3 - 6 * brio_rng_double(&rng));
-        brio_status status = brio_offset_surface(ctx, p, n, distance, NULL, &mesh, NULL);
+        brio_status status = make_offset(ctx, p, n, distance, NULL, &mesh, NULL);
         EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "trial %d: %s", (int)trial,
                brio_message(ctx));
         if (status != BRIO_OK) continue;
@@ -190,7 +190,7 @@ static void distances_of_any_size_are_answered(void) {
     cloud c = medial_sample(&medial_sphere, 0.4, 6);
     for (int i = 0; i < 9; i++) {
         brio_mesh *mesh;
-        brio_status status = brio_offset_surface(ctx, c.points, c.count, distances[i], NULL, &mesh, NULL);
+        brio_status status = make_offset(ctx, c.points, c.count, distances[i], NULL, &mesh, NULL);
         if (distances[i] > 1e20)
             EXPECT(status == BRIO_ERR_ARGUMENT && !mesh, "by %g: %s", distances[i], brio_message(ctx));
         else
@@ -210,9 +210,9 @@ static void shuffled_samples_give_the_same_offset(void) {
     torus_points(2, 1000, p);
     shuffle_points(5, 1000, p, q, to);
     brio_context_set_threads(ctx, 1);
-    EXPECT(brio_offset_surface(ctx, p, 1000, 0.1, NULL, &a, NULL) == BRIO_OK);
+    EXPECT(make_offset(ctx, p, 1000, 0.1, NULL, &a, NULL) == BRIO_OK);
     brio_context_set_threads(ctx, 4);
-    EXPECT(brio_offset_surface(ctx, q, 1000, 0.1, NULL, &b, NULL) == BRIO_OK);
+    EXPECT(make_offset(ctx, q, 1000, 0.1, NULL, &b, NULL) == BRIO_OK);
     EXPECT(a->num_vertices == b->num_vertices && a->num_faces == b->num_faces);
     EXPECT(!memcmp(a->vertices, b->vertices, 24 * a->num_vertices));
     EXPECT(!memcmp(a->face_vertices, b->face_vertices, 4 * a->face_offsets[a->num_faces]));
@@ -227,8 +227,8 @@ static void scale_of_points_and_distance_is_the_scale_of_the_offset(void) {
     brio_mesh *a, *b;
     torus_points(3, 500, p);
     for (int i = 0; i < 1500; i++) q[i] = p[i] * 0x1p300;
-    EXPECT(brio_offset_surface(ctx, p, 500, 0.3, NULL, &a, NULL) == BRIO_OK);
-    EXPECT(brio_offset_surface(ctx, q, 500, 0.3 * 0x1p300, NULL, &b, NULL) == BRIO_OK);
+    EXPECT(make_offset(ctx, p, 500, 0.3, NULL, &a, NULL) == BRIO_OK);
+    EXPECT(make_offset(ctx, q, 500, 0.3 * 0x1p300, NULL, &b, NULL) == BRIO_OK);
     bool same = a->num_vertices == b->num_vertices;
     for (size_t i = 0; same && i < 3 * a->num_vertices; i++) same = a->vertices[i] * 0x1p300 == b->vertices[i];
     EXPECT(same);
@@ -243,8 +243,8 @@ static void duplicates_change_nothing(void) {
     brio_mesh *a, *b;
     torus_points(3, 500, p);
     memcpy(p + 1500, p, 1500 * sizeof *p);
-    EXPECT(brio_offset_surface(ctx, p, 500, 0.1, NULL, &a, NULL) == BRIO_OK);
-    EXPECT(brio_offset_surface(ctx, p, 1000, 0.1, NULL, &b, NULL) == BRIO_OK);
+    EXPECT(make_offset(ctx, p, 500, 0.1, NULL, &a, NULL) == BRIO_OK);
+    EXPECT(make_offset(ctx, p, 1000, 0.1, NULL, &b, NULL) == BRIO_OK);
     EXPECT(a->num_vertices == b->num_vertices && !memcmp(a->vertices, b->vertices, 24 * a->num_vertices));
     brio_mesh_free(a);
     brio_mesh_free(b);
@@ -255,26 +255,26 @@ static void wrong_options_are_refused(void) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
     double p[3 * 60];
-    brio_offset_surface_options dense = brio_offset_surface_options_default(), later = dense, unset = {0};
+    brio_surface_options dense = OFFSET_OPTIONS, later = dense, unset = {.size = 4, .method = BRIO_SURFACE_OFFSET};
     sphere_points(3, 60, p);
     later.poles.reserved[1] = 1;
     dense.poles.sampling_density = 1;
-    EXPECT(brio_offset_surface(ctx, p, 60, NAN, NULL, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_offset_surface(ctx, p, 60, INFINITY, NULL, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_offset_surface(ctx, p, 60, 1, &later, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_offset_surface(ctx, p, 60, 1, &unset, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_offset_surface(ctx, p, 60, 1, &dense, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(brio_offset_surface(ctx, NULL, 0, 1, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_offset(ctx, p, 60, NAN, NULL, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_offset(ctx, p, 60, INFINITY, NULL, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_offset(ctx, p, 60, 1, &later, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_offset(ctx, p, 60, 1, &unset, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_offset(ctx, p, 60, 1, &dense, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_offset(ctx, NULL, 0, 1, NULL, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     brio_context_free(ctx);
 }
 
 static brio_status small_offset(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *mesh;
-    brio_offset_surface_options o = brio_offset_surface_options_default();
+    brio_surface_options o = OFFSET_OPTIONS;
     o.simplify = 1;
     sphere_points(3, 60, p);
-    brio_status status = brio_offset_surface(ctx, p, 60, 0.2, &o, &mesh, NULL);
+    brio_status status = make_offset(ctx, p, 60, 0.2, &o, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }

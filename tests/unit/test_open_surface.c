@@ -9,6 +9,7 @@
 #include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include "reconstruct/open_surface/single_fans.h"
 #include "same_faces.h"
+#include "surface_calls.h"
 #include <math.h>
 
 /* --- fans --- */
@@ -112,14 +113,14 @@ static void axes_of_a_circle_and_of_an_edge_agree(void) {
 }
 
 /* Makes the surface of the scene with a number of threads. */
-static brio_mesh *surface_of_scene(int threads, brio_labeled_delaunay_stats *s) {
+static brio_mesh *surface_of_scene(int threads, brio_surface_stats *s) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = LABELED_OPTIONS;
     brio_context_set_threads(ctx, threads);
     o.holes = BRIO_HOLES_AUTO;
     make_scene();
-    EXPECT(brio_labeled_delaunay(ctx, scene, num_scene, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_labeled(ctx, scene, num_scene, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
     return mesh;
 }
 
@@ -132,7 +133,7 @@ static void free_with_context(brio_mesh *mesh) {
 
 /* Both sheets are open, apart, and each looks one way. Labels that know inside and outside alone turn half of one over. */
 static void sheets_one_behind_the_other_look_one_way_each(void) {
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_surface_stats s = {0};
     brio_mesh *mesh = surface_of_scene(1, &s), *other = surface_of_scene(4, &s);
     double up[2] = {0}, area[2] = {0};
     size_t between = 0;
@@ -158,13 +159,13 @@ static void sheets_one_behind_the_other_look_one_way_each(void) {
 static brio_status make_bowl(brio_context *ctx) {
     static double p[3 * 300];
     brio_mesh *mesh;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
+    brio_surface_options o = LABELED_OPTIONS;
+    brio_surface_stats s = {0};
     o.holes = BRIO_HOLES_AUTO;
     o.confidence = 1;
     sphere_points(1, 300, p);
     for (size_t i = 0; i < 300; i++) p[3 * i + 2] = fabs(p[3 * i + 2]);
-    brio_status status = brio_labeled_delaunay(ctx, p, 300, &o, &mesh, NULL, &s);
+    brio_status status = make_labeled(ctx, p, 300, &o, &mesh, NULL, &s);
     EXPECT(status != BRIO_OK || s.holes > 0, "no hole");
     brio_mesh_free(mesh);
     return status;

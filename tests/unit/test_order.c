@@ -36,7 +36,7 @@ static double points[3 * MOST];
 static uint32_t order[MOST], other[MOST], rank[MOST], index_of[MOST], spare[MOST];
 
 static brio_delaunay_options options_of(int kind, size_t block_size) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = (brio_order)kind;
     o.block_size = block_size;
     return o;

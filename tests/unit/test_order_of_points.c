@@ -9,6 +9,7 @@
  * other sets, and a part of the names of the methods. */
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 
 enum { MOST = 60000 };
 
@@ -79,9 +80,9 @@ typedef struct {
     int option;
 } method;
 
-static uint64_t hash_crust_stats(brio_power_crust_stats s) {
-    s.poles.delaunay_seconds = s.poles.poles_seconds = s.poles.power_seconds = s.poles.label_seconds = s.crust_seconds =
-        s.simplify_seconds = s.poles.noise_seconds = 0;
+static uint64_t hash_crust_stats(brio_surface_stats s) {
+    s.delaunay_seconds = s.poles_seconds = s.poles.power_seconds = s.poles.label_seconds = s.crust_seconds =
+        s.simplify_seconds = s.noise_seconds = 0;
     return hash_bytes(&s, sizeof s);
 }
 
@@ -97,13 +98,13 @@ enum {
     LABELING = 256 /* times the labeling */
 };
 
-static brio_power_crust_options surface_options(int bits) {
-    brio_power_crust_options o = brio_power_crust_options_default();
-    o.triangulate = (bits & TRIANGLES) != 0;
+static brio_surface_options surface_options(int bits) {
+    brio_surface_options o = CRUST_OPTIONS;
+    o.polygons = !((bits & TRIANGLES) != 0);
     o.simplify = (bits & SIMPLER) != 0;
     o.poles.sharp = (bits & SHARP) != 0;
     o.open = bits & OPEN ? 3 : 0;
-    o.poles.noise = bits & KEPT ? BRIO_NOISE_KEEP : bits & SMOOTHED ? BRIO_NOISE_SMOOTH : BRIO_NOISE_AUTO;
+    o.noise = bits & KEPT ? BRIO_NOISE_KEEP : bits & SMOOTHED ? BRIO_NOISE_SMOOTH : BRIO_NOISE_AUTO;
     o.poles.labeling = (brio_labeling)(bits / LABELING);
     return o;
 }
@@ -135,12 +136,12 @@ static void add_normals(const input *in, const double *normals, outcome *out) {
 }
 
 static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out) {
-    brio_power_crust_options o = surface_options(bits);
-    brio_power_crust_stats stats = {.size = sizeof stats};
+    brio_surface_options o = surface_options(bits);
+    brio_surface_stats stats = {0};
     brio_mesh *mesh = NULL, *box = bits & SOLID ? box_mesh(ctx, in) : NULL;
     double *normals = bits & NORMALS ? calloc(3 * in->n, sizeof *normals) : NULL;
     o.poles.solid = box;
-    out->status = brio_power_crust(ctx, in->points, in->n, &o, &mesh, normals, &stats);
+    out->status = make_crust(ctx, in->points, in->n, &o, &mesh, normals, &stats);
     if (mesh) add_mesh(mesh, out);
     if (mesh && normals) add_normals(in, normals, out);
     out->stats = hash_crust_stats(stats);
@@ -150,24 +151,25 @@ static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out
 }
 
 static void run_offset(brio_context *ctx, const input *in, int bits, outcome *out) {
-    brio_power_crust_options crust = surface_options(bits);
-    brio_offset_surface_options o = brio_offset_surface_options_default();
+    brio_surface_options crust = surface_options(bits);
+    brio_surface_options o = OFFSET_OPTIONS;
     o.seed = crust.seed;
     o.poles = crust.poles;
-    o.triangulate = crust.triangulate;
+    o.noise = crust.noise;
+    o.polygons = crust.polygons;
     o.simplify = crust.simplify;
-    brio_offset_surface_stats stats = {.size = sizeof stats};
+    brio_surface_stats stats = {0};
     brio_mesh *mesh = NULL;
     double distance = bits & OPEN ? -0.01 * in->size : 0.03 * in->size; /* there is no other use for the bit here */
-    out->status = brio_offset_surface(ctx, in->points, in->n, distance, &o, &mesh, &stats);
+    out->status = make_offset(ctx, in->points, in->n, distance, &o, &mesh, &stats);
     if (mesh) add_mesh(mesh, out);
-    out->stats = hash_crust_stats((brio_power_crust_stats){.poles = stats.poles});
+    out->stats = hash_crust_stats(stats);
     brio_mesh_free(mesh);
 }
 
 static void run_medial(brio_context *ctx, const input *in, int way, outcome *out) {
-    brio_power_shape_options o = brio_power_shape_options_default();
-    brio_power_shape_stats s = {.size = sizeof s};
+    brio_power_shape_options o = {0};
+    brio_power_shape_stats s = {0};
     brio_mesh *shape = NULL, *crust = NULL;
     o.sides = way & 1 ? BRIO_SIDES_BOTH : BRIO_SIDES_INNER;
     o.scale = way & 2 ? 1.1 : 1;
@@ -175,8 +177,8 @@ static void run_medial(brio_context *ctx, const input *in, int way, outcome *out
     out->status = brio_power_shape(ctx, in->points, in->n, &o, &shape, way & 1 ? &crust : NULL, &s);
     if (shape) add_mesh(shape, out);
     if (crust) add_mesh(crust, out);
-    s.poles.delaunay_seconds = s.poles.poles_seconds = s.poles.power_seconds = s.poles.label_seconds =
-        s.simplify_seconds = s.shape_seconds = s.poles.noise_seconds = 0;
+    s.delaunay_seconds = s.poles_seconds = s.poles.power_seconds = s.poles.label_seconds = s.simplify_seconds =
+        s.shape_seconds = s.noise_seconds = 0;
     out->stats = hash_bytes(&s, sizeof s);
     brio_mesh_free(shape);
     brio_mesh_free(crust);
@@ -185,14 +187,14 @@ static void run_medial(brio_context *ctx, const input *in, int way, outcome *out
 enum { TIGHT = 1, DENSITY = 2, BOUNDARIES = 4, PIECES = 8 };
 
 static void run_cocone(brio_context *ctx, const input *in, int bits, outcome *out) {
-    brio_cocone_options o = brio_cocone_options_default();
-    brio_cocone_stats s = {.size = sizeof s};
+    brio_surface_options o = COCONE_OPTIONS;
+    brio_surface_stats s = {0};
     brio_mesh *mesh = NULL;
-    o.tight = (bits & TIGHT) != 0;
+    o.method = (bits & TIGHT) != 0 ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
     o.density = (bits & DENSITY) != 0;
     o.boundaries = (bits & BOUNDARIES) != 0;
     o.pieces = bits & PIECES ? 5 : 0;
-    out->status = brio_cocone(ctx, in->points, in->n, &o, &mesh, &s);
+    out->status = make_cocone(ctx, in->points, in->n, &o, &mesh, &s);
     if (mesh) add_mesh(mesh, out);
     s.delaunay_seconds = s.poles_seconds = s.candidates_seconds = s.labels_seconds = s.manifold_seconds =
         s.density_seconds = 0;
@@ -236,7 +238,7 @@ static size_t place[MOST];
 
 /* A scan with noise, as sparse as its number says. */
 static size_t noisy_scan(brio_context *ctx, uint64_t seed, size_t wanted) {
-    brio_generate_options g = brio_generate_options_default();
+    brio_generate_options g = {0};
     brio_mesh *mesh = NULL;
     g.noise = 0.3;
     g.seed = seed;

@@ -101,7 +101,7 @@ typedef struct {
 } result;
 
 static brio_delaunay_options counted(int order, int locate) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = (brio_order)order;
     o.locate = (brio_location)locate;
     o.block_size = 100;
@@ -126,7 +126,7 @@ static result run(int threads, const brio_delaunay_options *o) {
 
 static void nothing_is_counted_unless_asked_for(void) {
     make_set(0);
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     result r = run(1, &o);
     EXPECT(r.caches == 0 && r.stats.pages == 0 && r.stats.page_touches == 0 && r.stats.page_faults == 0);
 }
@@ -134,7 +134,7 @@ static void nothing_is_counted_unless_asked_for(void) {
 /* Every strategy; any number of threads and any instructions; and the triangulation is the same. */
 static void counts_depend_on_the_sequence_alone(void) {
     make_set(0);
-    brio_delaunay_options plain = brio_delaunay_options_default();
+    brio_delaunay_options plain = {0};
     uint64_t checksum = run(1, &plain).checksum;
     for (int locate = 0; locate < BRIO_LOCATION_TRACE; locate++) {
         brio_delaunay_options o = counted(BRIO_ORDER_BRIO_OCTREE, locate);
@@ -177,7 +177,7 @@ static void entries_end_with_the_totals(void) {
 static void wrong_pages_are_refused(void) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     const uint64_t sizes[] = {1, 32, 100, 4095};
     for (int i = 0; i < 4; i++) {
         o.page_bytes = sizes[i];

@@ -177,7 +177,7 @@ static void few_tetrahedra_allowed_is_a_status(void) {
     make_set(0);
     brio_context *ctx = new_context();
     brio_triangulation *t;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.max_tetrahedra = 5 * N;
     brio_context_set_threads(ctx, 4);
     EXPECT(brio_delaunay(ctx, points, NULL, N, &o, &t) == BRIO_ERR_TOO_LARGE && !t);

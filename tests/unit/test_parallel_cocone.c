@@ -1,6 +1,7 @@
 /* Co-cones by any number of threads: the same faces, properties and statistics to the last byte. */
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <string.h>
 
 enum { N = 3000 };
@@ -9,13 +10,13 @@ static double points[3 * N];
 
 typedef struct {
     brio_mesh *mesh;
-    brio_cocone_stats stats;
+    brio_surface_stats stats;
 } result;
 
-static result run(brio_context *ctx, size_t n, const brio_cocone_options *o, int threads) {
+static result run(brio_context *ctx, size_t n, const brio_surface_options *o, int threads) {
     result r = {.stats.size = sizeof r.stats};
     brio_context_set_threads(ctx, threads);
-    EXPECT(brio_cocone(ctx, points, n, o, &r.mesh, &r.stats) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_cocone(ctx, points, n, o, &r.mesh, &r.stats) == BRIO_OK, "%s", brio_message(ctx));
     r.stats.delaunay_seconds = r.stats.poles_seconds = r.stats.candidates_seconds = r.stats.labels_seconds =
         r.stats.manifold_seconds = r.stats.density_seconds = 0;
     return r;
@@ -39,9 +40,9 @@ static void expect_one_answer(size_t n) {
     static const int teams[] = {2, 3, 8};
     brio_context *ctx = new_context();
     for (int way = 0; way < 3; way++) {
-        brio_cocone_options o = brio_cocone_options_default();
+        brio_surface_options o = COCONE_OPTIONS;
         o.boundaries = o.density = way == 1;
-        o.tight = way == 2;
+        o.method = way == 2 ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
         result one = run(ctx, n, &o, 1);
         for (int i = BRIEF_TESTS ? 1 : 0; i < (BRIEF_TESTS ? 2 : 3); i++) {
             result many = run(ctx, n, &o, teams[i]);

@@ -3,6 +3,7 @@
 #include "harness.h"
 #include "points.h"
 #include "same_faces.h"
+#include "surface_calls.h"
 #include <string.h>
 
 enum { MANY = BRIEF_TESTS ? 3500 : 6000, MOST_THREADS = BRIEF_TESTS ? 3 : 5 };
@@ -11,7 +12,7 @@ static brio_mesh *surface_of(const double *p, int threads) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
     brio_context_set_threads(ctx, threads);
-    EXPECT(brio_labeled_delaunay(ctx, p, MANY, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_labeled(ctx, p, MANY, NULL, &mesh, NULL, NULL) == BRIO_OK, "%s", brio_message(ctx));
     return mesh; /* its context lives on with it */
 }
 

@@ -1,6 +1,7 @@
 /* Surfaces by any number of threads: the same mesh, statistics, certificate and file to the last byte. */
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <string.h>
 #include <unistd.h>
 
@@ -10,16 +11,16 @@ static double points[3 * N];
 
 /* Everything that a run gives but its times and its memory. */
 typedef struct {
-    brio_power_crust_stats stats;
+    brio_surface_stats stats;
     brio_certificate certificate;
     brio_mesh *mesh;
     char *file;
     long file_size;
 } result;
 
-static void forget_times(brio_power_crust_stats *s) {
-    s->poles.delaunay_seconds = s->poles.poles_seconds = s->poles.power_seconds = s->poles.label_seconds =
-        s->crust_seconds = s->simplify_seconds = s->poles.noise_seconds = 0;
+static void forget_times(brio_surface_stats *s) {
+    s->delaunay_seconds = s->poles_seconds = s->poles.power_seconds = s->poles.label_seconds = s->crust_seconds =
+        s->simplify_seconds = s->noise_seconds = 0;
 }
 
 static void read_back(const char *path, result *r) {
@@ -33,14 +34,14 @@ static void read_back(const char *path, result *r) {
     fclose(f);
 }
 
-static void run(brio_context *ctx, size_t n, const brio_power_crust_options *o, int threads, result *r) {
+static void run(brio_context *ctx, size_t n, const brio_surface_options *o, int threads, result *r) {
     char path[] = "/tmp/brio-test-XXXXXX.ply";
     int file = mkstemps(path, 4);
     EXPECT(file >= 0);
     close(file);
     brio_context_set_threads(ctx, threads);
-    *r = (result){.stats.size = sizeof r->stats, .certificate.size = sizeof r->certificate};
-    EXPECT(brio_power_crust(ctx, points, n, o, &r->mesh, NULL, &r->stats) == BRIO_OK, "%s", brio_message(ctx));
+    *r = (result){.mesh = NULL};
+    EXPECT(make_crust(ctx, points, n, o, &r->mesh, NULL, &r->stats) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, r->mesh, &r->certificate) == BRIO_OK);
     EXPECT(brio_write(ctx, path, r->mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
     forget_times(&r->stats);
@@ -69,7 +70,7 @@ static void expect_same(const result *a, const result *b, int threads) {
     EXPECT(a->file_size == b->file_size && !memcmp(a->file, b->file, (size_t)a->file_size), "%d threads", threads);
 }
 
-static void expect_one_answer(size_t n, const brio_power_crust_options *o) {
+static void expect_one_answer(size_t n, const brio_surface_options *o) {
     brio_context *ctx = new_context();
     result one, many;
     run(ctx, n, o, 1, &one);
@@ -89,9 +90,9 @@ static void every_number_of_threads_gives_the_same_surface(void) {
 }
 
 static void anything_is_the_same_by_threads(void) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     clustered_points(2, 1000, points);
-    o.triangulate = 1;
+    o.polygons = 0;
     expect_one_answer(1000, &o);
     integer_points(3, 1000, 8, points);
     o.open = 4;
@@ -107,7 +108,7 @@ static void sphere_is_the_same_by_threads(void) {
 static void every_labeling_is_the_same_by_threads(void) {
     clustered_points(5, 700, points);
     for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
-        brio_power_crust_options o = brio_power_crust_options_default();
+        brio_surface_options o = CRUST_OPTIONS;
         o.poles.labeling = (brio_labeling)labeling;
         expect_one_answer(700, &o);
     }

@@ -131,7 +131,7 @@ static void check_set(int which, bool weighted) {
     }
     brio_context *ctx = new_context();
     brio_triangulation2 *t = NULL, *u = NULL;
-    brio_delaunay2_options o = brio_delaunay2_options_default();
+    brio_delaunay2_options o = {0};
     uint64_t first = 0, second = 1;
     EXPECT(brio_delaunay2(ctx, p, weighted ? w : NULL, n, &o, &t) == BRIO_OK, "%s: %s", name, brio_message(ctx));
     EXPECT(brio_triangulation2_check(ctx, t, p, weighted ? w : NULL, n) == BRIO_OK, "%s: %s", name, brio_message(ctx));
@@ -311,7 +311,7 @@ static void bad_input_is_refused_with_its_place(void) {
     EXPECT(!strcmp(brio_message(ctx), "point 2: weight is infinite (1 such point in all)"), "%s", brio_message(ctx));
     EXPECT(brio_delaunay2_flat(ctx, solid, NULL, 5, NULL, &t) == BRIO_ERR_NO_ANSWER && !t);
     EXPECT(!strcmp(brio_message(ctx), "point 4 is off the plane of points 0, 1 and 2"), "%s", brio_message(ctx));
-    brio_delaunay2_options o = brio_delaunay2_options_default();
+    brio_delaunay2_options o = {0};
     o.round_ratio = 1;
     EXPECT(brio_delaunay2(ctx, solid, NULL, 4, &o, &t) == BRIO_ERR_ARGUMENT && !t);
     EXPECT(brio_delaunay2(ctx, solid, NULL, (size_t)1 << 29, NULL, &t) == BRIO_ERR_TOO_LARGE && !t);

@@ -170,7 +170,7 @@ static void answers_do_not_depend_on_the_threads(void) {
     static double x[2 * 20 * QUERIES], values[MOST], rows[3][20 * QUERIES];
     static uint32_t found[3][20 * QUERIES], nearest[3][20 * QUERIES];
     size_t count = 20 * QUERIES;
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     place(&s, "uniform", 300, false);
     for (size_t i = 0; i < 20; i++) make_queries(&s, x + 2 * QUERIES * i);
     for (size_t i = 0; i < s.n; i++) values[i] = sin((double)i);
@@ -191,7 +191,7 @@ static void answers_do_not_depend_on_the_threads(void) {
 
 static brio_status interpolate(const fixture *f, int method, const double *values, size_t components, const double *x,
                                size_t count, double *rows) {
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     o.method = (brio_interpolation_method)method;
     o.values = values;
     o.components = components;
@@ -556,7 +556,7 @@ static brio_status all_work(brio_context *ctx) {
     brio_triangulation2 *t = NULL;
     brio_locator2 *l = NULL;
     brio_diagram2 *d = NULL;
-    brio_interpolation o = brio_interpolation_default();
+    brio_interpolation o = {0};
     o.values = values;
     place(&s, "uniform", 200, false);
     make_queries(&s, x);

@@ -4,6 +4,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include "reconstruct/power_crust/labeled_poles.h"
 #include "reconstruct/labels/pole_queue.h"
 #include "reconstruct/labels/roof_duality.h"
@@ -73,7 +74,7 @@ static void check_opposite(const brio_pole_graph *g, bool balanced, size_t *doub
 
 static void edges_are_those_of_the_triangulation_and_the_samples(void) {
     static double p[3 * SAMPLES];
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     size_t doubted = 0;
     for (int shape = 0; shape < 4; shape++)
         for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
@@ -85,7 +86,7 @@ static void edges_are_those_of_the_triangulation_and_the_samples(void) {
             if (shape == 1) clustered_points(2, SAMPLES, p);
             if (shape == 2) sphere_points(3, SAMPLES, p);
             if (shape == 3) integer_points(4, SAMPLES, 5, p);
-            EXPECT(brio_pole_request_of(ctx, &o.poles, o.seed, &request) == BRIO_OK);
+            EXPECT(brio_pole_request_of(ctx, &o.poles, o.noise, o.seed, &request) == BRIO_OK);
             EXPECT(brio_labeled_poles_find(ctx, p, SAMPLES, &request, &l) == BRIO_OK, "%s", brio_message(ctx));
             bool balanced = labeling == BRIO_LABELING_GLOBAL;
             check_neighbours(&l.graph, labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0, balanced);

@@ -3,15 +3,16 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <math.h>
 
 /* Runs the crust and its certificate; 1 when a surface came out, 0 when there is no inside. */
 static int crust_is_certified(brio_context *ctx, const double *p, size_t n, bool triangulate, uint64_t trial) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    o.triangulate = triangulate;
-    brio_status status = brio_power_crust(ctx, p, n, &o, &mesh, NULL, NULL);
+    brio_certificate c = {0};
+    o.polygons = !(triangulate);
+    brio_status status = make_crust(ctx, p, n, &o, &mesh, NULL, NULL);
     EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "trial %llu: %s", (unsigned long long)trial,
            brio_message(ctx));
     if (status != BRIO_OK) return 0;
@@ -48,14 +49,14 @@ static void small_inputs_are_closed_manifold_oriented(void) {
 static void expect_genus(const double *p, size_t n, int64_t genus, double volume) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_power_crust_stats s = {.size = sizeof s};
-    EXPECT(brio_power_crust(ctx, p, n, NULL, &mesh, NULL, &s) == BRIO_OK, "%s", brio_message(ctx));
+    brio_certificate c = {0};
+    brio_surface_stats s = {0};
+    EXPECT(make_crust(ctx, p, n, NULL, &mesh, NULL, &s) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.components == 1 && c.genus == genus && c.closed && c.manifold && c.oriented, "genus %lld, %zu components",
            (long long)c.genus, c.components);
     EXPECT(fabs(c.volume - volume) < 0.02 * volume, "volume %g", c.volume);
-    EXPECT(s.poles.samples == n && s.poles.inner + s.poles.outer == s.poles.poles);
+    EXPECT(s.samples == n && s.poles.inner + s.poles.outer == s.poles.poles);
     brio_certificate_free(&c);
     brio_mesh_free(mesh);
     brio_context_free(ctx);
@@ -81,8 +82,8 @@ static void shuffled_samples_give_the_same_mesh(void) {
     shuffle_points(5, 3000, p, q, to);
     brio_context *ctx = new_context();
     brio_mesh *a, *b;
-    EXPECT(brio_power_crust(ctx, p, 3000, NULL, &a, NULL, NULL) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, q, 3000, NULL, &b, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, p, 3000, NULL, &a, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, q, 3000, NULL, &b, NULL, NULL) == BRIO_OK);
     EXPECT(a->num_vertices == b->num_vertices && a->num_faces == b->num_faces);
     EXPECT(!memcmp(a->vertices, b->vertices, 24 * a->num_vertices));
     EXPECT(!memcmp(a->face_offsets, b->face_offsets, 8 * (a->num_faces + 1)));
@@ -98,8 +99,8 @@ static void duplicates_change_nothing(void) {
     memcpy(p + 6000, p, 6000 * sizeof *p);
     brio_context *ctx = new_context();
     brio_mesh *a, *b;
-    EXPECT(brio_power_crust(ctx, p, 2000, NULL, &a, NULL, NULL) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, p, 4000, NULL, &b, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, p, 2000, NULL, &a, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, p, 4000, NULL, &b, NULL, NULL) == BRIO_OK);
     EXPECT(a->num_vertices == b->num_vertices && !memcmp(a->vertices, b->vertices, 24 * a->num_vertices));
     brio_mesh_free(a);
     brio_mesh_free(b);
@@ -112,8 +113,8 @@ static void scale_of_the_input_is_the_scale_of_the_output(void) {
     for (int i = 0; i < 4500; i++) q[i] = p[i] * 0x1p400;
     brio_context *ctx = new_context();
     brio_mesh *a, *b;
-    EXPECT(brio_power_crust(ctx, p, 1500, NULL, &a, NULL, NULL) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, q, 1500, NULL, &b, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, p, 1500, NULL, &a, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, q, 1500, NULL, &b, NULL, NULL) == BRIO_OK);
     bool same = a->num_vertices == b->num_vertices;
     for (size_t i = 0; same && i < 3 * a->num_vertices; i++) same = a->vertices[i] * 0x1p400 == b->vertices[i];
     EXPECT(same);
@@ -126,17 +127,16 @@ static void inputs_without_an_inside_say_so(void) {
     const double three[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0}, flat[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, .5, .5, 0};
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    EXPECT(brio_power_crust(ctx, NULL, 0, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_power_crust(ctx, three, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_power_crust(ctx, flat, 5, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_crust(ctx, NULL, 0, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_crust(ctx, three, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_crust(ctx, flat, 5, NULL, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     const double bad[9] = {0, 0, 0, 1, NAN, 0, 0, 1, INFINITY};
-    EXPECT(brio_power_crust(ctx, bad, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
+    EXPECT(make_crust(ctx, bad, 3, NULL, &mesh, NULL, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
     EXPECT(!strcmp(brio_message(ctx), "point 1: y is NaN (2 such points in all)"), "%s", brio_message(ctx));
     const double once[9] = {1, 1, 1, 1, 1, 1, 1, 1, 1};
-    brio_power_crust_stats s = {.size = sizeof s};
-    EXPECT(brio_power_crust(ctx, once, 3, NULL, &mesh, NULL, &s) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(s.poles.samples == 1 && !strcmp(brio_message(ctx), "1 distinct points span no solid"), "%s",
-           brio_message(ctx));
+    brio_surface_stats s = {0};
+    EXPECT(make_crust(ctx, once, 3, NULL, &mesh, NULL, &s) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(s.samples == 1 && !strcmp(brio_message(ctx), "1 distinct points span no solid"), "%s", brio_message(ctx));
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }
@@ -145,7 +145,7 @@ static brio_status small_crust(brio_context *ctx) {
     double p[3 * 60];
     brio_mesh *mesh;
     sphere_points(3, 60, p);
-    brio_status status = brio_power_crust(ctx, p, 60, NULL, &mesh, NULL, NULL);
+    brio_status status = make_crust(ctx, p, 60, NULL, &mesh, NULL, NULL);
     brio_mesh_free(mesh);
     return status;
 }

@@ -45,7 +45,7 @@ static errors errors_of(const medial_shape *shape, double h, uint64_t seed) {
     brio_context *ctx = new_context();
     cloud c = medial_sample(shape, h, seed);
     brio_mesh *mesh;
-    brio_power_shape_stats s = {.size = sizeof s};
+    brio_power_shape_stats s = {0};
     errors e = {INFINITY, INFINITY};
     EXPECT(brio_power_shape(ctx, c.points, c.count, NULL, &mesh, NULL, &s) == BRIO_OK, "%s: %s", shape->name,
            brio_message(ctx));
@@ -106,7 +106,7 @@ static long euler_of_shape(const brio_mesh *m) {
 
 /* Of the solid that a closed surface bounds: half of that of the surface. */
 static long euler_of_solid(brio_context *ctx, const brio_mesh *crust) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, crust, &c) == BRIO_OK && c.closed && c.manifold);
     long euler = (long)c.components - (long)c.genus;
     brio_certificate_free(&c);
@@ -118,7 +118,7 @@ static long euler_of_solid(brio_context *ctx, const brio_mesh *crust) {
 static void expect_euler(const char *name, const double *points, size_t n, long expected) {
     brio_context *ctx = new_context();
     for (int simplified = 0; simplified < 2; simplified++) {
-        brio_power_shape_options o = brio_power_shape_options_default();
+        brio_power_shape_options o = {0};
         brio_mesh *shape, *crust;
         if (simplified) o.scale = 1.1, o.redundancy = 0.01;
         EXPECT(brio_power_shape(ctx, points, n, &o, &shape, &crust, NULL) == BRIO_OK, "%s", brio_message(ctx));

@@ -3,6 +3,7 @@
 #include "points.h"
 #include "triangulation/inserter.h"
 #include "harness.h"
+#include "surface_calls.h"
 
 static brio_context *ctx;
 
@@ -25,7 +26,7 @@ static uint64_t work_of(const brio_delaunay_stats *s) {
 }
 
 static brio_delaunay_stats triangulate(const double *p, size_t n, brio_location locate, watch *w) {
-    brio_delaunay_options options = brio_delaunay_options_default();
+    brio_delaunay_options options = {0};
     brio_triangulation *t = NULL;
     brio_delaunay_stats stats = {0};
     options.locate = locate;
@@ -88,15 +89,15 @@ static brio_status triangulate_and_check(const double *p, size_t n) {
 static brio_status make_power_crust(const double *p, size_t n) {
     brio_mesh *mesh = NULL;
     int64_t crossings;
-    brio_status status = brio_power_crust(ctx, p, n, NULL, &mesh, NULL, NULL);
+    brio_status status = make_crust(ctx, p, n, NULL, &mesh, NULL, NULL);
     if (status == BRIO_OK) status = brio_mesh_self_intersections(ctx, mesh, &crossings);
     brio_mesh_free(mesh);
     return status;
 }
 
-static brio_status make_cocone(const double *p, size_t n) {
+static brio_status run_cocone(const double *p, size_t n) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_cocone(ctx, p, n, NULL, &mesh, NULL);
+    brio_status status = make_cocone(ctx, p, n, NULL, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }
@@ -137,7 +138,7 @@ static void cancelled_at_each_report_everything_is_given_back(void) {
     for (int threads = 1; threads <= 2; threads++) {
         expect_cancelled_at_each_report(triangulate_and_check, p, N, threads);
         expect_cancelled_at_each_report(make_power_crust, p, N, threads);
-        expect_cancelled_at_each_report(make_cocone, p, N, threads);
+        expect_cancelled_at_each_report(run_cocone, p, N, threads);
         expect_cancelled_at_each_report(list_edges, p, N, threads);
     }
     free(p);
@@ -166,33 +167,33 @@ enum { SAMPLES = 4000 };
 
 static brio_mesh *scan;
 
-static brio_status surface(brio_labeled_delaunay_options o) {
+static brio_status surface(brio_surface_options o) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_labeled_delaunay(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL, NULL);
+    brio_status status = make_labeled(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL, NULL);
     brio_mesh_free(mesh);
     return status;
 }
 static brio_status plain_surface(void) {
-    return surface(brio_labeled_delaunay_options_default());
+    return surface((brio_surface_options)LABELED_OPTIONS);
 }
 static brio_status every_option_of_surfaces(void) {
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = LABELED_OPTIONS;
     o.simplify = 1, o.confidence = 1, o.open = 4, o.noise = BRIO_NOISE_SMOOTH;
     return surface(o);
 }
 static brio_status power_crust(void) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh = NULL;
     double *normals = malloc((3 * scan->num_vertices + 1) * sizeof *normals);
     o.simplify = 1;
-    brio_status status = brio_power_crust(ctx, scan->vertices, scan->num_vertices, &o, &mesh, normals, NULL);
+    brio_status status = make_crust(ctx, scan->vertices, scan->num_vertices, &o, &mesh, normals, NULL);
     brio_mesh_free(mesh);
     free(normals);
     return status;
 }
 static brio_status offset(void) {
     brio_mesh *mesh = NULL;
-    brio_status status = brio_offset_surface(ctx, scan->vertices, scan->num_vertices, 0.05, NULL, &mesh, NULL);
+    brio_status status = make_offset(ctx, scan->vertices, scan->num_vertices, 0.05, NULL, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }
@@ -204,10 +205,10 @@ static brio_status power_shape(void) {
     return status;
 }
 static brio_status cocone(bool tight, uint32_t pieces) {
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh = NULL;
-    o.tight = tight, o.pieces = pieces;
-    brio_status status = brio_cocone(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL);
+    o.method = tight, o.pieces = pieces ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
+    brio_status status = make_cocone(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }
@@ -228,7 +229,7 @@ static brio_status triangulation(void) {
 }
 static brio_status triangulation_by_history(void) {
     brio_triangulation *t = NULL;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.locate = BRIO_LOCATION_HISTORY;
     brio_status status = brio_delaunay(ctx, scan->vertices, NULL, scan->num_vertices, &o, &t);
     brio_triangulation_free(t);
@@ -261,7 +262,7 @@ static brio_status small_scan(void) {
 }
 static brio_status cells(void) {
     brio_cells *out = NULL;
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     o.vertices = 1;
     brio_status status = brio_voronoi_cells(ctx, NULL, scan->vertices, NULL, scan->num_vertices, &o, &out);
     brio_cells_free(out);

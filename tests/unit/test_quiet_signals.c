@@ -58,7 +58,7 @@ static void scratch_file_over_the_limit_does_not_end_the_process(void) {
 
 /* Writes to standard output, whose reader is gone. */
 static brio_status write_to_nobody(const brio_mesh *mesh) {
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.format = BRIO_FORMAT_PLY;
     int ends[2], out = dup(1);
     EXPECT(pipe(ends) == 0);

@@ -7,7 +7,7 @@ enum { N = 10000 };
 static double points[3 * N], weights[N];
 
 static brio_delaunay_options options_of(int order, uint64_t record_every) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = (brio_order)order;
     o.record_every = record_every;
     return o;

@@ -4,6 +4,7 @@
 #include "harness.h"
 #include "points.h"
 #include "same_faces.h"
+#include "surface_calls.h"
 #include <math.h>
 #include <string.h>
 
@@ -35,12 +36,12 @@ static void flip(unsigned percent, double *normals) {
 }
 
 /* Makes the surface of the room and returns its volume: negative if its faces look inwards. */
-static double volume_of(brio_context *ctx, const brio_evidence *e, brio_labeled_delaunay_stats *s) {
+static double volume_of(brio_context *ctx, const brio_evidence *e, brio_surface_stats *s) {
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_certificate c = {0};
+    brio_surface_options o = LABELED_OPTIONS;
     o.evidence = e;
-    EXPECT(brio_labeled_delaunay(ctx, room, MANY, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_labeled(ctx, room, MANY, &o, &mesh, NULL, s) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.manifold && c.oriented && c.closed, "closed %d", c.closed);
     double volume = c.volume;
@@ -52,8 +53,8 @@ static double volume_of(brio_context *ctx, const brio_evidence *e, brio_labeled_
 static void a_room_looks_inwards(void) {
     static const double middle[3] = {2.5, 2, 1.5};
     brio_context *ctx = new_context();
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
-    brio_evidence normals = brio_evidence_default(), scanner = normals;
+    brio_surface_stats s = {0};
+    brio_evidence normals = {0}, scanner = normals;
     normals.normals = inwards;
     scanner.origins = middle, scanner.num_origins = 1;
     EXPECT(volume_of(ctx, NULL, &s) > 57 && s.evidence == 0 && s.told == 0);
@@ -66,25 +67,25 @@ static void a_room_looks_inwards(void) {
 static void a_co_cone_looks_inwards(void) {
     brio_context *ctx = new_context();
     brio_mesh *mesh;
-    brio_certificate c = {.size = sizeof c};
-    brio_cocone_options o = brio_cocone_options_default();
-    brio_evidence e = brio_evidence_default();
+    brio_certificate c = {0};
+    brio_surface_options o = COCONE_OPTIONS;
+    brio_evidence e = {0};
     e.normals = inwards;
     o.evidence = &e;
-    EXPECT(brio_cocone(ctx, room, MANY, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_cocone(ctx, room, MANY, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK && c.volume < -55, "%g", c.volume);
     brio_certificate_free(&c);
     brio_mesh_free(mesh);
     o.pieces = 2;
-    EXPECT(brio_cocone(ctx, room, MANY, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT);
+    EXPECT(make_cocone(ctx, room, MANY, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT);
     brio_context_free(ctx);
 }
 
 static void wrong_normals_lose_to_the_rest(void) {
     static double normals[3 * MANY];
     brio_context *ctx = new_context();
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
-    brio_evidence e = brio_evidence_default();
+    brio_surface_stats s = {0};
+    brio_evidence e = {0};
     e.normals = normals;
     flip(10, normals);
     EXPECT(volume_of(ctx, &e, &s) < -57 && s.agreement > 0.87 && s.agreement < 0.93, "%g", s.agreement);
@@ -96,8 +97,8 @@ static void wrong_normals_lose_to_the_rest(void) {
 static void normals_drawn_by_lot_change_nothing(void) {
     static double normals[3 * MANY];
     brio_context *ctx = new_context();
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
-    brio_evidence e = brio_evidence_default();
+    brio_surface_stats s = {0};
+    brio_evidence e = {0};
     e.normals = normals;
     double without = volume_of(ctx, NULL, &s);
     flip(50, normals);
@@ -112,8 +113,8 @@ static void places_by_table_by_point_and_alone_are_the_same(void) {
     static double each[3 * MANY];
     static uint32_t of[MANY];
     brio_context *ctx = new_context();
-    brio_labeled_delaunay_stats s = {.size = sizeof s};
-    brio_evidence table = brio_evidence_default(), alone = table, by_point = table;
+    brio_surface_stats s = {0};
+    brio_evidence table = {0}, alone = table, by_point = table;
     for (size_t p = 0; p < MANY; p++) {
         of[p] = 1;
         memcpy(each + 3 * p, places + 3, 3 * sizeof *each);
@@ -125,21 +126,21 @@ static void places_by_table_by_point_and_alone_are_the_same(void) {
     EXPECT(volume < -57 && volume_of(ctx, &alone, &s) == volume && volume_of(ctx, &by_point, &s) == volume);
     for (size_t p = 0; p < MANY; p++) of[p] = UINT32_MAX;
     EXPECT(volume_of(ctx, &table, &s) > 57 && s.evidence == 0);
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = LABELED_OPTIONS;
     brio_mesh *mesh;
     table.origin_of = NULL; /* two places for many points */
     o.evidence = &table;
-    EXPECT(brio_labeled_delaunay(ctx, room, MANY, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_labeled(ctx, room, MANY, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     brio_context_free(ctx);
 }
 
 static brio_status make_surface(brio_context *ctx) {
     brio_mesh *mesh;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_evidence e = brio_evidence_default();
+    brio_surface_options o = LABELED_OPTIONS;
+    brio_evidence e = {0};
     e.normals = inwards;
     o.evidence = &e;
-    brio_status status = brio_labeled_delaunay(ctx, room, 300, &o, &mesh, NULL, NULL);
+    brio_status status = make_labeled(ctx, room, 300, &o, &mesh, NULL, NULL);
     brio_mesh_free(mesh);
     return status;
 }

@@ -99,7 +99,7 @@ static void thinning_refuses(void) {
 static void infinite_spacings_and_factors_are_said_to_be_infinite(void) {
     const double point[3] = {0, 0, 0};
     brio_context *ctx = new_context();
-    brio_outliers_options o = brio_outliers_options_default();
+    brio_outliers_options o = {0};
     uint8_t chosen[1];
     EXPECT(brio_thin(ctx, point, 1, INFINITY, chosen, NULL) == BRIO_ERR_ARGUMENT);
     EXPECT(strstr(brio_message(ctx), "expected a finite number above 0"), "%s", brio_message(ctx));
@@ -155,7 +155,7 @@ static void find_outliers_at(const double *points, size_t n, int exponent, uint8
 /* Counts the outliers of the grid of `side`^3 points of that spacing, moved by `shift`. */
 static size_t count_grid_outliers(int side, double spacing, double shift, int neighbours) {
     brio_context *ctx = new_context();
-    brio_outliers_options o = brio_outliers_options_default();
+    brio_outliers_options o = {0};
     double points[3 * 125];
     uint8_t outlier[125];
     size_t n = 0, count = 0;
@@ -209,7 +209,7 @@ static void grids_thinned_to_their_spacing_stay_whole(void) {
 /* A spacing that is larger by more than rounding is above the threshold still. */
 static void unequal_spacings_are_outliers_by_factor_1(void) {
     brio_context *ctx = new_context();
-    brio_outliers_options o = brio_outliers_options_default();
+    brio_outliers_options o = {0};
     const double points[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 3 + 1e-12, 0, 0};
     uint8_t outlier[4];
     o.factor = 1;

@@ -10,7 +10,7 @@ typedef struct {
 
 static brio_triangulation *triangulate(brio_context *ctx, const input *in) {
     brio_triangulation *t = NULL;
-    brio_delaunay_options options = brio_delaunay_options_default();
+    brio_delaunay_options options = {0};
     options.order = in->order;
     EXPECT(brio_delaunay(ctx, in->points, in->weights, in->n, &options, &t) == BRIO_OK);
     return t;

@@ -142,7 +142,7 @@ static void edges_and_corners_of_faces_apart(void) {
 static void wrong_calls_are_refused(void) {
     brio_mesh *m = NULL;
     double p[3] = {0, 0, NAN}, d;
-    brio_coverage c = {.size = sizeof c};
+    brio_coverage c = {0};
     EXPECT(brio_mesh_new(ctx, &m) == BRIO_OK);
     EXPECT(brio_mesh_signed_distances(ctx, m, p, 1, &d) == BRIO_ERR_NOT_FINITE);
     p[2] = 0;
@@ -179,7 +179,7 @@ static void a_hole_is_one_bridge(void) {
             for (size_t i = 0; i < 3 * m->num_vertices; i++) m->vertices[i] *= (N - 1) / widest;
         }
         uint8_t *bridge = malloc(m->num_faces), *left = malloc(n);
-        brio_coverage c = {.size = sizeof c};
+        brio_coverage c = {0};
         size_t count = 0;
         EXPECT(brio_mesh_coverage(ctx, m, p, n, bridge, &c) == BRIO_OK, "%s", brio_message(ctx));
         EXPECT(brio_mesh_left_out(ctx, m, p, n, left, &count) == BRIO_OK && count == c.left_out);

@@ -22,7 +22,7 @@ static brio_status simplify_within(brio_context *c, brio_mesh *mesh, size_t targ
 }
 
 static brio_certificate certify(const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK, "%s", brio_message(ctx));
     return c;
 }
@@ -252,7 +252,7 @@ static void sphere_is_not_cut_deeper_than_the_tolerance(void) {
             EXPECT(r <= 1 + 4 * sqrt(tolerance), "%g, tolerance %g", r, tolerance);
         }
         EXPECT(mesh->num_faces < most && is_sound(mesh), "%zu faces, tolerance %g", mesh->num_faces, tolerance);
-        brio_distance d = {.size = sizeof d};
+        brio_distance d = {0};
         EXPECT(brio_mesh_distance(ctx, mesh, whole, 20000, 1, &d) == BRIO_OK);
         EXPECT(d.hausdorff < 4 * tolerance, "%g, tolerance %g", d.hausdorff, tolerance);
         most = mesh->num_faces;
@@ -450,7 +450,7 @@ static brio_status simplify_a_grid(brio_context *c) {
     brio_status status = brio_mesh_new(c, &mesh);
     if (status == BRIO_OK) status = brio_mesh_set_vertices(mesh, points, VERTICES);
     if (status == BRIO_OK) status = brio_mesh_set_faces(mesh, offsets, triangles, count / 3);
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     o.tolerance = 100;
     if (status == BRIO_OK) status = brio_mesh_simplify(c, mesh, &o);
     if (status == BRIO_OK) EXPECT(mesh->num_faces < count / 3);
@@ -465,7 +465,7 @@ static void refused_memory_is_a_status_and_leaves_nothing(void) {
 /* --- brio_mesh_simplify --- */
 
 static brio_status simplify_to(brio_mesh *mesh, size_t target_faces, double tolerance) {
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     o.target_faces = target_faces;
     o.tolerance = tolerance;
     return brio_mesh_simplify(ctx, mesh, &o);
@@ -650,7 +650,7 @@ static brio_mesh *quads_with_a_fin(void) {
 
 static void any_mesh_is_simplified(void) {
     brio_mesh *mesh = quads_with_a_fin();
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     brio_certificate before = certify(mesh);
     o.target_faces = 40;
     EXPECT(brio_mesh_simplify(ctx, mesh, &o) == BRIO_ERR_ARGUMENT);

@@ -13,14 +13,14 @@ enum { LARGE = 1 << 14 }; /* meshes of more vertices have several blocks */
 /* --- calls --- */
 
 static brio_status simplify_to(brio_context *c, brio_mesh *mesh, size_t target_faces, double tolerance) {
-    brio_mesh_simplify_options o = brio_mesh_simplify_options_default();
+    brio_mesh_simplify_options o = {0};
     o.target_faces = target_faces;
     o.tolerance = tolerance;
     return brio_mesh_simplify(c, mesh, &o);
 }
 
 static brio_certificate certify(const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK, "%s", brio_message(ctx));
     return c;
 }
@@ -209,7 +209,7 @@ static void triangles_without_area_do_not_turn_over(void) {
  * does not depend on the size. */
 static double error_of_a_tenth(double cell, size_t *vertices) {
     brio_mesh *whole = random_surface(ctx, 0, cell, 3), *mesh;
-    brio_distance d = {.size = sizeof d};
+    brio_distance d = {0};
     for (size_t v = 0; v < whole->num_vertices; v++) { /* a sphere exactly */
         double *p = whole->vertices + 3 * v, r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
         for (int k = 0; k < 3; k++) p[k] /= r;

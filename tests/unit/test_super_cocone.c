@@ -6,6 +6,7 @@
 #include "reconstruct/cocone/octree_pieces.h"
 #include "reconstruct/cocone/seams.h"
 #include "same_faces.h"
+#include "surface_calls.h"
 
 /* What threads do is for test_parallel_cocone; here they would only wait for each other. */
 static brio_context *serial_context(void) {
@@ -18,13 +19,13 @@ static void dense_samples_give_the_faces_of_the_whole(void) {
     static double p[3 * 4000];
     brio_context *ctx = serial_context();
     for (int sphere = 0; sphere < 2; sphere++) {
-        brio_cocone_options o = brio_cocone_options_default();
+        brio_surface_options o = COCONE_OPTIONS;
         brio_mesh *whole, *pieces;
-        brio_cocone_stats s = {.size = sizeof s}, t = {.size = sizeof t};
+        brio_surface_stats s = {0}, t = {.size = sizeof t};
         sphere ? sphere_points(3, 4000, p) : torus_points(3, 4000, p);
-        EXPECT(brio_cocone(ctx, p, 4000, &o, &whole, &s) == BRIO_OK);
+        EXPECT(make_cocone(ctx, p, 4000, &o, &whole, &s) == BRIO_OK);
         for (o.pieces = 2; o.pieces < 20; o.pieces += 7) {
-            EXPECT(brio_cocone(ctx, p, 4000, &o, &pieces, &t) == BRIO_OK, "%s", brio_message(ctx));
+            EXPECT(make_cocone(ctx, p, 4000, &o, &pieces, &t) == BRIO_OK, "%s", brio_message(ctx));
             EXPECT(t.pieces >= o.pieces && t.unmatched == 0 && t.samples == s.samples && t.unused == 0);
             expect_same_faces(whole, NULL, pieces);
             brio_mesh_free(pieces);
@@ -43,7 +44,7 @@ static void noisy_torus_twice(uint64_t seed, double noise, double *p) {
 }
 
 static void expect_closed_torus(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == 1);
     brio_certificate_free(&c);
@@ -55,16 +56,16 @@ static void order_of_samples_and_duplicates_change_nothing(void) {
     static size_t to[4000];
     brio_context *ctx = serial_context();
     for (uint64_t seed = 4; seed < (BRIEF_TESTS ? 5 : 7); seed++) {
-        brio_cocone_options o = brio_cocone_options_default();
+        brio_surface_options o = COCONE_OPTIONS;
         brio_mesh *whole, *pieces, *shuffled, *twice;
-        brio_cocone_stats s = {.size = sizeof s};
+        brio_surface_stats s = {0};
         noisy_torus_twice(seed, seed % 2 ? 0.02 : 0.04, p);
         shuffle_points(seed + 2, 4000, p, q, to);
-        EXPECT(brio_cocone(ctx, p, 4000, &o, &whole, NULL) == BRIO_OK);
+        EXPECT(make_cocone(ctx, p, 4000, &o, &whole, NULL) == BRIO_OK);
         o.pieces = 5;
-        EXPECT(brio_cocone(ctx, p, 4000, &o, &pieces, NULL) == BRIO_OK);
-        EXPECT(brio_cocone(ctx, q, 4000, &o, &shuffled, NULL) == BRIO_OK);
-        EXPECT(brio_cocone(ctx, p, 8000, &o, &twice, &s) == BRIO_OK && s.samples == 4000);
+        EXPECT(make_cocone(ctx, p, 4000, &o, &pieces, NULL) == BRIO_OK);
+        EXPECT(make_cocone(ctx, q, 4000, &o, &shuffled, NULL) == BRIO_OK);
+        EXPECT(make_cocone(ctx, p, 8000, &o, &twice, &s) == BRIO_OK && s.samples == 4000);
         expect_closed_torus(ctx, whole);
         expect_same_faces(whole, NULL, pieces);
         expect_same_faces(whole, to, shuffled);
@@ -82,16 +83,16 @@ static void anything_is_manifold_oriented(void) {
     brio_context *ctx = serial_context();
     int surfaces = 0;
     for (uint64_t trial = 0; trial < 120; trial += BRIEF_TESTS ? 5 : 1) {
-        brio_cocone_options o = brio_cocone_options_default();
-        brio_certificate c = {.size = sizeof c};
+        brio_surface_options o = COCONE_OPTIONS;
+        brio_certificate c = {0};
         brio_mesh *mesh;
-        brio_cocone_stats s = {.size = sizeof s};
+        brio_surface_stats s = {0};
         size_t n = 4 + trial * 3;
         o.pieces = 2 + trial % 9;
         o.boundaries = trial >> 1 & 1;
         o.density = trial >> 2 & 1;
         trial % 3 ? integer_points(trial, n, 3 + (uint32_t)(trial % 7), p) : clustered_points(trial, n, p);
-        brio_status status = brio_cocone(ctx, p, n, &o, &mesh, &s);
+        brio_status status = make_cocone(ctx, p, n, &o, &mesh, &s);
         EXPECT(status == BRIO_OK || (status == BRIO_ERR_NO_ANSWER && !mesh), "%s", brio_message(ctx));
         if (status != BRIO_OK) continue;
         EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
@@ -108,13 +109,13 @@ static void anything_is_manifold_oriented(void) {
 static void pieces_need_a_quarter_of_the_memory(void) {
     static double p[3 * 80000];
     brio_context *whole = serial_context(), *parts = serial_context();
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
     torus_points(3, 80000, p);
-    EXPECT(brio_cocone(whole, p, 80000, &o, &mesh, NULL) == BRIO_OK);
+    EXPECT(make_cocone(whole, p, 80000, &o, &mesh, NULL) == BRIO_OK);
     brio_mesh_free(mesh);
     o.pieces = 24;
-    EXPECT(brio_cocone(parts, p, 80000, &o, &mesh, NULL) == BRIO_OK);
+    EXPECT(make_cocone(parts, p, 80000, &o, &mesh, NULL) == BRIO_OK);
     brio_mesh_free(mesh);
     EXPECT(brio_context_memory_peak(parts) < brio_context_memory_peak(whole) / 4, "%zu of %zu",
            brio_context_memory_peak(parts), brio_context_memory_peak(whole));
@@ -183,11 +184,11 @@ static void the_longest_fan_stays(void) {
 static brio_status small_pieces(brio_context *ctx) {
     double p[3 * 90];
     brio_mesh *mesh;
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     o.boundaries = o.density = 1;
     o.pieces = 3;
     sphere_points(3, 90, p);
-    brio_status status = brio_cocone(ctx, p, 90, &o, &mesh, NULL);
+    brio_status status = make_cocone(ctx, p, 90, &o, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }
@@ -199,14 +200,14 @@ static void every_failed_allocation_is_a_status(void) {
 static void hopeless_inputs_say_so(void) {
     const double flat[15] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, .5, .5, 0}, bad[6] = {0, 0, 0, 1, NAN, 0};
     brio_context *ctx = serial_context();
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
     o.pieces = 3;
-    EXPECT(brio_cocone(ctx, NULL, 0, &o, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
-    EXPECT(brio_cocone(ctx, bad, 2, &o, &mesh, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
-    o.tight = 1;
-    EXPECT(brio_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_cocone(ctx, NULL, 0, &o, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_cocone(ctx, bad, 2, &o, &mesh, NULL) == BRIO_ERR_NOT_FINITE && !mesh);
+    o.method = BRIO_SURFACE_TIGHT_COCONE;
+    EXPECT(make_cocone(ctx, flat, 5, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }

@@ -6,6 +6,7 @@
 #include "known_surfaces.h"
 #include "points.h"
 #include "same_faces.h"
+#include "surface_calls.h"
 #include <math.h>
 #include <string.h>
 
@@ -27,7 +28,7 @@ static size_t sphere_below(double cap, uint64_t seed, size_t n, double *p) {
 }
 
 static brio_certificate certificate_of(brio_context *ctx, const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
     brio_certificate copy = c;
     copy.genera = NULL;
@@ -116,7 +117,7 @@ static void points_have_the_normals_of_their_vertices_or_neighbours(void) {
     for (size_t i = 0; i < 3 * MANY; i++) p[i] = ldexp(p[i], 400);
     memcpy(p + 3 * MANY, p + 3 * 17, 3 * sizeof *p);
     for (int k = 0; k < 3; k++) p[3 * MANY + 3 + k] = 0.5 * p[3 * 99 + k]; /* inside, on no triangle */
-    EXPECT(brio_labeled_delaunay(ctx, p, MANY + 2, NULL, &mesh, samples, NULL) == BRIO_OK);
+    EXPECT(make_labeled(ctx, p, MANY + 2, NULL, &mesh, samples, NULL) == BRIO_OK);
     EXPECT(brio_point_normals(ctx, p, MANY + 2, mesh, samples, normals) == BRIO_OK, "%s", brio_message(ctx));
     for (size_t i = 0; i < MANY + 2; i++) {
         double cosine = 0, size = 0;
@@ -174,7 +175,7 @@ static void normals_are_the_same_in_every_unit(void) {
     sphere_points(8, 300, p);
     for (int i = 0; i < 900; i++)
         p[i] = rint(ldexp(p[i], 20)) / (1 << 20); /* so that doubles hold them times 2^-1000 */
-    EXPECT(brio_cocone(ctx, p, 300, NULL, &mesh, NULL) == BRIO_OK && mesh->num_vertices == 300);
+    EXPECT(make_cocone(ctx, p, 300, NULL, &mesh, NULL) == BRIO_OK && mesh->num_vertices == 300);
     find_normals(ctx, mesh, vertices[0], points[0]);
     for (int exponent = -1000; exponent <= 1020; exponent += 5) {
         for (int i = 0; i < 900; i++) mesh->vertices[i] = ldexp(p[i], exponent);
@@ -249,11 +250,11 @@ static void normals_that_fail_leave_the_mesh_as_it_was(void) {
 
 /* --- options of the labeled Delaunay triangulation --- */
 
-static brio_mesh *surface_of(brio_context *ctx, const double *p, size_t n, const brio_labeled_delaunay_options *o,
-                             uint32_t *samples, brio_labeled_delaunay_stats *s) {
+static brio_mesh *surface_of(brio_context *ctx, const double *p, size_t n, const brio_surface_options *o,
+                             uint32_t *samples, brio_surface_stats *s) {
     brio_mesh *mesh;
-    *s = (brio_labeled_delaunay_stats){.size = sizeof *s};
-    EXPECT(brio_labeled_delaunay(ctx, p, n, o, &mesh, samples, s) == BRIO_OK, "%s", brio_message(ctx));
+    *s = (brio_surface_stats){.size = sizeof *s};
+    EXPECT(make_labeled(ctx, p, n, o, &mesh, samples, s) == BRIO_OK, "%s", brio_message(ctx));
     return mesh;
 }
 
@@ -274,8 +275,8 @@ static void confidence_falls_with_the_evidence(void) {
     static double p[3 * MANY];
     brio_rng rng = brio_rng_new(3);
     brio_context *ctx = context_of(1);
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_labeled_delaunay_stats s;
+    brio_surface_options o = LABELED_OPTIONS;
+    brio_surface_stats s;
     o.confidence = 1;
     sphere_points(2, MANY, p);
     brio_mesh *clean = surface_of(ctx, p, MANY, &o, NULL, &s);
@@ -298,8 +299,8 @@ static void a_hole_stays_open(void) {
     static double p[3 * MANY];
     size_t n = sphere_below(0.9, 4, MANY, p);
     brio_context *ctx = context_of(1);
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_labeled_delaunay_stats s;
+    brio_surface_options o = LABELED_OPTIONS;
+    brio_surface_stats s;
     o.open = 4;
     brio_mesh *mesh = surface_of(ctx, p, n, &o, NULL, &s);
     brio_certificate c = certificate_of(ctx, mesh);
@@ -317,9 +318,9 @@ static void a_hole_stays_open(void) {
     EXPECT(certificate_of(ctx, mesh).closed && s.left_out == 0);
     brio_mesh_free(mesh);
     o.open = -1;
-    EXPECT(brio_labeled_delaunay(ctx, p, n, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_labeled(ctx, p, n, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     o.open = 1e-3;
-    EXPECT(brio_labeled_delaunay(ctx, p, n, &o, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
+    EXPECT(make_labeled(ctx, p, n, &o, &mesh, NULL, NULL) == BRIO_ERR_NO_ANSWER && !mesh);
     brio_context_free(ctx);
 }
 
@@ -329,8 +330,8 @@ static void holes_open_where_the_samples_end(void) {
     static double p[3 * MANY];
     size_t n = sphere_below(0, 4, MANY, p);
     brio_context *ctx = context_of(1);
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_labeled_delaunay_stats s;
+    brio_surface_options o = LABELED_OPTIONS;
+    brio_surface_stats s;
     brio_mesh *mesh = surface_of(ctx, p, n, &o, NULL, &s);
     EXPECT(certificate_of(ctx, mesh).closed && s.holes == 0 && s.bridges >= 1 && s.bridge_share > 0.25, "%g",
            s.bridge_share);
@@ -341,7 +342,7 @@ static void holes_open_where_the_samples_end(void) {
     EXPECT(c.manifold && c.oriented && !c.closed && c.components == 1 && s.holes >= 1 && s.bridge_share < 0.01);
     brio_mesh_free(mesh);
     o.holes = BRIO_HOLES_END;
-    EXPECT(brio_labeled_delaunay(ctx, p, n, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_labeled(ctx, p, n, &o, &mesh, NULL, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     brio_context_free(ctx);
 }
 
@@ -351,8 +352,8 @@ static void open_surfaces_are_manifold_and_canonical(void) {
     static size_t to[MANY];
     static uint32_t samples[MANY];
     brio_context *ctx = context_of(1);
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_labeled_delaunay_stats s;
+    brio_surface_options o = LABELED_OPTIONS;
+    brio_surface_stats s;
     size_t left_out = 0;
     for (int trial = 0; trial < 8; trial += BRIEF_TESTS ? 3 : 1) {
         o.open = 1.5 + 0.25 * trial;
@@ -382,15 +383,15 @@ static void a_simplified_surface_stays_the_surface(void) {
     static uint32_t samples[MANY];
     static double p[3 * MANY];
     brio_context *ctx = context_of(1);
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
-    brio_labeled_delaunay_stats s;
+    brio_surface_options o = LABELED_OPTIONS;
+    brio_surface_stats s;
     torus_points(8, MANY, p);
     for (size_t i = 0; i < 3 * MANY; i++) p[i] = ldexp(p[i], -500);
     o.simplify = o.confidence = 1;
     brio_mesh *mesh = surface_of(ctx, p, MANY, &o, samples, &s);
     brio_certificate c = certificate_of(ctx, mesh);
     EXPECT(c.closed && c.manifold && c.oriented && c.genus == 1 && mesh->num_faces < MANY, "%zu", mesh->num_faces);
-    EXPECT(mesh->num_properties == 1 && mean_confidence(mesh) > 0.8);
+    EXPECT(mesh->num_properties == 2 && mean_confidence(mesh) > 0.8);
     for (size_t v = 0; v < mesh->num_vertices; v++) {
         double square = 0;
         EXPECT(v == 0 || samples[v] > samples[v - 1]);
@@ -406,12 +407,12 @@ static void a_simplified_surface_stays_the_surface(void) {
 /* --- the co-cone of the dissertation --- */
 
 static brio_mesh *cocone_of(brio_context *ctx, const double *p, size_t n, brio_extraction extraction,
-                            brio_cocone_stats *s) {
-    brio_cocone_options o = brio_cocone_options_default();
+                            brio_surface_stats *s) {
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
-    *s = (brio_cocone_stats){.size = sizeof *s};
+    *s = (brio_surface_stats){.size = sizeof *s};
     o.extraction = extraction;
-    brio_status status = brio_cocone(ctx, p, n, &o, &mesh, s);
+    brio_status status = make_cocone(ctx, p, n, &o, &mesh, s);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     return mesh;
 }
@@ -422,7 +423,7 @@ static void the_walk_finds_dense_surfaces(void) {
     brio_context *ctx = context_of(1);
     for (int i = 0; i < 2; i++) {
         size_t n;
-        brio_cocone_stats s;
+        brio_surface_stats s;
         double *p = all[i]->sample(all[i]->r, 7, &n);
         p = realloc(p, 6 * n * sizeof *p);
         for (size_t k = 0; k < 3 * n; k++) p[3 * n + k] = p[k] + (k % 3 == 0 ? 5 : 0);
@@ -451,7 +452,7 @@ static void the_walk_ends_on_anything(void) {
     brio_context *ctx = context_of(1);
     for (uint64_t trial = 0; trial < (BRIEF_TESTS ? 250 : SHORT_TESTS ? 500 : 2000); trial++) {
         size_t n = 5 + trial % 50;
-        brio_cocone_stats s;
+        brio_surface_stats s;
         if (trial % 2)
             clustered_points(trial, n, p);
         else
@@ -466,16 +467,16 @@ static void the_walk_ends_on_anything(void) {
 
 static void extractions_are_of_the_co_cone_in_one_piece(void) {
     brio_context *ctx = context_of(1);
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
     double p[3 * 30];
     sphere_points(1, 30, p);
-    o.extraction = BRIO_EXTRACTION_WALK, o.tight = 1;
-    EXPECT(brio_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    o.tight = 0, o.pieces = 3;
-    EXPECT(brio_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    o.extraction = BRIO_EXTRACTION_WALK, o.method = BRIO_SURFACE_TIGHT_COCONE;
+    EXPECT(make_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    o.method = 0, o.pieces = 3 ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
+    EXPECT(make_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     o.pieces = 0, o.extraction = (brio_extraction)9;
-    EXPECT(brio_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(make_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     brio_context_free(ctx);
 }
 
@@ -486,10 +487,10 @@ static brio_status make_surface(brio_context *ctx) {
     static uint32_t samples[400];
     size_t n = sphere_below(0.8, 1, 400, p);
     brio_mesh *mesh;
-    brio_labeled_delaunay_options o = brio_labeled_delaunay_options_default();
+    brio_surface_options o = LABELED_OPTIONS;
     o.confidence = o.simplify = 1;
     o.open = 3;
-    brio_status status = brio_labeled_delaunay(ctx, p, n, &o, &mesh, samples, NULL);
+    brio_status status = make_labeled(ctx, p, n, &o, &mesh, samples, NULL);
     if (status == BRIO_OK) status = brio_point_normals(ctx, p, n, mesh, samples, normals);
     if (status == BRIO_OK) status = brio_mesh_keep_components(mesh, 1, 1, NULL, NULL);
     brio_mesh_free(mesh);
@@ -498,11 +499,11 @@ static brio_status make_surface(brio_context *ctx) {
 
 static brio_status walk(brio_context *ctx) {
     static double p[3 * 200];
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
     o.extraction = BRIO_EXTRACTION_WALK;
     sphere_points(1, 200, p);
-    brio_status status = brio_cocone(ctx, p, 200, &o, &mesh, NULL);
+    brio_status status = make_cocone(ctx, p, 200, &o, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
 }

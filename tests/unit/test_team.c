@@ -5,6 +5,7 @@
 #include "base/team.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 #include <pthread.h>
 #include <signal.h>
 #include <string.h>
@@ -316,7 +317,7 @@ static void *call_from_small_stack(void *user) {
     uint64_t sum;
     (void)user;
     EXPECT(checksum_of(ctx, 5000, &sum) == BRIO_OK);
-    EXPECT(brio_power_crust(ctx, set, 5000, NULL, &crust, NULL, NULL) == BRIO_OK);
+    EXPECT(make_crust(ctx, set, 5000, NULL, &crust, NULL, NULL) == BRIO_OK);
     brio_mesh_free(crust);
     brio_context_free(ctx);
     return NULL;

@@ -1,6 +1,7 @@
 /* Lemmas and theorems of [Choi 2003] that no other suite holds anything against: docs/thesis-theorems.md lists all. */
 #include "iso/iso_surface.h"
 #include "known_balls.h"
+#include "surface_calls.h"
 #include "order/order.h"
 #include "query/nearest_points.h"
 #include <string.h>
@@ -62,7 +63,7 @@ enum { FEW = 256, SEEDS = 3000, TRIGGERS = 4, FIRST_STOPPER = 16 };
 static double few[3 * FEW];
 
 static void order_few(brio_context *ctx, brio_order order, double ratio, uint64_t seed, uint32_t *to) {
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     brio_input input = {few, NULL, FEW};
     o.order = order, o.seed = seed, o.block_size = 4, o.round_ratio = ratio;
     EXPECT(brio_order_points(ctx, &input, &o, to, NULL, NULL, NULL) == BRIO_OK);
@@ -151,7 +152,7 @@ static void lemma_17_few_tetrahedra_have_few_stoppers(void) {
 static double conflicts_a_point(size_t n, brio_order order, bool sorted) {
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     double *p = malloc(3 * n * sizeof *p);
     uniform_points(1, n, p);
     for (size_t i = 0; i < n && sorted; i++) p[3 * i] = (double)i;
@@ -235,7 +236,7 @@ static void lemma_28_and_property_1_hold_on_the_cocone(void) {
     brio_mesh *mesh;
     size_t n;
     double *points = known_torus.sample(0.08, 1, &n), steepest = 0, widest = 0;
-    EXPECT(brio_cocone(ctx, points, n, NULL, &mesh, NULL) == BRIO_OK);
+    EXPECT(make_cocone(ctx, points, n, NULL, &mesh, NULL) == BRIO_OK);
     double *seen = calloc(3 * n, sizeof *seen); /* a normal at each vertex */
     for (size_t f = 0; f < mesh->num_faces; f++) {
         const uint32_t *at = mesh->face_vertices + 3 * f;
@@ -275,12 +276,12 @@ static bool meets(const double *const v[3], const double *p, const double *q) {
  * torus of radii 1 and 1/2 is half along the inner normal. */
 static void lemma_31_candidates_leave_the_normals_of_samples_free(void) {
     brio_context *ctx = new_context();
-    brio_cocone_options o = brio_cocone_options_default();
+    brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
     size_t n, tried = 0, met = 0, beyond = 0;
     double *points = known_torus.sample(0.08, 1, &n);
     o.extraction = BRIO_EXTRACTION_CANDIDATES;
-    EXPECT(brio_cocone(ctx, points, n, &o, &mesh, NULL) == BRIO_OK);
+    EXPECT(make_cocone(ctx, points, n, &o, &mesh, NULL) == BRIO_OK);
     for (size_t s = 0; s < n; s += 601, tried++) {
         const double *p = points + 3 * s;
         double normal[3], centre[3], through[3];
@@ -378,12 +379,12 @@ static double check_unions(const theory *x) {
 
 /* Lemma 53: a normal crosses the crust once. */
 static void check_normals(const theory *x) {
-    brio_power_crust_options o = brio_power_crust_options_default();
+    brio_surface_options o = CRUST_OPTIONS;
     brio_mesh *mesh;
     size_t n, tried = 0, not_once = 0;
     double *places = x->surface->sample(0.5, 5, &n);
-    o.triangulate = 1;
-    EXPECT(brio_power_crust(x->ctx, x->points, x->n, &o, &mesh, NULL, NULL) == BRIO_OK);
+    o.polygons = 0;
+    EXPECT(make_crust(x->ctx, x->points, x->n, &o, &mesh, NULL, NULL) == BRIO_OK);
     for (size_t i = 0; i < n; i += 16, tried++) {
         double normal[3], from[3], to[3];
         size_t crossed = 0;

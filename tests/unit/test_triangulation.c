@@ -134,7 +134,7 @@ static void expect_one_answer(const double *p, const double *w, size_t n) {
     brio_context *ctx = new_context();
     uint64_t sum = checksum_of(ctx, p, w, n, NULL);
     for (int order = 0; order < BRIO_ORDER_END; order++) {
-        brio_delaunay_options o = brio_delaunay_options_default();
+        brio_delaunay_options o = {0};
         o.order = (brio_order)order;
         o.block_size = 64; /* many blocks, also of few points */
         o.seed = 5;
@@ -216,7 +216,7 @@ static void many_points_hidden_at_once(void) {
     }
     p[3000] = p[3001] = p[3002] = 4.5;
     w[1000] = 1000;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = BRIO_ORDER_INPUT;
     brio_context *ctx = new_context();
     brio_triangulation *t;
@@ -234,7 +234,7 @@ static void star_of_a_sphere_uses_the_hash_table(void) {
     static double p[3 * 1501];
     sphere_points(11, 1500, p);
     p[4500] = p[4501] = p[4502] = 0.001;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.order = BRIO_ORDER_INPUT;
     brio_context *ctx = new_context();
     brio_triangulation *t;
@@ -330,7 +330,7 @@ static void bad_input_names_the_point(void) {
     p[7] = 0, p[11] = 1;
     EXPECT(brio_delaunay(ctx, p, w, 4, NULL, &t) == BRIO_ERR_NOT_FINITE);
     EXPECT(!strcmp(brio_message(ctx), "point 1: weight is infinite (1 such point in all)"), "%s", brio_message(ctx));
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.round_ratio = 1;
     EXPECT(brio_delaunay(ctx, p, NULL, 4, &o, &t) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_context_memory(ctx) == 0);
@@ -340,7 +340,7 @@ static void bad_input_names_the_point(void) {
 static void too_many_tetrahedra_is_a_status(void) {
     static double p[3 * 500];
     uniform_points(6, 500, p);
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.max_tetrahedra = 1000;
     brio_context *ctx = new_context();
     brio_triangulation *t;

@@ -2,28 +2,44 @@
 #include "base/versioned.h"
 #include "harness.h"
 #include "points.h"
+#include "surface_calls.h"
 
-static void older_callers_get_what_they_know(void) {
-    struct {
-        brio_cocone_options options;
-        char beyond[64];
-    } older;
-    memset(&older, 0x5a, sizeof older);
-    size_t known = offsetof(brio_cocone_options, tight);
-    brio_cocone_options_init(&older.options, known);
-    EXPECT(older.options.size == known && older.options.seed == 1 && older.options.theta > 0.39);
-    for (size_t i = known; i < sizeof older; i++) EXPECT(((unsigned char *)&older)[i] == 0x5a, "byte %zu", i);
+/* A struct of zeros is the default, as NULL is, with its size and without. */
+static void zeros_are_the_default(void) {
+    brio_context *ctx = new_context();
+    double p[3 * 300];
+    sphere_points(1, 300, p);
+    const brio_surface_options zeros = {0}, sized = {.size = sizeof sized}, first = {.seed = 1};
+    const brio_surface_options *ways[] = {NULL, &zeros, &sized, &first};
+    size_t faces[4];
+    for (int i = 0; i < 4; i++) {
+        brio_mesh *mesh = NULL;
+        EXPECT(brio_surface(ctx, p, 300, ways[i], &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+        faces[i] = mesh ? mesh->num_faces : 0;
+        brio_mesh_free(mesh);
+    }
+    EXPECT(faces[0] > 500 && faces[1] == faces[0] && faces[2] == faces[0] && faces[3] == faces[0]);
+    brio_context_free(ctx);
 }
 
-static void newer_callers_get_zeros(void) {
+/* Without a size a struct ends where it ended in the first version, whatever follows it. */
+static void without_a_size_nothing_follows(void) {
+    brio_context *ctx = new_context();
+    double p[3 * 300];
+    sphere_points(1, 300, p);
     struct {
-        brio_cocone_options options;
-        uint64_t later[4];
-    } newer;
-    memset(&newer, 0x5a, sizeof newer);
-    brio_cocone_options_init(&newer.options, sizeof newer);
-    EXPECT(newer.options.size == sizeof newer && newer.options.seed == 1);
-    for (int i = 0; i < 4; i++) EXPECT(newer.later[i] == 0);
+        brio_surface_options options;
+        uint64_t later;
+    } o = {.options = {.method = BRIO_SURFACE_COCONE}, .later = 1};
+    struct {
+        brio_surface_stats stats;
+        uint64_t later;
+    } s = {.later = 0x5a5a};
+    brio_mesh *mesh = NULL;
+    EXPECT(brio_surface(ctx, p, 300, &o.options, &mesh, &s.stats) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(s.stats.samples == 300 && s.stats.size == 0 && s.later == 0x5a5a);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
 }
 
 static void options_of_any_size_are_taken(void) {
@@ -31,23 +47,20 @@ static void options_of_any_size_are_taken(void) {
     double p[3 * 300];
     sphere_points(1, 300, p);
     struct {
-        brio_cocone_options options;
+        brio_surface_options options;
         uint64_t later;
-    } newer;
+    } newer = {.options = {.size = sizeof newer, .method = BRIO_SURFACE_TIGHT_COCONE}};
     brio_mesh *mesh = NULL;
-    brio_cocone_options_init(&newer.options, sizeof newer);
-    newer.options.tight = 1;
-    EXPECT(brio_cocone(ctx, p, 300, &newer.options, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(make_cocone(ctx, p, 300, &newer.options, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
     size_t faces = mesh->num_faces;
     brio_mesh_free(mesh);
     newer.later = 1;
-    EXPECT(brio_cocone(ctx, p, 300, &newer.options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    EXPECT(strstr(brio_message(ctx), "brio_cocone_options") != NULL, "%s", brio_message(ctx));
-    brio_cocone_options older = brio_cocone_options_default();
-    older.size = offsetof(brio_cocone_options, boundaries);
-    older.tight = 1;
+    EXPECT(make_cocone(ctx, p, 300, &newer.options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "brio_surface_options") != NULL, "%s", brio_message(ctx));
+    brio_surface_options older = {.size = offsetof(brio_surface_options, boundaries),
+                                  .method = BRIO_SURFACE_TIGHT_COCONE};
     older.boundaries = older.density = 0x5a5a; /* not the caller's: it was compiled without them */
-    EXPECT(brio_cocone(ctx, p, 300, &older, &mesh, NULL) == BRIO_OK && mesh->num_faces == faces);
+    EXPECT(make_cocone(ctx, p, 300, &older, &mesh, NULL) == BRIO_OK && mesh->num_faces == faces);
     brio_mesh_free(mesh);
     brio_context_free(ctx);
 }
@@ -57,18 +70,18 @@ static void results_stay_within_the_callers_size(void) {
     double p[3 * 300];
     sphere_points(1, 300, p);
     struct {
-        brio_cocone_stats stats;
+        brio_surface_stats stats;
         uint64_t later[2];
     } s;
     brio_mesh *mesh;
     memset(&s, 0x5a, sizeof s);
-    s.stats.size = offsetof(brio_cocone_stats, candidates);
-    EXPECT(brio_cocone(ctx, p, 300, NULL, &mesh, &s.stats) == BRIO_OK);
-    EXPECT(s.stats.size == offsetof(brio_cocone_stats, candidates) && s.stats.samples == 300);
+    s.stats.size = offsetof(brio_surface_stats, candidates);
+    EXPECT(make_cocone(ctx, p, 300, NULL, &mesh, &s.stats) == BRIO_OK);
+    EXPECT(s.stats.size == offsetof(brio_surface_stats, candidates) && s.stats.samples == 300);
     for (size_t i = s.stats.size; i < sizeof s; i++) EXPECT(((unsigned char *)&s)[i] == 0x5a, "byte %zu", i);
     brio_mesh_free(mesh);
     s.stats.size = sizeof s;
-    EXPECT(brio_cocone(ctx, p, 300, NULL, &mesh, &s.stats) == BRIO_OK);
+    EXPECT(make_cocone(ctx, p, 300, NULL, &mesh, &s.stats) == BRIO_OK);
     EXPECT(s.stats.size == sizeof s && s.stats.candidates > 300 && s.later[0] == 0 && s.later[1] == 0);
     brio_certificate c = {.size = offsetof(brio_certificate, area)};
     c.area = 77;
@@ -85,7 +98,7 @@ static void sizes_that_were_not_set_are_arguments(void) {
     brio_context *ctx = new_context();
     double p[3 * 300];
     sphere_points(1, 300, p);
-    static const size_t sizes[] = {0, 4, SIZE_MAX, 0x5a5a5a5a};
+    static const size_t sizes[] = {1, 4, SIZE_MAX, 0x5a5a5a5a};
     brio_mesh *mesh = NULL, *shape = NULL;
     EXPECT(brio_generate(ctx, BRIO_KIND_SPHERE, 10, NULL, &mesh) == BRIO_OK);
     brio_mesh *out;
@@ -93,25 +106,18 @@ static void sizes_that_were_not_set_are_arguments(void) {
     for (int i = 0; i < 4; i++) {
         size_t size = sizes[i];
         EXPECT(brio_delaunay(ctx, p, NULL, 300, &(brio_delaunay_options){.size = size}, &t) == BRIO_ERR_ARGUMENT);
-        EXPECT(brio_power_crust(ctx, p, 300, &(brio_power_crust_options){.size = size}, &out, NULL, NULL) ==
-               BRIO_ERR_ARGUMENT);
-        EXPECT(brio_power_crust(ctx, p, 300, NULL, &out, NULL, &(brio_power_crust_stats){.size = size}) ==
-               BRIO_ERR_ARGUMENT);
-        EXPECT(brio_offset_surface(ctx, p, 300, 1, &(brio_offset_surface_options){.size = size}, &out, NULL) ==
-               BRIO_ERR_ARGUMENT);
-        EXPECT(brio_offset_surface(ctx, p, 300, 1, NULL, &out, &(brio_offset_surface_stats){.size = size}) ==
-               BRIO_ERR_ARGUMENT);
+        EXPECT(brio_surface(ctx, p, 300, &(brio_surface_options){.size = size}, &out, NULL) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_surface(ctx, p, 300, NULL, &out, &(brio_surface_stats){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_power_shape(ctx, p, 300, &(brio_power_shape_options){.size = size}, &shape, NULL, NULL) ==
                BRIO_ERR_ARGUMENT);
         EXPECT(brio_power_shape(ctx, p, 300, NULL, &shape, NULL, &(brio_power_shape_stats){.size = size}) ==
                BRIO_ERR_ARGUMENT);
-        EXPECT(brio_cocone(ctx, p, 300, &(brio_cocone_options){.size = size}, &out, NULL) == BRIO_ERR_ARGUMENT);
-        EXPECT(brio_cocone(ctx, p, 300, NULL, &out, &(brio_cocone_stats){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_generate(ctx, BRIO_KIND_BALL, 9, &(brio_generate_options){.size = size}, &out) ==
                BRIO_ERR_ARGUMENT);
-        EXPECT(brio_iso_surface(ctx, "no.map", &(brio_iso_surface_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_iso_surface(ctx, "no.map", 1, &(brio_iso_surface_options){.size = size}, &out) ==
+               BRIO_ERR_ARGUMENT);
         EXPECT(brio_write(ctx, "no.ply", mesh, &(brio_write_options){.size = size}) == BRIO_ERR_ARGUMENT);
-        EXPECT(brio_read_as(ctx, "no.ply", &(brio_read_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
+        EXPECT(brio_read(ctx, "no.ply", &(brio_read_options){.size = size}, &out) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_certificate(ctx, mesh, &(brio_certificate){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_distance(ctx, mesh, mesh, 9, 1, &(brio_distance){.size = size}) == BRIO_ERR_ARGUMENT);
         EXPECT(brio_mesh_merge_vertices(mesh, 0, &(brio_merge_stats){.size = size}) == BRIO_ERR_ARGUMENT);
@@ -169,17 +175,11 @@ ENDS_WITH(brio_certificate, volume);
 ENDS_WITH(brio_distance, diagonal);
 ENDS_WITH(brio_pole_options, reserved);
 ENDS_WITH(brio_pole_stats, reserved);
-ENDS_WITH(brio_power_crust_options, open);
-ENDS_WITH(brio_power_crust_stats, simplify_seconds);
-ENDS_WITH(brio_offset_surface_options, simplify);
-ENDS_WITH(brio_offset_surface_stats, simplify_seconds);
+ENDS_WITH(brio_surface_options, reserved_int);
+ENDS_WITH(brio_surface_stats, simplify_seconds);
 ENDS_WITH(brio_power_shape_options, redundancy);
 ENDS_WITH(brio_power_shape_stats, shape_seconds);
-ENDS_WITH(brio_cocone_options, evidence);
-ENDS_WITH(brio_labeled_delaunay_options, evidence);
-ENDS_WITH(brio_labeled_delaunay_stats, open_seconds);
 ENDS_WITH(brio_evidence, origin_of);
-ENDS_WITH(brio_cocone_stats, density_seconds);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, reserved_int);
 ENDS_WITH(brio_read_options, origins);
@@ -209,8 +209,8 @@ static void the_library_is_of_the_headers_version(void) {
 }
 
 SUITE(test_versioned) {
-    RUN(older_callers_get_what_they_know);
-    RUN(newer_callers_get_zeros);
+    RUN(zeros_are_the_default);
+    RUN(without_a_size_nothing_follows);
     RUN(options_of_any_size_are_taken);
     RUN(results_stay_within_the_callers_size);
     RUN(sizes_that_were_not_set_are_arguments);

@@ -267,7 +267,7 @@ static double ball(int x, int y, int z) {
 }
 
 static brio_certificate certify(const brio_mesh *mesh) {
-    brio_certificate c = {.size = sizeof c};
+    brio_certificate c = {0};
     EXPECT(brio_mesh_certificate(io_ctx, mesh, &c) == BRIO_OK);
     EXPECT(c.closed && c.manifold && c.oriented && c.volume > 0);
     return c;
@@ -559,19 +559,18 @@ static void write_ball_map(void) {
     io_put("ball.dat", bytes, make_map(&plan, bytes));
 }
 
-static brio_status generate(const char *name, const brio_iso_surface_options *options, brio_mesh **mesh) {
-    return brio_iso_surface(io_ctx, io_path(name), options, mesh);
+static brio_status generate(const char *name, double level, const brio_iso_surface_options *options, brio_mesh **mesh) {
+    return brio_iso_surface(io_ctx, io_path(name), level, options, mesh);
 }
 
 static void file_with_a_wanted_number_of_vertices(void) {
     const size_t wanted[] = {1000, 5000, 40000};
     write_ball_map();
     for (int i = 0; i < 3; i++) {
-        brio_iso_surface_options o = brio_iso_surface_options_default();
+        brio_iso_surface_options o = {0};
         brio_mesh *mesh = NULL;
-        o.level = 0;
         o.vertices = wanted[i];
-        EXPECT(generate("ball.map", &o, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(generate("ball.map", 0, &o, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
         double ratio = (double)mesh->num_vertices / (double)wanted[i];
         EXPECT(fabs(ratio - 1) < 0.15, "%zu vertices for %zu", mesh->num_vertices, wanted[i]);
         brio_mesh_free(mesh);
@@ -579,7 +578,7 @@ static void file_with_a_wanted_number_of_vertices(void) {
 }
 
 static void level_in_deviations(void) {
-    brio_iso_surface_options o = brio_iso_surface_options_default();
+    brio_iso_surface_options o = {0};
     brio_mesh *mesh = NULL, *same = NULL;
     static char bytes[MOST_BYTES];
     map_plan plan = ball_plan();
@@ -588,9 +587,8 @@ static void level_in_deviations(void) {
     write_ball_map();
     EXPECT(read_bytes(bytes, make_map(&plan, bytes), &v) == BRIO_OK);
     brio_volume_statistics(&v, &mean, &deviation);
-    o.level = 1.25;
     o.deviations = 1;
-    EXPECT(generate("ball.dat", &o, &mesh) == BRIO_OK); /* known by its content */
+    EXPECT(generate("ball.dat", 1.25, &o, &mesh) == BRIO_OK); /* known by its content */
     EXPECT(brio_volume_surface(io_ctx, &v, mean + 1.25 * deviation, 0, false, &same) == BRIO_OK);
     EXPECT(io_same_points(mesh, same) && mesh->num_faces == same->num_faces);
     brio_mesh_free(mesh);
@@ -598,40 +596,37 @@ static void level_in_deviations(void) {
     brio_volume_free(io_ctx, &v);
 }
 
-static void expect_generate_error(const char *name, const brio_iso_surface_options *o, brio_status expected,
-                                  const char *part) {
+static void expect_generate_error(const char *name, double level, const brio_iso_surface_options *o,
+                                  brio_status expected, const char *part) {
     brio_mesh *mesh = NULL;
-    brio_status status = generate(name, o, &mesh);
+    brio_status status = generate(name, level, o, &mesh);
     EXPECT(status == expected && !mesh, "%s: status %d", name, (int)status);
     EXPECT(strstr(brio_message(io_ctx), part), "\"%s\" without \"%s\"", brio_message(io_ctx), part);
 }
 
 static void files_that_are_refused(void) {
-    brio_iso_surface_options o = brio_iso_surface_options_default();
+    brio_iso_surface_options o = {0};
     const char *atom = "ATOM      7  CB  ALA A   1       1.000   2.000   3.000\n";
     write_ball_map();
     io_put("a.pdb", atom, strlen(atom));
     io_put("a.xyz", "1 2 3\n", 6);
-    expect_generate_error("missing.map", &o, BRIO_ERR_OPEN, "No such file");
-    expect_generate_error("a.xyz", &o, BRIO_ERR_FORMAT, "unknown format, expected .map .mrc .ccp4 or .pdb .ent");
-    o.level = 1e6;
-    expect_generate_error("ball.map", &o, BRIO_ERR_NO_ANSWER, "nothing is above the level 1e+06");
-    o.level = NAN;
-    expect_generate_error("ball.map", &o, BRIO_ERR_ARGUMENT, "level nan");
-    o.level = 1;
+    expect_generate_error("missing.map", 1, &o, BRIO_ERR_OPEN, "No such file");
+    expect_generate_error("a.xyz", 1, &o, BRIO_ERR_FORMAT, "unknown format, expected .map .mrc .ccp4 or .pdb .ent");
+    expect_generate_error("ball.map", 1e6, &o, BRIO_ERR_NO_ANSWER, "nothing is above the level 1e+06");
+    expect_generate_error("ball.map", NAN, &o, BRIO_ERR_ARGUMENT, "level nan");
     o.deviations = 1;
-    expect_generate_error("a.pdb", &o, BRIO_ERR_ARGUMENT, "no mean");
+    expect_generate_error("a.pdb", 1, &o, BRIO_ERR_ARGUMENT, "no mean");
     o.deviations = 0;
     o.resolution = 10;
     o.vertices = 10;
-    expect_generate_error("a.pdb", &o, BRIO_ERR_ARGUMENT, "one decides the other");
+    expect_generate_error("a.pdb", 1, &o, BRIO_ERR_ARGUMENT, "one decides the other");
 }
 
 static void atoms_from_a_file(void) {
     const char *atom = "ATOM      7  CB  ALA A   1       1.000   2.000   3.000\n";
     brio_mesh *mesh = NULL;
     io_put("a.pdb", atom, strlen(atom));
-    EXPECT(generate("a.pdb", NULL, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(generate("a.pdb", 1, NULL, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
     brio_certificate c = certify(mesh);
     EXPECT(fabs(c.volume / (4 * acos(-1) / 3 * pow(1.7, 3)) - 1) < 0.1, "%g", c.volume);
     brio_certificate_free(&c);
@@ -639,14 +634,14 @@ static void atoms_from_a_file(void) {
 }
 
 static brio_status both_kinds(brio_context *failing) {
-    brio_iso_surface_options o = brio_iso_surface_options_default();
+    brio_iso_surface_options o = {0};
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     o.resolution = 10;
-    BRIO_TRY(brio_iso_surface(failing, io_path("ball.map"), &o, &mesh));
+    BRIO_TRY(brio_iso_surface(failing, io_path("ball.map"), 1, &o, &mesh));
     brio_mesh_free(mesh);
     mesh = NULL;
-    BRIO_TRY(brio_iso_surface(failing, io_path("a.pdb"), &o, &mesh));
+    BRIO_TRY(brio_iso_surface(failing, io_path("a.pdb"), 1, &o, &mesh));
 done:
     brio_mesh_free(mesh);
     return status;
@@ -665,9 +660,9 @@ static int cancel(const char *stage, double fraction, void *user) {
 static void cancelled(void) {
     write_ball_map();
     brio_context_set_progress(io_ctx, cancel, NULL);
-    brio_iso_surface_options o = brio_iso_surface_options_default();
+    brio_iso_surface_options o = {0};
     brio_mesh *mesh = NULL;
-    EXPECT(generate("ball.map", &o, &mesh) == BRIO_ERR_CANCELLED && !mesh);
+    EXPECT(generate("ball.map", 1, &o, &mesh) == BRIO_ERR_CANCELLED && !mesh);
     brio_context_set_progress(io_ctx, NULL, NULL);
 }
 

@@ -10,7 +10,7 @@
 typedef enum { RAW, TEXT, PACKED, NUM_WAYS } way;
 
 static inline brio_write_options options_of(way w) {
-    brio_write_options options = brio_write_options_default();
+    brio_write_options options = {0};
     options.ascii = w == TEXT;
     options.compress = w == PACKED;
     options.comment = "-- > <";

@@ -92,10 +92,10 @@ def _evidence(method: str, options: dict[str, Any], properties: Properties, norm
 
 
 def _holes(options: dict[str, Any]) -> dict[str, Any]:
-    """The options of the library for `open`: "auto" is none of its numbers."""
+    """The options of the library for `open`: "auto", its default, is none of its numbers."""
     if options.get("open", "auto") != "auto":
-        return options
-    return {**{name: value for name, value in options.items() if name != "open"}, "holes": 1}
+        return {"holes": 1, **options}
+    return {name: value for name, value in options.items() if name != "open"}
 
 
 def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any = None, origins: Any = None,
@@ -114,7 +114,7 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
         `labeling`, `triangulate`, `simplify`, `seed`.
         "cocone": triangles of the samples, maybe open; options `theta`, `boundaries`, `density`, `pieces`,
         `extraction`, `seed`. "tight-cocone": the same, closed.
-        The options are those of ``brio.h``.
+        The options are those of ``brio/surface.h``.
     normals : array_like, shape (n, 3), or False, optional
         Normals of the samples, which point outwards; some may be wrong or 0. By default the properties nx, ny, nz of a
         Mesh, if it has them; False: none. Not for "power-crust", which takes none.

@@ -14,10 +14,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const brio_convert_options STANDARD = {.size = sizeof STANDARD};
-
-BRIO_OPTIONS_INIT(brio_convert_options)
-
 typedef struct {
     brio_context *ctx;
     const char *to;
@@ -362,7 +358,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
                          brio_convert_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_convert_options o = STANDARD;
+    brio_convert_options o = {0};
     conversion c = {.ctx = ctx, .to = to, .options = &o, .stats = {.size = sizeof c.stats}};
     c.source = (brio_source){.ctx = ctx, .path = from, .options = &o};
     c.writer = (brio_row_writer){.ctx = ctx};
@@ -371,8 +367,7 @@ brio_status brio_convert(brio_context *ctx, const char *from, const char *to, co
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_convert_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_convert_options, options, &o));
     BRIO_TRY(check(&c));
-    brio_read_options read = brio_read_options_default();
-    c.write = brio_write_options_default();
+    brio_read_options read = {0};
     if (o.from) BRIO_TRY(BRIO_TAKE(ctx, brio_read_options, o.from, &read));
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_read_notes, read.notes));
     if (o.to) BRIO_TRY(BRIO_TAKE(ctx, brio_write_options, o.to, &c.write));

@@ -3,21 +3,18 @@
  * The samples are taken in canonical order and scaled by a power of two to coordinates of at most 1, so that nothing
  * overflows or underflows. Their triangles come from the whole set (cocone_surface.c), or from pieces whose triangles
  * are matched (super_cocone.c). Pieces are scaled one at a time. */
-#include "base/float_state.h"
 #include "base/memory.h"
-#include "base/versioned.h"
 #include "base/scale.h"
 #include "order/canonical_points.h"
+#include "mesh/properties.h"
+#include "reconstruct/cocone/cocone.h"
 #include "reconstruct/cocone/sampling_density.h"
 #include "reconstruct/cocone/super_cocone.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const brio_cocone_options STANDARD = {
-    .size = sizeof STANDARD, .seed = 1, .theta = 0.39269908169872414 /* pi / 8 */};
-
-BRIO_OPTIONS_INIT(brio_cocone_options)
+static const double THETA = 0.39269908169872414; /* pi / 8, what 0 stands for */
 
 /* Replaces the ranks of samples by the caller's indices. */
 static brio_status name_samples(brio_context *ctx, const uint32_t *order, size_t n, brio_cocone_surface *s) {
@@ -43,7 +40,7 @@ done:
 
 /* Finds the co-cone of the whole set, scaled by 2^-exponent. */
 static brio_status find_surface(brio_context *ctx, const double *points, size_t num_points, int exponent,
-                                const brio_cocone_options *options, brio_cocone_surface *surface) {
+                                const brio_surface_options *options, brio_cocone_surface *surface) {
     brio_status status = BRIO_OK;
     double *scaled = NULL;
     uint32_t *order = NULL;
@@ -74,7 +71,7 @@ done:
     return status;
 }
 
-static brio_status count_unused(const brio_mesh *mesh, brio_cocone_stats *stats) {
+static brio_status count_unused(const brio_mesh *mesh, brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
     uint8_t *used = NULL;
     size_t count = 0;
@@ -89,7 +86,7 @@ done:
 
 /* Adds the properties that options.density asks for. */
 static brio_status add_properties(const brio_cocone_surface *s, int exponent, brio_mesh *mesh,
-                                  brio_cocone_stats *stats) {
+                                  brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
     double start = brio_seconds();
     BRIO_TRY(brio_sampling_density(s->size, exponent, mesh, stats));
@@ -103,45 +100,46 @@ done:
     return status;
 }
 
-static brio_status check_options(brio_context *ctx, const brio_cocone_options *o) {
+static brio_status check_options(brio_context *ctx, const brio_surface_options *o) {
+    BRIO_EXPECT(ctx, o->theta > 0 && o->theta < 1.57, BRIO_ERR_ARGUMENT, "theta is %g, expected a number in (0, pi/2)",
+                o->theta);
+    BRIO_EXPECT(ctx, (unsigned)o->extraction < BRIO_EXTRACTION_END, BRIO_ERR_ARGUMENT, "no such extraction: %d",
+                (int)o->extraction);
+    BRIO_EXPECT(ctx, o->extraction == BRIO_EXTRACTION_LABELS || o->pieces <= 1, BRIO_ERR_ARGUMENT,
+                "candidates, pruned and walk are extractions of the co-cone in one piece");
+    BRIO_EXPECT(ctx, !o->evidence || o->pieces <= 1, BRIO_ERR_ARGUMENT, "evidence is for a co-cone in one piece");
+    return BRIO_OK;
+}
+
+/* Names each vertex after its point: they have the same numbers. */
+static brio_status add_samples(brio_mesh *mesh) {
     brio_status status = BRIO_OK;
-    BRIO_REQUIRE(ctx, o->theta > 0 && o->theta < 1.57, BRIO_ERR_ARGUMENT, "theta is %g, expected a number in (0, pi/2)",
-                 o->theta);
-    BRIO_REQUIRE(ctx, (unsigned)o->extraction < BRIO_EXTRACTION_END, BRIO_ERR_ARGUMENT, "no such extraction: %d",
-                 (int)o->extraction);
-    BRIO_REQUIRE(ctx, o->extraction == BRIO_EXTRACTION_LABELS || (!o->tight && o->pieces <= 1), BRIO_ERR_ARGUMENT,
-                 "candidates, pruned and walk are extractions of the co-cone in one piece");
-    BRIO_REQUIRE(ctx, !o->evidence || o->pieces <= 1, BRIO_ERR_ARGUMENT, "evidence is for a co-cone in one piece");
-    BRIO_REQUIRE(ctx, !o->tight || o->pieces <= 1, BRIO_ERR_ARGUMENT,
-                 "the tight co-cone cannot be found in pieces: what is outside only the whole tells");
+    uint32_t *samples = NULL;
+    BRIO_TRY(BRIO_ALLOC(mesh->context, samples, mesh->num_vertices));
+    for (size_t v = 0; v < mesh->num_vertices; v++) samples[v] = (uint32_t)v;
+    BRIO_TRY(brio_mesh_add_samples(mesh, mesh->num_vertices, samples));
 done:
+    brio_release(mesh->context, samples);
     return status;
 }
 
-brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points, const brio_cocone_options *options,
-                        brio_mesh **out, brio_cocone_stats *stats) {
-    BRIO_DOOR;
+brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points, const brio_surface_options *options,
+                        brio_mesh *mesh, brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
-    brio_cocone_options o = STANDARD;
+    brio_surface_options o = *options;
     brio_cocone_surface surface = {0};
-    brio_mesh *mesh = NULL;
-    *out = NULL;
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_cocone_stats, stats));
-    BRIO_TRY(BRIO_TAKE(ctx, brio_cocone_options, options, &o));
+    if (o.theta == 0) o.theta = THETA;
     BRIO_TRY(check_options(ctx, &o));
-    BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
     int exponent = brio_exponent(brio_greatest(points, 3 * num_points));
     BRIO_TRY(o.pieces > 1 ? brio_super_cocone(ctx, points, num_points, exponent, &o, &surface)
                           : find_surface(ctx, points, num_points, exponent, &o, &surface));
-    BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(fill_mesh(points, num_points, &surface, mesh));
     BRIO_TRY(count_unused(mesh, &surface.stats));
     if (o.density) BRIO_TRY(add_properties(&surface, exponent, mesh, &surface.stats));
-    *out = mesh;
-    mesh = NULL;
+    BRIO_TRY(add_samples(mesh));
+    if (o.normals) BRIO_TRY(brio_point_normals(ctx, points, num_points, mesh, NULL, o.normals));
 done:
-    BRIO_GIVE(brio_cocone_stats, stats, &surface.stats);
-    brio_mesh_free(mesh);
+    *stats = surface.stats;
     brio_cocone_surface_free(ctx, &surface);
     return status;
 }

@@ -22,7 +22,7 @@
 
 typedef struct {
     brio_context *ctx;
-    const brio_cocone_options *options;
+    const brio_surface_options *options;
     const brio_sample_evidence *evidence; /* or NULL */
     const double *points;
     size_t num_points;
@@ -44,7 +44,7 @@ static void lap(reconstruction *r, double *seconds) {
 
 static brio_status triangulate(reconstruction *r) {
     brio_status status = BRIO_OK;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.seed = r->options->seed;
     BRIO_TRY(brio_delaunay(r->ctx, r->points, NULL, r->num_points, &o, &r->delaunay));
     const brio_delaunay_stats *s = brio_triangulation_stats(r->delaunay);
@@ -61,7 +61,7 @@ done:
 
 static brio_status find_candidates(reconstruction *r) {
     brio_status status = BRIO_OK;
-    brio_cocone_stats *s = &r->out->stats;
+    brio_surface_stats *s = &r->out->stats;
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, r->options->theta, &r->dual));
     lap(r, &s->poles_seconds);
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &r->cocones));
@@ -82,8 +82,10 @@ static brio_status label(reconstruction *r) {
     unsigned used;
     BRIO_TRY(brio_orient_samples(r->ctx, &r->cocones, &r->turned));
     if (r->evidence) BRIO_TRY(brio_orient_by_evidence(r->ctx, r->evidence, &r->cocones, r->turned, &own, &used));
-    r->labels = (brio_tet_labels){
-        .cocones = &r->cocones, .dual = &r->dual, .turned = r->turned, .watertight = r->options->tight};
+    r->labels = (brio_tet_labels){.cocones = &r->cocones,
+                                  .dual = &r->dual,
+                                  .turned = r->turned,
+                                  .watertight = r->options->method == BRIO_SURFACE_TIGHT_COCONE};
     BRIO_TRY(brio_tet_labels_vote(r->ctx, &r->labels));
     BRIO_TRY(brio_cocone_prune(r->ctx, &r->labels, &r->out->stats.pruned));
     BRIO_TRY(brio_tet_labels_spread(r->ctx, &r->labels));
@@ -111,7 +113,8 @@ static brio_status extract(reconstruction *r) {
     brio_cocone_surface *out = r->out;
     brio_facets boundary = {0};
     BRIO_TRY(brio_make_manifold(r->ctx, &r->labels, &boundary, &out->stats.relabeled));
-    BRIO_TRY(brio_extract_faces(r->ctx, &r->labels, !r->options->tight, &boundary, &out->faces, &out->num_faces));
+    BRIO_TRY(brio_extract_faces(r->ctx, &r->labels, r->options->method != BRIO_SURFACE_TIGHT_COCONE, &boundary,
+                                &out->faces, &out->num_faces));
     BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no inside found");
     lap(r, &out->stats.manifold_seconds);
 done:
@@ -136,7 +139,7 @@ static void release(reconstruction *r) {
 }
 
 brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, size_t num_points,
-                                     const brio_cocone_options *options, const brio_sample_evidence *evidence,
+                                     const brio_surface_options *options, const brio_sample_evidence *evidence,
                                      brio_cocone_surface *out) {
     brio_status status = BRIO_OK;
     reconstruction r = {.ctx = ctx,

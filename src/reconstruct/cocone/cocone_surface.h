@@ -11,16 +11,16 @@ typedef struct {
     uint8_t *boundary; /* #P: 1 for boundary samples, with options.boundaries; else NULL */
     double *size;      /* #P: estimate of the local feature size, with options.density; else NULL */
     uint8_t *distinct; /* #P: 1 for samples that represent their position */
-    brio_cocone_stats stats;
+    brio_surface_stats stats;
 } brio_cocone_surface;
 
-/** Finds the co-cone or, with options.tight, the tight co-cone.
+/** Finds the co-cone or, as options.method says, the tight co-cone.
  *  points    #P by 3, coordinates of at most 1, none -0.
  *  evidence  NULL: none.
  *  out     overwritten; freed with brio_cocone_surface_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER, and what brio_delaunay returns. */
 brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, size_t num_points,
-                                     const brio_cocone_options *options, const brio_sample_evidence *evidence,
+                                     const brio_surface_options *options, const brio_sample_evidence *evidence,
                                      brio_cocone_surface *out);
 
 void brio_cocone_surface_free(brio_context *ctx, brio_cocone_surface *surface);

@@ -28,14 +28,10 @@ static const double PARALLEL = 0.5;
 /* In log-odds: evidence under LEAST in the mean is drawn by lot; MOST is the largest weight of a sample. Chosen. */
 static const double LEAST = 0.3, MOST = 6;
 
-static const brio_evidence STANDARD = {.size = sizeof STANDARD};
-
-BRIO_OPTIONS_INIT(brio_evidence)
-
 brio_status brio_take_evidence(brio_context *ctx, const brio_evidence *given, size_t num_points,
                                brio_sample_evidence *out) {
     brio_status status = BRIO_OK;
-    out->given = STANDARD;
+    out->given = (brio_evidence){0};
     if (given) BRIO_TRY(BRIO_TAKE(ctx, brio_evidence, given, &out->given));
     const brio_evidence *e = &out->given;
     BRIO_REQUIRE(ctx, !e->origins || e->origin_of || e->num_origins == 1 || e->num_origins == num_points,

@@ -40,7 +40,7 @@ static void largest_circles(const brio_mesh *mesh, int exponent, double *r) {
     }
 }
 
-static brio_status summarize(brio_context *ctx, const double *r, size_t n, brio_cocone_stats *stats) {
+static brio_status summarize(brio_context *ctx, const double *r, size_t n, brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
     uint64_t *keys = NULL;
     uint32_t *order = NULL;
@@ -63,7 +63,7 @@ done:
     return status;
 }
 
-brio_status brio_sampling_density(const double *size, int exponent, brio_mesh *mesh, brio_cocone_stats *stats) {
+brio_status brio_sampling_density(const double *size, int exponent, brio_mesh *mesh, brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
     double *size_property, *r;
     BRIO_TRY(brio_mesh_add_property(mesh, "feature_size", BRIO_SCALAR_FLOAT64, (void **)&size_property));

@@ -9,6 +9,6 @@
  *  outside_guarantee, r_median and r_p95 of the stats.
  *  size  #P: size[p] * 2^exponent is in the unit of the mesh. All coordinates are at most 2^exponent.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the mesh has such properties), BRIO_ERR_NO_MEMORY. */
-brio_status brio_sampling_density(const double *size, int exponent, brio_mesh *mesh, brio_cocone_stats *stats);
+brio_status brio_sampling_density(const double *size, int exponent, brio_mesh *mesh, brio_surface_stats *stats);
 
 #endif

@@ -19,7 +19,7 @@ typedef struct {
     const double *points;
     size_t num_points;
     int exponent; /* each piece is scaled by 2^-exponent */
-    const brio_cocone_options *options;
+    const brio_surface_options *options;
     brio_pieces pieces;
     brio_triangles faces, seam;
     uint8_t *frayed; /* #P: 1 where pieces disagree */
@@ -56,7 +56,7 @@ static void take_samples(assembly *a, uint32_t piece, const uint32_t *samples, s
     }
 }
 
-static void add_stats(brio_cocone_stats *sum, const brio_cocone_stats *s) {
+static void add_stats(brio_surface_stats *sum, const brio_surface_stats *s) {
     sum->candidates += s->candidates;
     sum->pruned += s->pruned;
     sum->relabeled += s->relabeled;
@@ -123,7 +123,7 @@ done:
 }
 
 brio_status brio_super_cocone(brio_context *ctx, const double *points, size_t num_points, int exponent,
-                              const brio_cocone_options *options, brio_cocone_surface *out) {
+                              const brio_surface_options *options, brio_cocone_surface *out) {
     brio_status status = BRIO_OK;
     assembly a = {
         .ctx = ctx, .points = points, .num_points = num_points, .exponent = exponent, .options = options, .out = out};

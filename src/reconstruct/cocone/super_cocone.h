@@ -8,6 +8,6 @@
  *  each piece by 2^-exponent, which makes coordinates at most 1; makes no copy of all points.
  *  options  pieces is greater than 1. */
 brio_status brio_super_cocone(brio_context *ctx, const double *points, size_t num_points, int exponent,
-                              const brio_cocone_options *options, brio_cocone_surface *out);
+                              const brio_surface_options *options, brio_cocone_surface *out);
 
 #endif

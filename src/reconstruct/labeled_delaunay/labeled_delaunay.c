@@ -17,10 +17,8 @@
  *           Dey, Goswami. Tight cocone: a water-tight surface reconstructor. JCISE 2003.
  * Differs from the papers: no lines of sight; samples are unknowns, too, and their votes are weighed by log-odds that were
  *                          measured on generated solids (vote_weight.c). */
-#include "base/float_state.h"
 #include "base/memory.h"
 #include "base/scale.h"
-#include "base/versioned.h"
 #include "dual/spacing.h"
 #include "order/canonical_points.h"
 #include "reconstruct/cocone/label_boundary.h"
@@ -28,6 +26,7 @@
 #include "reconstruct/cocone/rim_axes.h"
 #include "reconstruct/cocone/sample_evidence.h"
 #include "reconstruct/labeled_delaunay/hull_patches.h"
+#include "reconstruct/labeled_delaunay/labeled_delaunay.h"
 #include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/stray_samples.h"
@@ -38,13 +37,10 @@
 #include "reconstruct/noise/sample_noise.h"
 #include "reconstruct/noise/smooth_surface.h"
 #include "mesh/back_off.h"
+#include "mesh/properties.h"
 #include "reconstruct/open_surface/open_surface.h"
 #include <math.h>
 #include <string.h>
-
-static const brio_labeled_delaunay_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
-
-BRIO_OPTIONS_INIT(brio_labeled_delaunay_options)
 
 /* As brio_least_noise finds it. Surfaces of samples with more than LEAST_NOISE are smoothed: between what generated solids
  * show without noise and with a noise of 0.3 spacings in each coordinate. Samples with more than MOST_NOISE are smoothed
@@ -64,7 +60,7 @@ static const double THETA = 0.39269908169872414;
 
 typedef struct {
     brio_context *ctx;
-    const brio_labeled_delaunay_options *options;
+    const brio_surface_options *options;
     size_t given; /* points of the caller */
     size_t num_points;
     uint32_t *order; /* #P: the caller's index of each sample */
@@ -85,7 +81,7 @@ typedef struct {
     size_t num_faces;
     float *confidence; /* #P, or NULL */
     brio_triangle_facts of_faces;
-    brio_labeled_delaunay_stats stats;
+    brio_surface_stats stats;
     double lap;
 } reconstruction;
 
@@ -110,7 +106,7 @@ done:
 
 static brio_status triangulate(reconstruction *r) {
     brio_status status = BRIO_OK;
-    brio_delaunay_options o = brio_delaunay_options_default();
+    brio_delaunay_options o = {0};
     o.seed = r->options->seed;
     BRIO_TRY(brio_delaunay(r->ctx, r->points, NULL, r->num_points, &o, &r->delaunay));
     const brio_delaunay_stats *s = brio_triangulation_stats(r->delaunay);
@@ -316,7 +312,7 @@ done:
 /* Finds what the samples do not show, and leaves holes open on request. */
 static brio_status open_surface(reconstruction *r) {
     brio_status status = BRIO_OK;
-    const brio_labeled_delaunay_options *o = r->options;
+    const brio_surface_options *o = r->options;
     size_t before = r->num_faces;
     brio_unseen u;
     brio_sample_points samples = {r->ctx, r->points, r->num_points, r->own ? (const float(*)[3])r->outside : NULL};
@@ -498,42 +494,39 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->of_faces.size);
 }
 
-brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
-                                  const brio_labeled_delaunay_options *options, brio_mesh **out, uint32_t *samples,
-                                  brio_labeled_delaunay_stats *stats) {
-    BRIO_DOOR;
+/* Fills the mesh.   samples  #P: receives the sample of each vertex. */
+static brio_status reconstruct(brio_context *ctx, const double *points, size_t num_points,
+                               const brio_surface_options *options, brio_mesh *mesh, uint32_t *samples,
+                               brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
-    brio_labeled_delaunay_options o = STANDARD;
     reconstruction r = {.ctx = ctx,
-                        .options = &o,
+                        .options = options,
                         .given = num_points,
                         .num_points = num_points,
                         .graph = {.ctx = ctx},
                         .lap = brio_seconds()};
-    brio_mesh *mesh = NULL;
     const brio_bar bar = brio_progress_bar(ctx);
-    *out = NULL;
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_labeled_delaunay_stats, stats));
-    BRIO_TRY(BRIO_TAKE(ctx, brio_labeled_delaunay_options, options, &o));
-    BRIO_REQUIRE(ctx, (unsigned)o.noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
-                 (int)o.noise);
-    BRIO_REQUIRE(ctx, (unsigned)o.holes < BRIO_HOLES_END, BRIO_ERR_ARGUMENT, "no such way with holes: %d",
-                 (int)o.holes);
-    BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
-                 "open: %g spacings, expected a finite number, 0 or more", o.open);
-    BRIO_TRY(brio_take_evidence(ctx, o.evidence, num_points, &r.evidence));
-    BRIO_TRY(brio_refuse_points(ctx, points, num_points));
-    brio_progress_part(ctx, bar, 0, o.simplify ? 0.8 : 1);
+    BRIO_TRY(brio_take_evidence(ctx, options->evidence, num_points, &r.evidence));
+    brio_progress_part(ctx, bar, 0, options->simplify ? 0.8 : 1);
     BRIO_TRY(find_surface(&r, points));
     brio_progress_part(ctx, bar, 0.8, 1);
-    BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(make_mesh(&r, points, mesh, samples));
-    *out = mesh;
-    mesh = NULL;
 done:
     brio_progress_part(ctx, bar, 0, 1);
-    BRIO_GIVE(brio_labeled_delaunay_stats, stats, &r.stats);
-    brio_mesh_free(mesh);
+    *stats = r.stats;
     release(&r);
+    return status;
+}
+
+brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
+                                  const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats) {
+    brio_status status = BRIO_OK;
+    uint32_t *samples = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, samples, num_points));
+    BRIO_TRY(reconstruct(ctx, points, num_points, options, mesh, samples, stats));
+    BRIO_TRY(brio_mesh_add_samples(mesh, num_points, samples));
+    if (options->normals) BRIO_TRY(brio_point_normals(ctx, points, num_points, mesh, samples, options->normals));
+done:
+    brio_release(ctx, samples);
     return status;
 }

@@ -25,22 +25,20 @@ enum { BOUNDING_POINTS = 8 };
 static const double SHARP_DENSITY = 0.5;
 static const double TRIANGULATION_SHARE = 0.75; /* of the bar of the poles */
 
-brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, uint64_t seed,
+brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, brio_noise noise, uint64_t seed,
                                  brio_pole_request *request) {
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, (unsigned)o->labeling < BRIO_LABELING_END, BRIO_ERR_ARGUMENT, "no such labeling: %d",
                  (int)o->labeling);
     BRIO_REQUIRE(ctx, o->sampling_density >= 0 && o->sampling_density < 1, BRIO_ERR_ARGUMENT,
                  "sampling density %g, expected 0 or a number between 0 and 1", o->sampling_density);
-    BRIO_REQUIRE(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
-                 (int)o->noise);
-    BRIO_REQUIRE(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_pole_options.reserved_int is not 0");
+    BRIO_REQUIRE(ctx, (unsigned)noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d", (int)noise);
     for (size_t i = 0; i < sizeof o->reserved / sizeof *o->reserved; i++)
         BRIO_REQUIRE(ctx, !o->reserved[i], BRIO_ERR_ARGUMENT, "brio_pole_options.reserved is not 0");
     *request = (brio_pole_request){.seed = seed,
                                    .filter = {.sampling_density = o->sampling_density, .both = o->sharp},
                                    .labeling = o->labeling,
-                                   .noise = o->noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : o->noise,
+                                   .noise = noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : noise,
                                    .solid = o->solid};
     if (o->sharp && o->sampling_density == 0) request->filter.sampling_density = SHARP_DENSITY;
 done:
@@ -89,12 +87,12 @@ static brio_status reduce_noise(brio_labeled_poles *l, const brio_pole_request *
     double start = brio_seconds();
     bool smooth = request->noise == BRIO_NOISE_SMOOTH;
     if (request->noise == BRIO_NOISE_AUTO) {
-        BRIO_TRY(brio_noise_level(l->ctx, l->points, l->num_samples, &l->stats.noise));
-        smooth = l->stats.noise > 0;
+        BRIO_TRY(brio_noise_level(l->ctx, l->points, l->num_samples, &l->found.noise));
+        smooth = l->found.noise > 0;
     }
     if (smooth) BRIO_TRY(brio_smooth_samples(l->ctx, l->points, l->num_samples));
-    l->stats.smoothed = smooth;
-    l->stats.noise_seconds = brio_seconds() - start;
+    l->found.smoothed = smooth;
+    l->found.noise_seconds = brio_seconds() - start;
 done:
     return status;
 }
@@ -146,10 +144,10 @@ static brio_status find_poles(brio_labeled_poles *l, const brio_pole_request *re
     if (!request->solid && request->labeling == BRIO_LABELING_GLOBAL) filter.shapes = BRIO_TRUSTED_SHAPE;
     brio_progress_part(l->ctx, bar, 0, TRIANGULATION_SHARE);
     BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
-    l->stats.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
-    BRIO_REQUIRE(l->ctx, l->stats.samples >= 4, BRIO_ERR_NO_ANSWER, "%zu distinct points span no solid",
-                 l->stats.samples);
-    l->stats.delaunay_seconds = brio_seconds() - start;
+    l->found.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
+    BRIO_REQUIRE(l->ctx, l->found.samples >= 4, BRIO_ERR_NO_ANSWER, "%zu distinct points span no solid",
+                 l->found.samples);
+    l->found.delaunay_seconds = brio_seconds() - start;
     start = brio_seconds();
     brio_progress_part(l->ctx, bar, TRIANGULATION_SHARE, 1);
     BRIO_TRY(brio_poles_find(l->ctx, delaunay, l->points, l->num_samples, &filter, &l->poles));
@@ -157,7 +155,7 @@ static brio_status find_poles(brio_labeled_poles *l, const brio_pole_request *re
     if (request->representative) BRIO_TRY(keep_representatives(l, delaunay));
     l->stats.poles = l->poles.count;
     l->stats.bad_cells = l->poles.bad_cells;
-    l->stats.poles_seconds = brio_seconds() - start;
+    l->found.poles_seconds = brio_seconds() - start;
 done:
     brio_progress_part(l->ctx, bar, 0, 1);
     brio_triangulation_free(delaunay);
@@ -228,8 +226,7 @@ brio_status brio_labeled_poles_find(brio_context *ctx, const double *points, siz
                                     const brio_pole_request *request, brio_labeled_poles *l) {
     brio_status status = BRIO_OK;
     const brio_bar bar = brio_progress_bar(ctx);
-    *l = (brio_labeled_poles){.ctx = ctx, .num_samples = num_points, .triangulation = brio_delaunay_options_default()};
-    l->triangulation.seed = request->seed;
+    *l = (brio_labeled_poles){.ctx = ctx, .num_samples = num_points, .triangulation = {.seed = request->seed}};
     l->graph.ctx = ctx;
     brio_progress_part(ctx, bar, 0, 0.05);
     BRIO_TRY(prepare(l, points, request));

@@ -16,6 +16,14 @@ typedef struct {
     bool representative;    /* whether to keep the representatives of the samples */
 } brio_pole_request;
 
+/** What was found of the samples. */
+typedef struct {
+    size_t samples;  /* distinct positions */
+    double noise;    /* AUTO: the standard deviation of the noise found, in spacings of the samples; 0: none */
+    size_t smoothed; /* 1: they were smoothed */
+    double noise_seconds, delaunay_seconds, poles_seconds;
+} brio_sample_stats;
+
 /** Polar balls with labels, and their regular triangulation. All lengths are the caller's lengths
  *  times 2^-exponent, which makes coordinates of samples at most 1. */
 typedef struct {
@@ -33,11 +41,12 @@ typedef struct {
     brio_pole_graph graph;      /* has no edges if a mesh gave the labels */
     uint8_t *label;
     brio_pole_stats stats;
+    brio_sample_stats found;
 } brio_labeled_poles;
 
 /** Checks options and turns them into a request: margin 0, no spacing, no representatives.
  *  Returns BRIO_OK or BRIO_ERR_ARGUMENT. */
-brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *options, uint64_t seed,
+brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *options, brio_noise noise, uint64_t seed,
                                  brio_pole_request *request);
 
 /** Finds the poles of the points and labels them.

@@ -7,10 +7,9 @@
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.4.
  * Differs from the paper: the bounding points are moved out by 4 |D|, so that no
  *                         outer ball through one vanishes. */
-#include "base/float_state.h"
 #include "base/memory.h"
 #include "base/scale.h"
-#include "base/versioned.h"
+#include "mesh/properties.h"
 #include "reconstruct/power_crust/power_crust.h"
 #include <float.h>
 #include <math.h>
@@ -21,10 +20,6 @@ static const double MARGIN = 4;        /* of the bounding points, in distances *
 static const double FARTHEST =
     0x1p60; /* of the greatest coordinate: where doubles tell nothing of the points; chosen */
 #define SWALLOWED "the offset by %g swallows the whole object: no inside is left"
-
-static const brio_offset_surface_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
-
-BRIO_OPTIONS_INIT(brio_offset_surface_options)
 
 /* Changes the radii. Sets keep[p] to 0 for balls whose radius is not positive, and to 1 for others. */
 static void change_radii(brio_labeled_poles *l, double distance, uint8_t *keep) {
@@ -48,17 +43,10 @@ done:
     return status;
 }
 
-/* Returns the options for the power crust of the changed balls. */
-static brio_power_crust_options crust_options(const brio_offset_surface_options *o) {
-    brio_power_crust_options crust = brio_power_crust_options_default();
-    crust.triangulate = o->triangulate;
-    crust.simplify = o->simplify;
-    return crust;
-}
-
-static brio_status find_balls(brio_labeled_poles *l, const double *points, size_t num_points, double distance,
-                              const brio_offset_surface_options *o) {
+static brio_status find_balls(brio_labeled_poles *l, const double *points, size_t num_points,
+                              const brio_surface_options *o) {
     brio_status status = BRIO_OK;
+    const double distance = o->distance;
     brio_pole_request request;
     BRIO_REQUIRE(l->ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
     BRIO_REQUIRE(l->ctx, num_points < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", num_points);
@@ -66,7 +54,7 @@ static brio_status find_balls(brio_labeled_poles *l, const double *points, size_
     BRIO_REQUIRE(l->ctx, num_points == 0 || distance <= FARTHEST * most, BRIO_ERR_ARGUMENT,
                  "the distance %g of the offset is more than 2^60 times the greatest coordinate %g", distance, most);
     BRIO_REQUIRE(l->ctx, num_points == 0 || -distance <= FARTHEST * most, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
-    BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
+    BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->noise, o->seed, &request));
     request.spacing = o->simplify;
     request.margin = MARGIN * fabs(distance);
     BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
@@ -75,47 +63,31 @@ done:
     return status;
 }
 
-static brio_status make_offset(brio_labeled_poles *l, double distance, const brio_offset_surface_options *o,
-                               brio_mesh *mesh, brio_power_crust_stats *stats) {
-    brio_power_crust_options crust = crust_options(o);
+static brio_status make_offset(brio_labeled_poles *l, const brio_surface_options *o, brio_mesh *mesh,
+                               brio_surface_stats *stats) {
     const brio_bar bar = brio_progress_bar(l->ctx);
     brio_progress_part(l->ctx, bar, 0, MOVE_SHARE);
-    brio_status status = move_surface(l, distance);
+    brio_status status = move_surface(l, o->distance);
     brio_progress_part(l->ctx, bar, MOVE_SHARE, 1);
-    if (status == BRIO_OK) status = brio_make_crust(l, &crust, mesh, NULL, stats);
+    if (status == BRIO_OK) status = brio_make_crust(l, o, mesh, NULL, stats);
     brio_progress_part(l->ctx, bar, 0, 1);
-    if (status == BRIO_ERR_NO_ANSWER && distance < 0) return brio_fail(l->ctx, status, SWALLOWED, distance);
+    if (status == BRIO_ERR_NO_ANSWER && o->distance < 0) return brio_fail(l->ctx, status, SWALLOWED, o->distance);
     return status;
 }
 
-brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points, double distance,
-                                const brio_offset_surface_options *options, brio_mesh **out,
-                                brio_offset_surface_stats *stats) {
-    BRIO_DOOR;
+brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points,
+                                const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
-    brio_offset_surface_options o = STANDARD;
-    brio_power_crust_stats crust = {0};
-    brio_offset_surface_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
-    brio_mesh *mesh = NULL;
     const brio_bar bar = brio_progress_bar(ctx);
-    *out = NULL;
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_offset_surface_stats, stats));
-    BRIO_TRY(BRIO_TAKE(ctx, brio_offset_surface_options, options, &o));
-    BRIO_TRY(brio_mesh_new(ctx, &mesh));
     brio_progress_part(ctx, bar, 0, POLES_SHARE);
-    BRIO_TRY(find_balls(&l, points, num_points, distance, &o));
+    BRIO_TRY(find_balls(&l, points, num_points, options));
     brio_progress_part(ctx, bar, POLES_SHARE, 1);
-    BRIO_TRY(make_offset(&l, distance, &o, mesh, &crust));
-    *out = mesh;
-    mesh = NULL;
+    BRIO_TRY(make_offset(&l, options, mesh, stats));
+    BRIO_TRY(brio_mesh_add_samples(mesh, num_points, NULL));
 done:
-    s.poles = l.stats;
-    s.crust_seconds = crust.crust_seconds;
-    s.simplify_seconds = crust.simplify_seconds;
-    BRIO_GIVE(brio_offset_surface_stats, stats, &s);
+    brio_give_pole_stats(&l, stats);
     brio_progress_part(ctx, bar, 0, 1);
-    brio_mesh_free(mesh);
     brio_labeled_poles_free(&l);
     return status;
 }

@@ -4,10 +4,8 @@
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
 #include "reconstruct/power_crust/power_crust.h"
-#include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
-#include "base/versioned.h"
 #include "base/scale.h"
 #include "reconstruct/power_crust/crust_faces.h"
 #include "reconstruct/power_crust/sample_normals.h"
@@ -18,10 +16,6 @@
 static const double POLES_SHARE = 0.9; /* of the progress bar */
 static const double FACES_SHARE = 0.3; /* of the bar of the crust, the faces before the simplification */
 static const double LONGEST_COLLAPSE = 1.5, COLLAPSE_TOLERANCE = 0.1; /* in spacings */
-
-static const brio_power_crust_options STANDARD = {.size = sizeof STANDARD, .seed = 1};
-
-BRIO_OPTIONS_INIT(brio_power_crust_options)
 
 /* Simplifies the mesh to a quarter of its faces, or to as few as the limits allow. */
 static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *mesh, double *seconds) {
@@ -37,12 +31,12 @@ done:
     return status;
 }
 
-brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, brio_mesh *mesh, double *normals,
-                            brio_power_crust_stats *stats) {
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_surface_options *o, brio_mesh *mesh, double *normals,
+                            brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
     const brio_bar bar = brio_progress_bar(l->ctx);
     double start = brio_seconds();
-    brio_crust_options options = {o->triangulate || o->simplify, o->open, l->spacing};
+    brio_crust_options options = {!o->polygons, o->open, l->spacing};
     brio_crust_counts counts;
     brio_progress_part(l->ctx, bar, 0, o->simplify ? FACES_SHARE : 1);
     BRIO_TRY(brio_crust_faces(&l->diagram, l->label, &options, mesh, &counts));
@@ -58,39 +52,35 @@ done:
     return status;
 }
 
+void brio_give_pole_stats(const brio_labeled_poles *l, brio_surface_stats *stats) {
+    stats->poles = l->stats;
+    stats->samples = l->found.samples;
+    stats->noise = l->found.noise;
+    stats->smoothed = l->found.smoothed;
+    stats->noise_seconds = l->found.noise_seconds;
+    stats->delaunay_seconds = l->found.delaunay_seconds;
+    stats->poles_seconds = l->found.poles_seconds;
+}
+
 brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
-                             const brio_power_crust_options *options, brio_mesh **out, double *normals,
-                             brio_power_crust_stats *stats) {
-    BRIO_DOOR;
+                             const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats) {
     brio_status status = BRIO_OK;
-    brio_power_crust_options o = STANDARD;
-    brio_power_crust_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_pole_request request;
-    brio_mesh *mesh = NULL;
     const brio_bar bar = brio_progress_bar(ctx);
-    *out = NULL;
     brio_keep_begin(ctx);
-    BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_crust_stats, stats));
-    BRIO_TRY(BRIO_TAKE(ctx, brio_power_crust_options, options, &o));
-    BRIO_TRY(brio_pole_request_of(ctx, &o.poles, o.seed, &request));
-    BRIO_REQUIRE(ctx, o.open >= 0 && o.open < INFINITY, BRIO_ERR_ARGUMENT,
-                 "open: %g spacings, expected a finite number, 0 or more", o.open);
-    request.spacing = o.open > 0 || o.simplify;
-    request.representative = normals != NULL;
-    BRIO_TRY(brio_mesh_new(ctx, &mesh));
+    BRIO_TRY(brio_pole_request_of(ctx, &options->poles, options->noise, options->seed, &request));
+    request.spacing = options->open > 0 || options->simplify;
+    request.representative = options->normals != NULL;
     brio_progress_part(ctx, bar, 0, POLES_SHARE);
     BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, &l));
-    if (o.poles.solid) brio_labeled_poles_close_hull(&l);
+    if (options->poles.solid) brio_labeled_poles_close_hull(&l);
     brio_progress_part(ctx, bar, POLES_SHARE, 1);
-    BRIO_TRY(brio_make_crust(&l, &o, mesh, normals, &s));
-    *out = mesh;
-    mesh = NULL;
+    BRIO_TRY(brio_make_crust(&l, options, mesh, options->normals, stats));
+    BRIO_TRY(brio_mesh_add_samples(mesh, num_points, NULL));
 done:
-    s.poles = l.stats;
-    BRIO_GIVE(brio_power_crust_stats, stats, &s);
+    brio_give_pole_stats(&l, stats);
     brio_progress_part(ctx, bar, 0, 1);
-    brio_mesh_free(mesh);
     brio_labeled_poles_free(&l);
     brio_keep_end(ctx);
     return status;

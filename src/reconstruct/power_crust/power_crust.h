@@ -12,7 +12,18 @@
  *  stats    receives left_out and the seconds; other fields stay unchanged.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no pole with a cell is inner, or every face spans a hole), BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */
-brio_status brio_make_crust(brio_labeled_poles *l, const brio_power_crust_options *o, brio_mesh *mesh, double *normals,
-                            brio_power_crust_stats *stats);
+brio_status brio_make_crust(brio_labeled_poles *l, const brio_surface_options *o, brio_mesh *mesh, double *normals,
+                            brio_surface_stats *stats);
+
+/** Copies what was counted of poles and of their samples. */
+void brio_give_pole_stats(const brio_labeled_poles *l, brio_surface_stats *stats);
+
+/** Makes a surface, as brio_surface describes it, in an empty mesh.   options  with their defaults.   stats  zeros. */
+brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
+                             const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats);
+
+/** Makes the offset of a power crust, likewise. */
+brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points,
+                                const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats);
 
 #endif

@@ -10,6 +10,7 @@
  * Differs from the paper: outer poles whose tetrahedron has a bounding point are no part of the outer shape. */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/scale.h"
 #include "base/versioned.h"
 #include "reconstruct/power_crust/ball_cover.h"
@@ -21,11 +22,6 @@
 enum { NO_VERTEX = UINT32_MAX };
 static const double POLES_SHARE = 0.8;    /* of the progress bar */
 static const double SIMPLIFY_SHARE = 0.5; /* of the bar of what follows */
-
-static const brio_power_shape_options STANDARD = {
-    .size = sizeof STANDARD, .seed = 1, .sides = BRIO_SIDES_INNER, .scale = 1};
-
-BRIO_OPTIONS_INIT(brio_power_shape_options)
 
 typedef struct {
     brio_labeled_poles *poles;
@@ -232,7 +228,7 @@ static brio_status find_balls(brio_labeled_poles *l, const double *points, size_
     brio_status status = BRIO_OK;
     brio_pole_request request;
     BRIO_TRY(check_options(l->ctx, o));
-    BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->seed, &request));
+    BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->noise, o->seed, &request));
     BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
 done:
     return status;
@@ -241,8 +237,8 @@ done:
 static brio_status make_both(brio_labeled_poles *l, const brio_power_shape_options *o, brio_mesh *shape,
                              brio_mesh *crust, brio_power_shape_stats *s) {
     brio_status status = BRIO_OK;
-    brio_power_crust_options surface = brio_power_crust_options_default();
-    brio_power_crust_stats unused;
+    const brio_surface_options surface = {.polygons = 1};
+    brio_surface_stats unused;
     const brio_bar bar = brio_progress_bar(l->ctx);
     const double end = crust ? 0.75 : 1;
     count_poles(l, s);
@@ -269,7 +265,7 @@ brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num
                              brio_power_shape_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_power_shape_options o = STANDARD;
+    brio_power_shape_options o = {0};
     brio_power_shape_stats s = {0};
     brio_labeled_poles l = {.ctx = ctx};
     brio_mesh *shape_mesh = NULL, *crust_mesh = NULL;
@@ -278,6 +274,8 @@ brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num
     if (crust) *crust = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_power_shape_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_power_shape_options, options, &o));
+    if (!o.seed) o.seed = BRIO_SEED;
+    if (o.scale == 0) o.scale = 1;
     BRIO_TRY(brio_mesh_new(ctx, &shape_mesh));
     if (crust) BRIO_TRY(brio_mesh_new(ctx, &crust_mesh));
     brio_progress_part(ctx, bar, 0, POLES_SHARE);
@@ -288,6 +286,12 @@ brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num
     if (crust) *crust = crust_mesh;
     shape_mesh = crust_mesh = NULL;
 done:
+    s.samples = l.found.samples;
+    s.noise = l.found.noise;
+    s.smoothed = l.found.smoothed;
+    s.noise_seconds = l.found.noise_seconds;
+    s.delaunay_seconds = l.found.delaunay_seconds;
+    s.poles_seconds = l.found.poles_seconds;
     BRIO_GIVE(brio_power_shape_stats, stats, &s);
     brio_progress_part(ctx, bar, 0, 1);
     brio_mesh_free(shape_mesh);

@@ -91,7 +91,7 @@ static void alpha(const Set &s, bool shape, Result &r) {
 
 static void hull(const Set &s, Result &r) {
     std::vector<uint32_t> samples(s.n);
-    brio_convex_hull_options o = brio_convex_hull_options_default();
+    brio_convex_hull_options o = {0};
     brio_convex_hull_stats stats = {};
     brio_certificate c = {};
     brio_mesh *m = nullptr;
@@ -108,7 +108,7 @@ static void hull(const Set &s, Result &r) {
 
 static void cells(const Set &s, Result &r) {
     const double box[6] = {0, 0, 0, 1, 1, 1};
-    brio_cells_options o = brio_cells_options_default();
+    brio_cells_options o = {0};
     brio_cells *c = nullptr;
     o.centroids = 0, o.box = box, r.columns = 2;
     r.status = brio_voronoi_cells(ctx, nullptr, s.x.data(), weights_of(s), s.n, &o, &c);

@@ -1,0 +1,109 @@
+/* brio/cells.h: Voronoi cells and power cells, with volumes, faces and vertices. */
+#ifndef BRIO_CELLS_H
+#define BRIO_CELLS_H
+
+#include "triangulation.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct brio_cells_options {
+    size_t size;
+    int no_areas;         /* 1: leaves `area` out, which saves time; and so on */
+    int no_centroids;     /* 1: leaves `centroid` out */
+    int no_faces;         /* 1: leaves the faces out */
+    int vertices;         /* 1: computes the vertices, and the faces */
+    const double *box;    /* x0 y0 z0 x1 y1 z1, low before high: clips the cells */
+    const double *planes; /* #planes by 4, n and d: clips the cells to n . x <= d */
+    size_t num_planes;    /* box and planes together must bound a polytope with a volume */
+} brio_cells_options;
+
+/** Cells and their faces, #C cells and #F faces. Cell c has the faces face_offsets[c] to face_offsets[c+1] - 1, and face f
+ *  has the corners corner_offsets[f] to corner_offsets[f+1] - 1, counterclockwise seen from outside the cell. Arrays that
+ *  were not asked for are NULL. A face between two cells is listed in both. Later versions may append fields. */
+typedef struct brio_cells {
+    size_t size; /* of the struct in the library that runs */
+    brio_context *context;
+    size_t num_cells;
+    uint32_t *site;         /* #C, ascending: the point that owns the cell */
+    double *volume;         /* #C: infinite for unbounded cells, and where doubles cannot hold it */
+    uint8_t *bounded;       /* #C: 1, or 0 for a cell that reaches infinity. Clipped cells are bounded. */
+    double *area;           /* #C: of the cell's surface; infinite for unbounded cells */
+    double *centroid;       /* #C by 3: NaN for cells of no volume or an infinite one */
+    double volume_sum;      /* of the bounded cells */
+    double region_volume;   /* of the polytope that clips; infinite without one */
+    uint64_t *face_offsets; /* #C + 1 */
+    int64_t
+        *face_neighbours; /* #F: the site on the other side, or -1 - i for wall i of the region: the box' walls low x,
+                                 high x, low y, high y, low z, high z are -1 to -6, then come the planes */
+    double *face_areas;   /* #F: infinite for unbounded faces */
+    double *face_normals; /* #F by 3: unit vectors out of the cell */
+    uint64_t *corner_offsets; /* #F + 1 */
+    uint32_t *face_vertices;  /* of each corner */
+    size_t num_vertices;
+    double *vertices; /* #vertices by 3 */
+} brio_cells;
+
+/** Computes the Voronoi cell of every vertex or, with weights, the power cell: the points of space whose distance (power
+ *  distance) from the vertex is the least. Duplicates and hidden points have no cells. Without a region (box or planes),
+ *  cells of vertices on the convex hull are unbounded.
+ *  Faces: two cells share a face if they meet in a polygon; cells that meet in an edge or a point, as many cells of a
+ *  lattice do, share none. This is decided exactly. A face can have a computed area of 0 if it is too small for doubles.
+ *  In a region, a cell that lies outside has the volume 0 and no faces. What the walls cut off is decided exactly, too: two
+ *  cells share a face if a part of it with an area is in the region, and a face that lies in a wall is the wall's. Of a
+ *  region of planes that are no box, which corners it has is decided by rounded coordinates.
+ *  Vertices: a vertex at the centre of tetrahedra is listed once, however many tetrahedra share it; a vertex that
+ *  clipping made belongs to one cell. An unbounded face lists its finite vertices in order, from the end of one ray to the
+ *  end of the other; unbounded cells of points of dimension 2 or less list none.
+ *  Accuracy: vertices are rounded to doubles, after an error of 2^-44 of their distance from their sites. Errors of
+ *  vertices cancel in the sum of the volumes: in a region it is region_volume up to about 1e-13 relative, if all cells are
+ *  there, and up to about 2^-50 times the distance from 0 or from the sites to the region, divided by its side, where that is
+ *  more. Compare volume_sum with region_volume to see; more than 1 % is BRIO_ERR_NO_ANSWER.
+ *  Points of dimension 2 or less have cells too: prisms, slabs, or all of space, bounded in a region alone.
+ *  t  the result of brio_delaunay for these points and weights, or NULL to compute it.
+ *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
+ *  out  owned by the caller, freed with brio_cells_free; NULL on error.
+ *  The result has the same bits for every number of threads.
+ *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
+ *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
+ *  the facets, about as long as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat, unbounded, or too
+ *  small or, 2^600 times, too large beside the points), BRIO_ERR_NO_ANSWER (see Accuracy), and as brio_delaunay.
+ *  Based on: [Aurenhammer 1987], [Choi 2003] sections 2.1 and 2.2. */
+BRIO_API brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, const double *points,
+                                        const double *weights, size_t num_points, const brio_cells_options *options,
+                                        brio_cells **out);
+
+/** Frees cells with all their arrays; NULL is accepted. */
+BRIO_API void brio_cells_free(brio_cells *cells);
+
+/** File formats of cells. BRIO_CELLS_FORMAT_AUTO decides by the extension. */
+typedef enum brio_cells_format {
+    BRIO_CELLS_FORMAT_AUTO = 0,
+    BRIO_CELLS_FORMAT_VTU = 1,       /* polyhedra of VTK; cells have `vertices`. Left out are unbounded and empty
+                                  cells, and those with a vertex that doubles cannot hold. */
+    BRIO_CELLS_FORMAT_NPY = 2,       /* a table of NumPy, a structured array of one dimension */
+    BRIO_CELLS_FORMAT_CSV = 3,       /* a text with a header */
+    BRIO_CELLS_FORMAT_FACES_CSV = 4, /* the faces as a text with a header; never chosen by the extension */
+    BRIO_CELLS_FORMAT_END
+} brio_cells_format;
+
+/** Returns the format of a file name or of an extension with or without its dot; BRIO_CELLS_FORMAT_AUTO if it is
+ *  unknown. */
+BRIO_API brio_cells_format brio_cells_format_of(const char *path);
+
+/** Writes cells to a file, with the care of brio_write. CSV and NPY have a row for each cell: site, volume, area, faces
+ *  (their number), bounded, cx, cy, cz (the centroid). FACES_CSV has a row for each face of each cell: site, neighbour, area,
+ *  nx, ny, nz. VTU has site, volume, area and faces as data of the cells. The cells
+ *  have areas, centroids and faces; for VTU also vertices.
+ *  comment  a line for the header of a VTU file; NULL: none.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an unknown format, or an array is missing), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_cells_write(brio_context *ctx, const char *path, const brio_cells *cells,
+                                      brio_cells_format format, const char *comment);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

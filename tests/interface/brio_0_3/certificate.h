@@ -1,0 +1,100 @@
+/* brio/certificate.h: what is wrong with a mesh, and how far it is from points and from other meshes. */
+#ifndef BRIO_CERTIFICATE_H
+#define BRIO_CERTIFICATE_H
+
+#include "mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What the connectivity of a mesh's polygons says about the surface. Vertices at the same position count as distinct.
+ *  Components are sets of faces joined across edges. The genus is the sum over the components of
+ *  (2 - chi - boundary loops) / 2. */
+typedef struct brio_certificate {
+    size_t size;
+    brio_context *context; /* that `genera` belongs to */
+    int closed;            /* there are faces, none of fewer than three corners, and every edge has two of them */
+    int manifold;          /* no edge has more than two faces; the faces at each vertex form one fan */
+    int oriented;          /* the two faces of an edge run along it in opposite directions */
+    size_t components;
+    int64_t genus;
+    int64_t *genera; /* of each component, the component with the most faces first; owned by the certificate */
+    size_t boundary_edges, boundary_loops;
+    size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
+    int64_t self_intersections; /* -1: for the caller, who may store here what brio_mesh_self_intersections counts */
+    double area, volume;        /* volume is positive when the faces are seen counterclockwise from outside */
+} brio_certificate;
+
+/** Certifies the polygons of a mesh. Cost O(F log F).   out  zeros at first; freed with
+ *  brio_certificate_free, also before it receives another certificate.
+ *  Returns BRIO_OK (whatever the certificate says), BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out);
+
+/** Counts, exactly, the pairs of faces that meet in more than common corners and edges: faces that cross each other,
+ *  touch, or overlap in one plane. Corners at equal positions are common corners. A polygon counts as the fan of triangles
+ *  from its first corner; triangles of area 0 meet nothing.
+ *  Cost: near-linear for faces of about equal size; 100 bytes a face.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs);
+
+/** Frees what a certificate owns and sets all fields but `size` to 0; NULL is accepted. */
+BRIO_API void brio_certificate_free(brio_certificate *certificate);
+
+/** Distances between two surfaces, in the unit of the coordinates. */
+typedef struct brio_distance {
+    size_t size;
+    double mean, rms, p95, hausdorff; /* from random points of each surface to the nearest point of the other one */
+    double normal_consistency;        /* mean |cos| of the angle between the normals at a point and its nearest point */
+    double diagonal;                  /* of the bounding box of mesh b */
+} brio_distance;
+
+/** Compares two surfaces. Takes `samples` random points of each (0: 100,000), uniform by area, and computes their exact
+ *  distances from the triangles of the other surface.   out  zeros at first.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (a mesh without triangles, or whose faces have no area), BRIO_ERR_NOT_FINITE,
+ *  BRIO_ERR_NO_ANSWER (doubles cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
+                                        uint64_t seed, brio_distance *out);
+
+/** Measures how far points are from a surface: exactly the nearest point of its faces, and the side. Of a closed surface points
+ *  inside have negative distances, by the winding number, exactly, whichever way its faces look. Of any other surface points behind
+ *  the faces have: by the triangles at the nearest point, and where these disagree by their normals, weighted by angles. Vertices at
+ *  one position count as one.   distance  #P, written.
+ *  Cost: O(log F) expected a point, with all threads; 50 bytes a triangle.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or no face of three corners), BRIO_ERR_NOT_FINITE,
+ *  BRIO_ERR_NO_ANSWER (doubles cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Baerentzen Aanaes 2005]. */
+BRIO_API brio_status brio_mesh_signed_distances(brio_context *ctx, const brio_mesh *mesh, const double *points,
+                                                size_t num_points, double *distance);
+
+/** What of a surface points do not show, and what of the points a surface leaves. Lengths are in spacings of the points
+ *  there: the spacing of a square grid with as many points within the distance of the sixth nearest one. */
+typedef struct brio_coverage {
+    size_t size;
+    double far_share;    /* of the area: what is farther than five spacings from all points */
+    size_t bridges;      /* sets of faces, joined across edges, that are over 2.5 spacings away somewhere, one over 5 */
+    double bridge_share; /* of the area: that of the bridges */
+    double
+        bridge_radius; /* of the largest bridge, by area: how far it is from all points, and where; 0: there is none */
+    double bridge_centre[3];
+    size_t left_out; /* points that are farther than two spacings from the surface */
+} brio_coverage;
+
+/** Compares a surface, of any origin, with the points that it is to go through. Polygons count as fans.
+ *  bridge  NULL, or #F: receives 1 for faces of bridges.   out  zeros at first.
+ *  Cost: about ten nearest points a point and a face; 90 bytes a point and 110 a face.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, no faces or no points), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_mesh_coverage(brio_context *ctx, const brio_mesh *mesh, const double *points,
+                                        size_t num_points, uint8_t *bridge, brio_coverage *out);
+
+/** Finds the points that brio_coverage.left_out counts.
+ *  left_out  NULL, or #P: receives 1 for points that are left out, 0 for others.   count  receives their number.
+ *  Cost and errors as brio_mesh_coverage, without what the faces take. */
+BRIO_API brio_status brio_mesh_left_out(brio_context *ctx, const brio_mesh *mesh, const double *points,
+                                        size_t num_points, uint8_t *left_out, size_t *count);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
