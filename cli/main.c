@@ -21,20 +21,21 @@ static const char *command_name(const void *list, size_t i) {
 
 /* --- one command --- */
 
-/* Whether a flag is on a line that is not, or could not be, read through. */
+/* Returns whether a flag is on a line that is not, or could not be, read through. */
 static bool has_flag(int argc, char **argv, const char *flag) {
     for (int i = 0; i < argc && strcmp(argv[i], "--"); i++)
         if (!strcmp(argv[i], flag)) return true;
     return false;
 }
 
-/* What is printed needs no memory: without a buffer, the C library loses it in silence. */
+/* Gives standard output a buffer, so that printing needs no memory: without a buffer, the C library loses it in
+ * silence. */
 static void buffer_output(void) {
     static char buffer[BUFSIZ];
     setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
 }
 
-/* Whether standard output took all that was printed. */
+/* Returns whether standard output took all that was printed. */
 static bool printed(void) {
     if (fflush(stdout) == 0 && !ferror(stdout)) return true;
     fprintf(stderr, "brio: standard output: %s\n", strerror(errno));
@@ -66,7 +67,8 @@ static bool report(run *r, brio_status status, int code) {
     return printed();
 }
 
-/* After a signal any failure is an interruption: a call of the system that it cut short looks like another error. */
+/* Turns a failure into an interruption. After a signal any failure is an interruption: a call of the system that it cut
+ * short looks like another error. */
 static brio_status interruption(run *r, brio_status status) {
     return status != BRIO_OK && cli_interrupted() ? cli_fail(r, BRIO_ERR_CANCELLED, "interrupted") : status;
 }
@@ -158,7 +160,7 @@ static int unknown_command(const char *name, bool json) {
     return finish(&r, cli_fail(&r, BRIO_ERR_ARGUMENT, "unknown command '%s'", name));
 }
 
-/* brio help [COMMAND|methods]. */
+/* Runs brio help [COMMAND|methods]. */
 static int help(int argc, char **argv) {
     const char *subject = argc > 0 ? argv[0] : "--help";
     const command *c = cli_find_command(subject);
@@ -177,7 +179,7 @@ static bool is_one_of(const char *word, const char *a, const char *b) {
     return !strcmp(word, a) || !strcmp(word, b);
 }
 
-/* Standard streams that the caller closed get descriptors that refuse every call: a file opened later would get their
+/* Gives standard streams that the caller closed descriptors that refuse every call: a file opened later would get their
  * numbers, and messages would be written into it. */
 static void fill_closed_streams(void) {
     for (int stream = 0; stream < 3; stream++)

@@ -25,7 +25,8 @@ static const option options[] = {
 
 static const arguments defaults = {.weights.exponent = NO_EXPONENT};
 
-/* An index out of range is a fault of the file here, not of the call. */
+/* Reports a fault of the call as one of the file: an index out of range is a fault of the file here, not of the
+ * call. */
 static brio_status blame_file(run *r, brio_status status) {
     if (status != BRIO_ERR_ARGUMENT) return status;
     return cli_fail(r, BRIO_ERR_FORMAT, "%s: %s", r->operands[0], brio_message(r->ctx));

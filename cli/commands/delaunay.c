@@ -27,7 +27,7 @@ const option_choice cli_subgraphs[] = {{"bounded", BRIO_SUBGRAPH_BOUNDED},
                                        {"all", BRIO_SUBGRAPH_ALL},
                                        {NULL, 0}};
 
-/* Whether a location goes along edges. */
+/* Returns whether a location goes along edges. */
 static bool needs_edges(brio_location location) {
     return location == BRIO_LOCATION_TRACE || location == BRIO_LOCATION_NEIGHBOUR;
 }
@@ -51,7 +51,8 @@ static brio_status report_edges(run *r, const brio_mesh *mesh, brio_subgraph kin
     return BRIO_OK;
 }
 
-/* The edges of a subgraph; facts tell which. Fitting is for a trace the bounded one or, of a mesh that has none, the
+/* Lists the edges of a subgraph, and reports which. Fitting is for a trace the bounded one or, of a mesh that has none,
+ * the
  *  minimum spanning tree; for a neighbour all edges. The time is lapped as `subgraph`. A mesh without faces is a fault
  *  of the file. */
 static brio_status cli_mesh_edges(run *r, const brio_mesh *mesh, brio_location location, int subgraph,

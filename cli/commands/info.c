@@ -1,8 +1,8 @@
 /* brio info: what is in a file, and how much memory each command would take for it.
  *
- * The file is read in blocks first, for its counts, its box and the ranges of its properties. Duplicates, the spacing and
- * the estimates need the points in memory; a file of more than MOST_IN_MEMORY points is not read a second time, and the
- * report has null for duplicates and spacing. */
+ * The file is read in blocks first, for its counts, its box and the ranges of its properties. Duplicates, the spacing
+ * and the estimates need the points in memory; a file of more than MOST_IN_MEMORY points is not read a second time, and
+ * the report has null for duplicates and spacing. */
 #include "cli/files/cloud.h"
 #include "cli/files/read_write.h"
 #include "cli/run/commands.h"
@@ -58,13 +58,13 @@ static int take_properties(survey *v, const brio_mesh *block) {
     return 0;
 }
 
-/* Files with faces are one block. */
+/* Takes note of the properties of faces. Files with faces are one block. */
 static void take_face_properties(survey *v, const brio_mesh *block) {
     for (size_t i = 0; i < block->num_face_properties && block->num_faces; i++)
         cli_fact_text(&v->of_faces, block->face_properties[i].name, type_names[block->face_properties[i].type]);
 }
 
-/* A text that people can read, or else how many bytes there are. */
+/* Takes note of metadata: a text that people can read, or else how many bytes there are. */
 static void take_metadata(survey *v, const brio_mesh *block) {
     for (size_t i = 0; i < block->num_metadata; i++) {
         const brio_metadata *m = &block->metadata[i];
@@ -231,8 +231,8 @@ done:
     return status;
 }
 
-/* The estimate of an offset. Of a mesh its faces count, and the distance: a hundredth of the diagonal of its box is taken. A mesh that
- * cannot be offset has none. */
+/* Reports the estimate of an offset. Of a mesh its faces count, and the distance: a hundredth of the diagonal of its
+ * box is taken. A mesh that cannot be offset has none. */
 static brio_status report_offset(run *r, const brio_mesh *mesh, double beside, uint64_t of_points) {
     double low[3], high[3], square = 0;
     uint64_t work = 0;

@@ -119,7 +119,7 @@ static void report(run *r, const brio_power_shape_options *o, const brio_power_s
     cli_fact_count(f, "tetrahedra", s->tetrahedra);
 }
 
-/* A VTP file and a text of points cannot hold tetrahedra: they are left out there. */
+/* Writes the shape. A VTP file and a text of points cannot hold tetrahedra: they are left out there. */
 static brio_status write_shape(run *r, brio_mesh *shape) {
     brio_format format;
     if (!r->common.output) return BRIO_OK; /* --json alone asks for the facts */

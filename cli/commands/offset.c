@@ -1,5 +1,5 @@
-/* brio offset: the surface at a distance from the one through the points of a file, or from the faces of a closed mesh, with
- * its certificate. */
+/* brio offset: the surface at a distance from the one through the points of a file, or from the faces of a closed mesh,
+ * with its certificate. */
 #include "cli/files/read_write.h"
 #include "cli/steps/certificate.h"
 #include "cli/run/commands.h"
@@ -39,7 +39,7 @@ static const option options[] = {
 
 static const arguments defaults = {.distance = NAN, .crust.labeling = LABELS_OF_INPUT};
 
-/* The power crust of the points. */
+/* Makes the power crust of the points. */
 static brio_status offset_points(run *r, const power_crust_options *crust, const brio_mesh *points,
                                  brio_mesh **surface) {
     const arguments *a = r->arguments;
@@ -76,7 +76,8 @@ done:
     return status;
 }
 
-/* Options that say how a surface goes through points mean nothing for a mesh, whose faces are the surface. */
+/* Refuses options that say how a surface goes through points: they mean nothing for a mesh, whose faces are the
+ * surface. */
 static brio_status refuse_options_of_points(run *r) {
     const power_crust_options *crust = &((const arguments *)r->arguments)->crust;
     const char *name = crust->sharp                  ? "sharp"
@@ -90,7 +91,7 @@ static brio_status refuse_options_of_points(run *r) {
                     r->operands[0]);
 }
 
-/* The offset of the solid that the faces bound. */
+/* Makes the offset of the solid that the faces bound. */
 static brio_status offset_mesh(run *r, const brio_mesh *mesh, brio_mesh **surface) {
     const arguments *a = r->arguments;
     brio_mesh_offset_options o = {0};

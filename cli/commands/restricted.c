@@ -1,4 +1,5 @@
-/* brio restricted: the restricted Delaunay triangulation of samples on a known surface, and whether it is homeomorphic to it. */
+/* brio restricted: the restricted Delaunay triangulation of samples on a known surface, and whether it is homeomorphic
+ * to it. */
 #include "cli/files/read_write.h"
 #include "cli/steps/certificate.h"
 #include "cli/run/commands.h"
@@ -36,7 +37,7 @@ static void report(run *r, const brio_mesh *samples, const brio_mesh *triangles,
     cli_fact_count(f, "ties", s->ties);
 }
 
-/* What each line of the report stands on is in brio_restricted_delaunay. */
+/* Fails without a certificate of the surface. What each line of the report stands on is in brio_restricted_delaunay. */
 static brio_status refuse_uncertified(run *r, const brio_restricted_stats *s) {
     if (s->closed_ball) return BRIO_OK;
     return cli_fail(

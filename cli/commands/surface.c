@@ -54,8 +54,8 @@ static void report_dropped(run *r, const component_options *options, const size_
 
 /* --- the command --- */
 
-/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is
- * given. */
+/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone
+ * is given. */
 enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, NO_LABELING = -1 };
 
 typedef struct arguments {
@@ -134,7 +134,7 @@ static const arguments defaults = {.crust.labeling = NO_LABELING};
 /* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
 static const double LEAST_THETA = 0.2542;
 
-/* Options of the power crust alone. */
+/* Returns whether there are options of the power crust alone. */
 static bool has_power_crust_options(const arguments *a) {
     return a->polygons || a->crust.labeling != NO_LABELING || a->crust.sampling_density != 0 || a->crust.sharp;
 }
@@ -196,11 +196,11 @@ static void report_cocone(run *r, const brio_surface_stats *s) {
 
 /* Over this median of r the user is told that the points hardly show the surface. Measured: points all over a cube or a
  * ball, with no surface at all, have a median of 1.05; of 60 sets with a surface those that came out right had at most
- * 0.69, and those that came out with wrong handles or pieces at least 0.75. Where r is over 0.08 only the guarantee ends,
- * and nearly every scan is there; at sharp edges, where the feature size is 0, r is large for any sampling. */
+ * 0.69, and those that came out with wrong handles or pieces at least 0.75. Where r is over 0.08 only the guarantee
+ * ends, and nearly every scan is there; at sharp edges, where the feature size is 0, r is large for any sampling. */
 static const double MOST_R = 0.75;
 
-/* The sampling condition of the guarantee (theorem 19: r <= 0.08), as far as the samples themselves tell. */
+/* Reports the sampling condition of the guarantee (theorem 19: r <= 0.08), as far as the samples themselves tell. */
 static void report_density(run *r, const brio_surface_stats *s) {
     facts *f = &r->facts;
     size_t used = s->samples - s->unused;
@@ -254,8 +254,8 @@ done:
 /* Over this share of guesses the user is told. Chosen. */
 static const double MANY_GUESSES = 0.02;
 
-/* Over this share of samples on no face it is counted how many of them the surface leaves. Chosen: smaller shares are strays and
- * samples beside others. */
+/* Over this share of samples on no face it is counted how many of them the surface leaves. Chosen: smaller shares are
+ * strays and samples beside others. */
 static const double MANY_UNUSED = 0.005;
 
 static void report_confidence(run *r, double share) {
@@ -263,14 +263,14 @@ static void report_confidence(run *r, double share) {
     if (share > MANY_GUESSES) cli_warn(r, WARNING_GUESS, 100 * share);
 }
 
-/* What tells the outside, and how well it agrees with the result. */
+/* Reports what tells the outside, and how well it agrees with the result. */
 static void report_orientation(run *r, const brio_surface_stats *s) {
     static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
     cli_fact_text(&r->facts, "orientation", by[s->evidence & 3]);
     if (s->evidence) cli_fact_real(&r->facts, "agreement", s->agreement);
 }
 
-/* Over this share of bridges the user is told. As for guesses. */
+/* Warns of bridges over a share of the area, and of guesses. */
 static void report_unseen(run *r, const brio_surface_stats *s) {
     facts *f = &r->facts;
     cli_fact_count(f, "strays", s->strays);
@@ -382,7 +382,7 @@ static void list_methods(unsigned set, char text[128]) {
     cli_list_choices(chosen, text, 128);
 }
 
-/* Options of another method are a mistake. */
+/* Refuses options of another method. */
 static brio_status check_method(run *r) {
     const arguments *a = r->arguments;
     enum {
@@ -419,7 +419,7 @@ static brio_status check_method(run *r) {
     return BRIO_OK;
 }
 
-/* A theta that voids the guarantee is worth a word. */
+/* Checks the options. A theta that voids the guarantee is worth a word. */
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
     brio_status status = check_method(r);

@@ -15,8 +15,9 @@
 
 /* How far the cells in a box are from filling it.
  *
- * A box of side 2^-400 has the volume 0 in doubles, and so have its cells. Their volumes are then computed once more with
- * all lengths times a power of two by which the box has a volume near 1: cells of such points are the same cells. */
+ * A box of side 2^-400 has the volume 0 in doubles, and so have its cells. Their volumes are then computed once more
+ * with all lengths times a power of two by which the box has a volume near 1: cells of such points are the same
+ * cells. */
 
 /** What cells in a box were computed from. */
 typedef struct boxed_diagram {
@@ -80,7 +81,8 @@ done:
     return status;
 }
 
-/* Finds the difference of the cells' volume and the box's, as a share of the box's: NaN where doubles cannot hold what it
+/* Finds the difference of the cells' volume and the box's, as a share of the box's: NaN where doubles cannot hold what
+ * it
  *  needs. */
 static brio_status cli_box_error(run *r, const boxed_diagram *d, const brio_cells *cells, double *error) {
     *error = NAN;
@@ -170,7 +172,7 @@ static void report(run *r, const brio_cells *cells, const brio_delaunay_stats *s
     cli_fact_real(f, "volume", cells->volume_sum);
 }
 
-/* Points outside are the sites of cells all the same, which seldom is what was meant. */
+/* Warns of points outside: they are the sites of cells all the same, which seldom is what was meant. */
 static void tell_outside(run *r, const brio_mesh *mesh, const double box[6]) {
     size_t outside = 0;
     for (size_t i = 0; i < mesh->num_vertices; i++) {

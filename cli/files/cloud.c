@@ -25,7 +25,7 @@ void cli_cloud_box(const double *points, size_t count, double low[3], double hig
         }
 }
 
-/* SplitMix64's finalizer. */
+/* Mixes bits by SplitMix64's finalizer. */
 static uint64_t mix(uint64_t x) {
     x += UINT64_C(0x9e3779b97f4a7c15);
     x = (x ^ (x >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -33,7 +33,7 @@ static uint64_t mix(uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/* Adding 0.0 turns -0.0 into 0.0, which it equals. */
+/* Returns the hash of a position. Adding 0.0 turns -0.0 into 0.0, which it equals. */
 static uint64_t position_hash(const double p[3], uint64_t seed) {
     uint64_t hash = seed;
     for (int k = 0; k < 3; k++) {
@@ -45,7 +45,7 @@ static uint64_t position_hash(const double p[3], uint64_t seed) {
     return hash;
 }
 
-/* A position in double or in single precision. */
+/* Writes a position in double or in single precision. */
 static void get_position(const double *p, bool single, double out[3]) {
     for (int k = 0; k < 3; k++) out[k] = single ? (double)(float)p[k] : p[k];
 }
@@ -97,7 +97,8 @@ typedef struct anchor {
     double p[3], nearest; /* squared distance, both scaled */
 } anchor;
 
-/* A power of two that brings the coordinates to about 1, so that squares neither overflow nor vanish. */
+/* Returns the exponent of a power of two that brings the coordinates to about 1, so that squares neither overflow nor
+ * vanish. */
 static int scale_exponent(const double *points, size_t count) {
     double low[3], high[3], most = 0;
     cli_cloud_box(points, count, low, high);

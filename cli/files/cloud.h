@@ -4,18 +4,18 @@
 
 #include "cli/run/run.h"
 
-/** Smallest and largest coordinates; not for 0 points. */
+/** Finds the smallest and largest coordinates; not for 0 points. */
 void cli_cloud_box(const double *points, size_t count, double low[3], double high[3]);
 
-/** Points minus distinct positions. Expected O(n), 6 bytes a point. */
+/** Counts points minus distinct positions. Expected O(n), 6 bytes a point. */
 brio_status cli_cloud_duplicates(run *r, const double *points, size_t count, size_t *duplicates);
 
-/** Distinct positions minus distinct positions in single precision: the points that rounding merges with others. The
- *  coordinates fit single precision. Cost: as cli_cloud_duplicates, twice. */
+/** Counts distinct positions minus distinct positions in single precision: the points that rounding merges with others.
+ *  The coordinates fit single precision. Cost: as cli_cloud_duplicates, twice. */
 brio_status cli_cloud_merged(run *r, const double *points, size_t count, size_t *merged);
 
-/** The typical distance of a point to its nearest neighbour at another position: the median over a random choice of
- *  points, each searched exactly. 0 when no two positions differ. */
+/** Finds the typical distance of a point to its nearest neighbour at another position: the median over a random choice
+ *  of points, each searched exactly. 0 when no two positions differ. */
 brio_status cli_cloud_spacing(run *r, const double *points, size_t count, double *spacing);
 
 #endif

@@ -26,7 +26,7 @@ static brio_status check_folder(run *r, const char *path) {
     return status;
 }
 
-/* Whether a path is a link of the process file system. It leads to an open file; what it says is no path. */
+/* Returns whether a path is a link of the process file system. It leads to an open file; what it says is no path. */
 static bool leads_to_open_file(char *path) {
     struct statfs info;
     char *slash = strrchr(path, '/');
@@ -37,8 +37,8 @@ static bool leads_to_open_file(char *path) {
     return found;
 }
 
-/* The path that a chain of symbolic links leads to, to be freed; a file need not be there. NULL without memory, and of
- * more links than the system follows. */
+/* Returns the path that a chain of symbolic links leads to, to be freed; a file need not be there. NULL without memory,
+ * and of more links than the system follows. */
 static char *follow_links(const char *path) {
     char link[PATH_MAX], *at = strdup(path);
     for (int links = 0; at && links <= MOST_LINKS; links++) {
@@ -59,7 +59,7 @@ static char *follow_links(const char *path) {
     return NULL;
 }
 
-/* Whether two files that are not there yet would be one: the same name in the same folder. */
+/* Returns whether two files that are not there yet would be one: the same name in the same folder. */
 static bool is_one_new_file(const char *a, const char *b) {
     const char *slash_a = strrchr(a, '/'), *slash_b = strrchr(b, '/');
     char folder_a[PATH_MAX], folder_b[PATH_MAX];
@@ -101,8 +101,8 @@ static brio_status check_descriptor(run *r, const char *path, int descriptor) {
     return cli_fail(r, BRIO_ERR_WRITE, "%s: not open for writing", path);
 }
 
-/* A new file is written beside an old one and renamed over it: that takes a writable folder, the one that symbolic links lead
- * to. Pipes, devices and open descriptors are written directly. */
+/* Checks a name as the writer will use it. A new file is written beside an old one and renamed over it: that takes a
+ * writable folder, the one that symbolic links lead to. Pipes, devices and open descriptors are written directly. */
 brio_status cli_check_target(run *r, const char *path) {
     struct stat info;
     bool exists = stat(path, &info) == 0;
@@ -153,8 +153,8 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
 
 /* --- files named twice --- */
 
-/* Whether two paths lead to one regular file or one pipe, through links and folders by any name; devices may be named
- * twice. */
+/* Returns whether two paths lead to one regular file or one pipe, through links and folders by any name; devices may be
+ * named twice. */
 static bool leads_to_one(const char *a, const char *b) {
     struct stat of_a, of_b;
     bool has_a = stat(a, &of_a) == 0, has_b = stat(b, &of_b) == 0;
@@ -169,7 +169,7 @@ static bool leads_to_one(const char *a, const char *b) {
     return same;
 }
 
-/* The .node file of a set of TetGen's files, to be freed; NULL for other names, and without memory. */
+/* Returns the .node file of a set of TetGen's files, to be freed; NULL for other names, and without memory. */
 static char *node_of(const char *path) {
     static const char *const set[] = {".node", ".ele", ".neigh", ".face", ".edge"};
     const char *dot = strrchr(path, '.');
@@ -211,8 +211,8 @@ static bool find_info(const named_file *f, struct stat *info) {
     return fstat(f->written ? STDOUT_FILENO : STDIN_FILENO, info) == 0;
 }
 
-/* Whether a standard stream is the other file. Of a file that is read as standard input the output replaces the name
- * only; a pipe would wait for what the run itself writes into it. */
+/* Returns whether a standard stream is the other file. Of a file that is read as standard input the output replaces the
+ * name only; a pipe would wait for what the run itself writes into it. */
 static bool is_one_stream(const named_file *a, const named_file *b) {
     struct stat of_a, of_b;
     const named_file *input = a->written ? b : a;

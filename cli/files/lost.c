@@ -2,7 +2,7 @@
 #include "cli/files/lost.h"
 #include <string.h>
 
-/* Whether a property is one of three that a mesh has all, and a format has a place for. */
+/* Returns whether a property is one of three that a mesh has all, and a format has a place for. */
 static bool is_held(const brio_mesh *mesh, const char *name, unsigned holds) {
     static const struct {
         unsigned what;
@@ -19,7 +19,7 @@ static bool is_held(const brio_mesh *mesh, const char *name, unsigned holds) {
     return false;
 }
 
-/* Whether a format has a place for a property of faces: for all, or for their colours. */
+/* Returns whether a format has a place for a property of faces: for all, or for their colours. */
 static bool is_held_of_faces(const char *name, unsigned holds) {
     static const char *const colour[] = {"red", "green", "blue", "alpha"};
     bool one = false;

@@ -1,6 +1,6 @@
-/* A file that the program writes by itself, and that appears only when it is complete: written without a name in the folder
- * of its target, and named at the end. Where the file system has no files without names, it has a temporary name until
- * then. */
+/* A file that the program writes by itself, and that appears only when it is complete: written without a name in the
+ * folder of its target, and named at the end. Where the file system has no files without names, it has a temporary name
+ * until then. */
 #ifndef BRIO_CLI_NEW_FILE_H
 #define BRIO_CLI_NEW_FILE_H
 

@@ -17,9 +17,9 @@
 
 /* What single precision would do to points.
  *
- * Points merge, or move over their neighbours. The points of a file that goes by in blocks are never together: points that
- * merge are near each other in space, and in most files near each other in the order, too. Where the order is random, a
- * block of a cloud that singles ruin has pairs that merge, since so few positions are left. */
+ * Points merge, or move over their neighbours. The points of a file that goes by in blocks are never together: points
+ * that merge are near each other in space, and in most files near each other in the order, too. Where the order is
+ * random, a block of a cloud that singles ruin has pairs that merge, since so few positions are left. */
 
 typedef struct single_loss {
     size_t points, merged; /* points; how many of them fall on others */
@@ -62,7 +62,8 @@ static double move_of(single_loss *l, const double *x, size_t count) {
     return moved;
 }
 
-/* The spacing is searched in the blocks 1, 2, 4, 8 and so on, since that costs more than all else. */
+/* Adds the points of a block. The spacing is searched in the blocks 1, 2, 4, 8 and so on, since that costs more than
+ * all else. */
 static brio_status add_points(survey *s, const double *points, size_t count) {
     single_loss *l = s->loss;
     size_t merged;
@@ -91,7 +92,7 @@ static size_t crop(const brio_mesh *block, const double *box, double *kept) {
     return count;
 }
 
-/* A coordinate that singles cannot hold ends the search. */
+/* Takes a block. A coordinate that singles cannot hold ends the search. */
 static int take_block(const brio_mesh *block, void *user) {
     survey *s = user;
     size_t n = block->num_vertices;
@@ -170,7 +171,7 @@ static bool has(brio_format format, unsigned what) {
     return (brio_format_facts(format)->holds & what) == what;
 }
 
-/* Whether points are rounded to singles: a STL file's always, others' by choice. */
+/* Returns whether points are rounded to singles: a STL file's always, others' by choice. */
 static bool rounds(const brio_write_options *o) {
     return o->format == BRIO_FORMAT_STL || (o->float32 && has(o->format, BRIO_HOLDS_SINGLES | BRIO_HOLDS_DOUBLES));
 }

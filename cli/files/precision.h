@@ -13,7 +13,8 @@ brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh
                                  size_t *merged);
 
 /** Does the same before a file is converted, whose points the file itself tells.
- *  o  chooses among the points.   written  how the file is written.   Reads the file once if its points will be rounded. */
+ *  o  chooses among the points.   written  how the file is written.   Reads the file once if its points will be
+ *     rounded. */
 brio_status cli_settle_conversion(run *r, const char *from, const char *to, const brio_convert_options *o,
                                   brio_write_options *written, size_t *merged);
 

@@ -1,8 +1,8 @@
 /* A raster of heights: Esri's ASCII grid, or GeoTIFF.
  *
- * The TIFF file is one strip of numbers in single precision, in this machine's byte order, with the tags of GeoTIFF 1.1: the place
- * of the upper left corner, the side of a cell, and the keys of the coordinate system that a LAS file had. Cells without a height
- * have NODATA, which both forms name.
+ * The TIFF file is one strip of numbers in single precision, in this machine's byte order, with the tags of GeoTIFF
+ * 1.1: the place of the upper left corner, the side of a cell, and the keys of the coordinate system that a LAS file
+ * had. Cells without a height have NODATA, which both forms name.
  *
  * Based on: Adobe. TIFF revision 6.0. 1992. Open Geospatial Consortium. GeoTIFF standard 1.1. 2019. */
 #include "cli/files/raster.h"
@@ -58,7 +58,8 @@ static void add(tiff_tags *t, uint16_t tag, uint16_t type, size_t count, const v
     t->tags[t->count++] = (tiff_tag){tag, type, (uint32_t)count, values};
 }
 
-/* Adds the keys that a LAS file had: its records are the values of the tags of their numbers. Returns whether there are any. */
+/* Adds the keys that a LAS file had: its records are the values of the tags of their numbers. Returns whether there are
+ * any. */
 static bool add_keys(tiff_tags *t, const brio_mesh *points) {
     const brio_metadata *m = brio_mesh_metadata(points, "crs.geokeys");
     bool found = false;

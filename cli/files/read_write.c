@@ -36,7 +36,7 @@ brio_status cli_require_output_for(run *r, const char *name, bool given) {
     return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: --%s needs -o FILE", name);
 }
 
-/* Options about a file that is not written are a mistake. */
+/* Refuses options about a file that is not written. */
 static brio_status refuse_idle(run *r) {
     const common_options *c = &r->common;
     bool written = names_output(r);

@@ -4,15 +4,15 @@
 
 #include "cli/run/run.h"
 
-/** Refuses options that every command has: values without a meaning, options about files that are not written, files that are
- *  named twice. */
+/** Refuses options that every command has: values without a meaning, options about files that are not written, files
+ *  that are named twice. */
 brio_status cli_check_common(run *r);
 
-/** Returns what the options of the command line say about reading. The library stores the counts of points that were left out, and
- *  that miss, and what else a reader found, in the run: cli_tell_input. */
+/** Returns what the options of the command line say about reading. The library stores the counts of points that were
+ *  left out, and that miss, and what else a reader found, in the run: cli_tell_input. */
 brio_read_options cli_read_options(run *r);
-/** Reports, and warns of, the points that reading left out and those that the file lacks. Warns of what else the user may
- *  not expect (brio_read_notes). */
+/** Reports, and warns of, the points that reading left out and those that the file lacks. Warns of what else the user
+ *  may not expect (brio_read_notes). */
 void cli_tell_input(run *r, const char *path);
 
 /** Reads an input with --input-format and --columns. The time is lapped as `read`. */
@@ -27,7 +27,7 @@ brio_status cli_drop_connectivity(run *r, brio_mesh *mesh);
 /** Reads for a command that goes by the points alone: faces and tetrahedra of the file are dropped. */
 brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
 
-/** The same for a command that makes a surface of the points: warns where the file has one already. */
+/** Reads the same for a command that makes a surface of the points: warns where the file has one already. */
 brio_status cli_read_samples(run *r, const char *path, brio_mesh **out);
 
 /** The formats of surfaces; BRIO_FORMAT_AUTO ends the list. */

@@ -12,14 +12,14 @@ typedef struct table {
     const double *reals;     /* NaN is written as nan */
 } table;
 
-/** Whether -o and --format ask for a table: .csv or .npy. */
+/** Returns whether -o and --format ask for a table: .csv or .npy. */
 bool cli_is_table(const run *r, const char *extension);
 
 /** Finds everything wrong with the output that can be found before the work. Without -o there must be --json. */
 brio_status cli_require_table(run *r);
 
-/** Writes a table to -o, or does nothing without it: a file beside the target, renamed to it when it is complete. The time
- *  is lapped as `write`. */
+/** Writes a table to -o, or does nothing without it: a file beside the target, renamed to it when it is complete. The
+ *  time is lapped as `write`. */
 brio_status cli_write_table(run *r, const table *t);
 
 #endif

@@ -33,7 +33,7 @@ void cli_print_wrapped(FILE *out, const char *text, int at, int indent, int colu
     fputc('\n', out);
 }
 
-/* A term at the left and its meaning at the right, below it where there is no room. */
+/* Prints a term at the left and its meaning at the right, below it where there is no room. */
 static void print_entry(FILE *out, const char *term, const char *meaning, int left, int column) {
     int columns = cli_columns(out), length = left + (int)strlen(term);
     if (columns < NARROW) column = left + 6;

@@ -4,19 +4,19 @@
 
 #include "cli/run/run.h"
 
-/** The columns to fill: those of the terminal if the stream is one, at most 100; else 80. */
+/** Returns the columns to fill: those of the terminal if the stream is one, at most 100; else 80. */
 int cli_columns(FILE *out);
 
 /** Prints a text whose lines begin at `indent` and end before `columns`; the first one begins where `at` says.  */
 void cli_print_wrapped(FILE *out, const char *text, int at, int indent, int columns);
 
-/** `brio --help`: the commands and exit codes. */
+/** Prints what `brio --help` does: the commands and exit codes. */
 void cli_print_help(FILE *out);
 
-/** `brio help methods`: which command line fits which points. */
+/** Prints what `brio help methods` does: which command line fits which points. */
 void cli_print_advice(FILE *out);
 
-/** `brio COMMAND --help`.   verbose  explains the lines of the report, too. */
+/** Prints what `brio COMMAND --help` does.   verbose  explains the lines of the report, too. */
 void cli_print_command_help(FILE *out, const command *c, bool verbose);
 
 #endif

@@ -34,7 +34,7 @@ static void write_commands(FILE *out) {
     for (size_t i = 0; cli_commands[i]; i++) fprintf(out, "%s ", cli_commands[i]->name);
 }
 
-/* What stands behind an option that takes a value. */
+/* Writes what stands behind an option that takes a value. */
 static void write_values(FILE *out, const command *c, const option *row) {
     const char *extensions = pages_extensions(c, row);
     if (!row->value || row->kind & OPTION_OPTIONAL) return; /* a file may stand behind it */
@@ -67,7 +67,7 @@ static void write_names(FILE *out, const option *rows) {
         if (cli_is_option(rows)) fprintf(out, "--%s ", rows->name);
 }
 
-/* Options where a dash was typed, else operands. */
+/* Writes a command: options where a dash was typed, else operands. */
 static void write_command(FILE *out, const command *c) {
     fprintf(out, "    %s)\n        if [[ $cur == -* ]]; then\n            _brio_words \"", c->name);
     write_names(out, c->options);

@@ -5,7 +5,7 @@
 #include <ctype.h>
 #include <string.h>
 
-/* Text as it is: no letter of it is a request or a typographic sign. */
+/* Writes text as it is: no letter of it is a request or a typographic sign. */
 static void put(FILE *out, const char *text, size_t length) {
     static const char *const signs[][2] = {{"-", "\\-"},   {"\\", "\\e"},  {"'", "\\(aq"}, {"`", "\\(ga"},
                                            {"^", "\\(ha"}, {"~", "\\(ti"}, {"\"", "\\(dq"}};
@@ -20,7 +20,7 @@ static void put(FILE *out, const char *text, size_t length) {
     }
 }
 
-/* A paragraph, in lines of some sixty letters; a dot at the beginning of a line would be a request. */
+/* Writes a paragraph, in lines of some sixty letters; a dot at the beginning of a line would be a request. */
 static void put_line(FILE *out, const char *text) {
     enum { LONGEST = 60 };
     for (size_t at = 0; *text;) {

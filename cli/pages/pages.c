@@ -1,5 +1,5 @@
-/* brio-pages FOLDER DATE: writes man1/brio.1 and its like, bash/brio and zsh/_brio below a folder that has these three folders. It is
- * built and run with brio and not installed. */
+/* brio-pages FOLDER DATE: writes man1/brio.1 and its like, bash/brio and zsh/_brio below a folder that has these three
+ * folders. It is built and run with brio and not installed. */
 #include "cli/pages/pages.h"
 #include <errno.h>
 #include <string.h>
@@ -13,7 +13,7 @@ const char *pages_extensions(const command *c, const option *row) {
     return !strcmp(row->name, "input-format") ? pages_inputs(c) : NULL;
 }
 
-/* NULL, with a message, when the file cannot be written. */
+/* Opens a page. Returns NULL, with a message, when the file cannot be written. */
 static FILE *open_page(const char *folder, const char *name) {
     char path[4096];
     snprintf(path, sizeof path, "%s/%s", folder, name);

@@ -4,17 +4,17 @@
 
 #include "cli/run/commands.h"
 
-/** brio(1): the commands, options of every command, which method fits which points, exit codes.
+/** Writes brio(1): the commands, options of every command, which method fits which points, exit codes.
  *  date  of the page, YYYY-MM-DD. */
 void pages_write_manual(FILE *out, const char *date);
 
-/** brio-COMMAND(1). */
+/** Writes brio-COMMAND(1). */
 void pages_write_command_manual(FILE *out, const command *c, const char *date);
 
-/** The completion of bash. */
+/** Writes the completion of bash. */
 void pages_write_bash(FILE *out);
 
-/** The completion of zsh. */
+/** Writes the completion of zsh. */
 void pages_write_zsh(FILE *out);
 
 /** Extensions of the files that a command reads, with blanks between; empty when its operand is no file. */

@@ -2,7 +2,7 @@
 #include "cli/pages/pages.h"
 #include <string.h>
 
-/* Within single quotes and brackets; a colon would end the text. */
+/* Writes text within single quotes and brackets; a colon would end the text. */
 static void put_text(FILE *out, const char *text) {
     for (; *text; text++) {
         if (strchr("[]:\\", *text)) fputc('\\', out);
@@ -13,7 +13,7 @@ static void put_text(FILE *out, const char *text) {
     }
 }
 
-/* ply|xyz, of "ply xyz". */
+/* Writes ply|xyz, of "ply xyz". */
 static void put_files(FILE *out, const char *extensions) {
     if (!extensions || !*extensions) {
         fputs("_files", out);

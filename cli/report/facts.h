@@ -48,27 +48,28 @@ void cli_fact_bool(facts *f, const char *name, bool truth);
 void cli_fact_integer(facts *f, const char *name, int64_t integer);
 void cli_fact_count(facts *f, const char *name, uint64_t count);
 void cli_fact_bytes(facts *f, const char *name, uint64_t bytes);
-/** NaN and infinities are kept as null. */
+/** Adds a number. NaN and infinities are kept as null. */
 void cli_fact_real(facts *f, const char *name, double real);
 void cli_fact_seconds(facts *f, const char *name, double seconds);
 void cli_fact_null(facts *f, const char *name);
-/** null for programs; people read the reason. */
+/** Adds a fact that is not there: null for programs; people read the reason. */
 void cli_fact_missing(facts *f, const char *name, const char *reason);
 void cli_fact_open(facts *f, const char *name, fact_kind object_or_list);
 void cli_fact_close(facts *f);
 void cli_facts_free(facts *f);
 
-/** The index behind fact i with all that is in it. */
+/** Returns the index behind fact i with all that is in it. */
 size_t cli_fact_after(const facts *f, size_t i);
 
-/** Shortest decimal form that reads back as the same double. */
+/** Writes the shortest decimal form that reads back as the same double. */
 void cli_format_real(double real, char text[32]);
 
-/** One JSON object and a newline; facts->failed is left to the caller. What the glossary calls internal is in an object
+/** Writes one JSON object and a newline; facts->failed is left to the caller. What the glossary calls internal is in an
+ *  object
  *  `internals`, at the end.   command  the name of the command that found the facts. */
 void cli_json_write(FILE *out, const facts *f, const char *command);
 
-/** Aligned lines for people.   verbose  shows every fact. */
+/** Writes aligned lines for people.   verbose  shows every fact. */
 void cli_text_write(FILE *out, const facts *f, const char *command, bool verbose);
 
 #endif

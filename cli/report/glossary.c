@@ -338,7 +338,7 @@ const glossary_line cli_glossary[] = {
     {NULL, NULL, NULL, NULL, NULL, LINE_PLAIN, STYLE_PLAIN},
 };
 
-/* Whether a word stands in a list of words with blanks between. */
+/* Returns whether a word stands in a list of words with blanks between. */
 static bool lists(const char *words, const char *word) {
     size_t length = strlen(word);
     while (*words) {

@@ -35,13 +35,14 @@ typedef struct glossary_line {
 /** The table, closed by a row without a key. */
 extern const glossary_line cli_glossary[];
 
-/** Whether a row is for this command and this parent. The members of an object without rows of its own need none. */
+/** Returns whether a row is for this command and this parent. The members of an object without rows of its own need
+ *  none. */
 bool cli_glossary_fits(const glossary_line *line, const char *command, const char *parent);
 
-/** The first row for a fact, NULL when there is none. */
+/** Returns the first row for a fact, NULL when there is none. */
 const glossary_line *cli_glossary_find(const char *command, const char *parent, const char *key);
 
-/** Whether a fact of a command is an internal of its method. */
+/** Returns whether a fact of a command is an internal of its method. */
 bool cli_is_internal(const char *command, const char *key);
 
 /** Writes the name of a line for people, cut to the size of the array.   line  NULL: the key as it is. */

@@ -61,7 +61,8 @@ static void write_value(FILE *out, const fact *f) {
     }
 }
 
-/* One fact with all that is in it. Objects and lists nest; a bit for each open one tells which bracket closes it. */
+/* Writes one fact with all that is in it. Objects and lists nest; a bit for each open one tells which bracket closes
+ * it. */
 static void write_fact(FILE *out, const facts *f, size_t i, bool first) {
     uint64_t lists = 0;
     for (size_t end = cli_fact_after(f, i); i < end; i++) {

@@ -24,7 +24,7 @@ bool cli_is_control(uint32_t c) {
     return (c >= 0x2028 && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
 }
 
-/* Whether the bytes at `text` are shown as they are. A character U+FFFD that stands in the text is. */
+/* Returns whether the bytes at `text` are shown as they are. A character U+FFFD that stands in the text is. */
 static bool is_shown(const char *text, size_t *length) {
     uint32_t c = cli_character(text, length);
     return !cli_is_control(c) && (c != NO_CHARACTER || *length > 1);

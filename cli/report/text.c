@@ -16,7 +16,7 @@ static void write_bytes(FILE *out, uint64_t bytes) {
     fprintf(out, unit ? "%.1f %s" : "%.0f %s", number, units[unit]);
 }
 
-/* False when the fact is no number. */
+/* Writes a number. Returns false when the fact is no number. */
 static bool format_number(const fact *f, char text[32]) {
     switch (f->kind) {
     case FACT_INTEGER:
@@ -53,7 +53,8 @@ static void write_value(FILE *out, const fact *f) {
     }
 }
 
-/* The members of the list that opens at i, the first few of them; returns where it closes. They are plain values. */
+/* Writes the members of the list that opens at i, the first few of them; returns where it closes. They are plain
+ * values. */
 static size_t write_list(FILE *out, const facts *f, size_t i) {
     enum { MOST = 12 };
     size_t members = 0;
@@ -67,7 +68,7 @@ static size_t write_list(FILE *out, const facts *f, size_t i) {
     return i;
 }
 
-/* A row of names or of numbers, those of the object that opens at i; returns where it closes. */
+/* Writes a row of names or of numbers, those of the object that opens at i; returns where it closes. */
 static size_t write_row(FILE *out, const facts *f, size_t i, bool names) {
     enum { PLACES = 12 };
     char number[32] = "";
@@ -82,7 +83,7 @@ static size_t write_row(FILE *out, const facts *f, size_t i, bool names) {
     return i;
 }
 
-/* The members of the list that opens at i, objects of the same numbers; returns where it closes. */
+/* Writes the members of the list that opens at i, objects of the same numbers; returns where it closes. */
 static size_t write_table(FILE *out, const facts *f, size_t i) {
     write_row(out, f, ++i, true);
     while (i < f->count && f->list[i].kind == FACT_OBJECT) i = write_row(out, f, i, false) + 1;
@@ -105,7 +106,7 @@ typedef struct members {
     int depth;
 } members;
 
-/* Zero, absent, or a list of at most one member: nothing that people miss. */
+/* Returns whether a fact is zero, absent, or a list of at most one member: nothing that people miss. */
 static bool is_empty(const facts *f, size_t i) {
     const fact *item = &f->list[i];
     if (item->kind == FACT_LIST) return cli_fact_after(f, i) <= i + 3;
@@ -148,7 +149,8 @@ static void write_single(const writer *w, const glossary_line *line, size_t i) {
 
 static void write_members(const writer *w, const members *m);
 
-/* The seconds of a run are one line, their total, which is the last of them; with --verbose an object as others are. */
+/* Writes a fact. The seconds of a run are one line, their total, which is the last of them; with --verbose an object as
+ * others are. */
 static void write_fact(const writer *w, const members *m, const glossary_line *line, size_t i) {
     const fact *item = &w->facts->list[i];
     size_t end = cli_fact_after(w->facts, i);

@@ -32,7 +32,7 @@ COMMANDS(COMMAND_DECLARE)
 /** The commands, closed by NULL. */
 extern const command *const cli_commands[];
 
-/** NULL when there is none of that name. */
+/** Finds a command. Returns NULL when there is none of that name. */
 const command *cli_find_command(const char *name);
 
 #endif

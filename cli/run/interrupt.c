@@ -30,7 +30,7 @@ static void on_alarm(int number) {
     alarm(SECONDS_BETWEEN);
 }
 
-/* Without SA_RESTART: a read that waits for a pipe must return for the flag to be seen. */
+/* Sets a handler. Without SA_RESTART: a read that waits for a pipe must return for the flag to be seen. */
 static void handle(int number, void (*handler)(int)) {
     struct sigaction action = {0};
     action.sa_handler = handler;
@@ -42,7 +42,7 @@ static void say(int file, const char *text) {
     if (write(file, text, strlen(text)) < 0) _exit(NO_MEMORY);
 }
 
-/* A page of a mapped file that is not there. Other reasons of the signal are none of ours. */
+/* Answers a page of a mapped file that is not there. Other reasons of the signal are none of ours. */
 static void on_lost_page(int number, siginfo_t *facts, void *context) {
     (void)context;
     if (facts->si_code != BUS_ADRERR) {

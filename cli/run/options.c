@@ -1,8 +1,8 @@
 /* The command line's options, by tables.
  *
  * One pass over the arguments: `--name value`, `--name=value`, `-x value`, `-xvalue`. An option that needs a value
- * takes the next argument unless that looks like an option itself; negative numbers and `-` are values. An option that may
- * stand without a value takes the next argument if that is a number. The last of repeated options counts. */
+ * takes the next argument unless that looks like an option itself; negative numbers and `-` are values. An option that
+ * may stand without a value takes the next argument if that is a number. The last of repeated options counts. */
 #include "cli/run/options.h"
 #include <ctype.h>
 #include <errno.h>
@@ -193,7 +193,7 @@ static bool looks_like_option(const char *argument) {
     return !strchr("0123456789.,", argument[1]); /* "-,x,y,z" are names of columns */
 }
 
-/* One option at argv[*i]; *i moves on over a value that stands by itself. */
+/* Takes one option at argv[*i]; *i moves on over a value that stands by itself. */
 static bool take(option_parse *parse, int argc, char **argv, int *i) {
     const char *argument = argv[*i], *value = NULL;
     found f;
@@ -249,7 +249,7 @@ bool cli_parse(option_parse *parse, int argc, char **argv) {
 
 /* --- the nearest name --- */
 
-/* Levenshtein distance, row by row; words over 63 letters are far from everything. */
+/* Returns the Levenshtein distance, row by row; words over 63 letters are far from everything. */
 static size_t edit_distance(const char *a, const char *b) {
     size_t row[64], m = strlen(a), n = strlen(b);
     if (m > 63 || n > 63) return SIZE_MAX;

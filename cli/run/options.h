@@ -59,7 +59,7 @@ typedef struct option_parse {
  *  follows `--` is operands. */
 bool cli_parse(option_parse *parse, int argc, char **argv);
 
-/** Whether a row is an option, and no title or note. */
+/** Returns whether a row is an option, and no title or note. */
 bool cli_is_option(const option *row);
 
 /** Writes "a, b or c", cut to the size of the array. */
@@ -68,7 +68,8 @@ void cli_list_choices(const option_choice *choices, char *text, size_t size);
 /** Reads "500M", "8G", "1.5GiB": K M G T are powers of 1024, as KiB ...; KB MB GB TB are powers of 1000. */
 bool cli_parse_size(const char *text, size_t *bytes);
 
-/** The name that is closest to `word`, or NULL when none is near. `next(list, i)` gives name i, NULL at the end. */
+/** Returns the name that is closest to `word`, or NULL when none is near. `next(list, i)` gives name i, NULL at the
+ *  end. */
 const char *cli_nearest(const char *word, const char *(*next)(const void *list, size_t i), const void *list);
 
 #endif

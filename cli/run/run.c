@@ -1,11 +1,51 @@
 /* A run of one command, between the command line on one side and the library on the other. */
 #include "cli/run/run.h"
+#include "cli/report/plain.h"
 #include "cli/run/interrupt.h"
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
+
+/* --- warnings and hints --- */
+
+static void keep(notes *n, const char *format, va_list arguments) {
+    size_t room = sizeof n->text - n->used;
+    int length = vsnprintf(n->text + n->used, room, format, arguments);
+    if (length > 0 && (size_t)length < room) n->used += (size_t)length + 1;
+}
+
+void cli_warn(run *r, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    keep(&r->warnings, format, arguments);
+    va_end(arguments);
+}
+
+void cli_hint(run *r, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    keep(&r->hints, format, arguments);
+    va_end(arguments);
+}
+
+void cli_notes_report(facts *f, const char *name, const notes *n) {
+    if (n->used == 0) return;
+    cli_fact_open(f, name, FACT_LIST);
+    for (size_t i = 0; i < n->used; i += strlen(n->text + i) + 1) cli_fact_text(f, NULL, n->text + i);
+    cli_fact_close(f);
+}
+
+void cli_notes_print(FILE *out, const char *kind, const notes *n) {
+    for (size_t i = 0; i < n->used; i += strlen(n->text + i) + 1) {
+        fprintf(out, "brio: %s: ", kind);
+        cli_print_plain(out, n->text + i);
+        fputc('\n', out);
+    }
+}
+
+/* --- options of every command --- */
 
 #define FIELD(name) offsetof(common_options, name)
 const option cli_common_options[] = {
@@ -144,8 +184,8 @@ brio_status cli_require_memory(run *r, double bytes) {
                     bytes / 0x1p20, (double)c->max_memory / 0x1p20);
 }
 
-/* The kernel's high-water mark of this program's own memory. getrusage stands in where /proc is missing: it also counts
- * what the process held before it became this program. */
+/* Returns the kernel's high-water mark of this program's own memory. getrusage stands in where /proc is missing: it
+ * also counts what the process held before it became this program. */
 static uint64_t peak_bytes(void) {
     unsigned long long kib = 0;
     char line[256];

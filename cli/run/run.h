@@ -5,12 +5,39 @@
 
 #include "brio/brio.h"
 #include "cli/report/facts.h"
-#include "cli/run/notes.h"
-#include "cli/run/options.h"
 #include "cli/report/progress.h"
+#include "cli/run/options.h"
+#include "cli/run/sentences.h"
 
-/* The shapes of error handling, as in the library. FORWARD returns from a function that has nothing to free; TRY and FAIL
- * go to the label `done:` of one that has. */
+/* --- warnings and hints --- */
+
+/* Sentences beside the report and the error of a run: warnings about a result that is there, hints what to try after a
+ * failure. They are kept during the run and printed at its end, each in one form. */
+
+/** Sentences one after the other, each ended by a zero. Zeroed to begin with. What does not fit is left out. */
+typedef struct notes {
+    char text[8192];
+    size_t used;
+} notes;
+
+struct run;
+
+/** Keeps a sentence about a result: something in it may not be what the user expects. */
+void cli_warn(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/** Keeps a sentence that says what to try after a failure. */
+void cli_hint(struct run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/** Adds the sentences to the facts as a list of that name; nothing where there are none. */
+void cli_notes_report(facts *f, const char *name, const notes *n);
+
+/** Prints a line for each sentence: `brio: KIND: SENTENCE`. */
+void cli_notes_print(FILE *out, const char *kind, const notes *n);
+
+/* --- failures --- */
+
+/* The shapes of error handling, as in the library. FORWARD returns from a function that has nothing to free; TRY and
+ * FAIL go to the label `done:` of one that has. */
 #define FORWARD(call)                                                                                                  \
     do {                                                                                                               \
         const brio_status forwarded = (call);                                                                          \
@@ -105,7 +132,7 @@ void cli_end(run *r);
 
 /** Stores the sentence for a status and returns the status. */
 brio_status cli_fail(run *r, brio_status status, const char *format, ...) __attribute__((format(printf, 3, 4)));
-/** The sentence of the failure, found here or in the library. */
+/** Returns the sentence of the failure, found here or in the library. */
 const char *cli_message(const run *r, brio_status status);
 int cli_exit_code(brio_status status);
 
@@ -113,16 +140,16 @@ int cli_exit_code(brio_status status);
 void cli_lap(run *r, const char *stage);
 /** Adds to a stage what something else has timed. */
 void cli_stage(run *r, const char *stage, double seconds);
-/** BRIO_ERR_CANCELLED when a signal asked to stop. */
+/** Returns BRIO_ERR_CANCELLED when a signal asked to stop. */
 brio_status cli_check_interrupt(run *r);
 
-/** Whether an estimate can refuse the work. */
+/** Returns whether an estimate can refuse the work. */
 bool cli_limits_memory(const run *r);
 /** Refuses an estimate over --max-memory. With --scratch the big arrays are not in memory and only the limit of the
  *  context holds. */
 brio_status cli_require_memory(run *r, double bytes);
 
-/** The facts that begin and end every report. */
+/** Add the facts that begin and end every report. */
 void cli_opening_facts(run *r);
 void cli_closing_facts(run *r);
 

@@ -1,6 +1,6 @@
-/* Every hint and every warning of the program, one row each. A hint follows a failure and says what to try; a warning is
- * about a result that is there. tests/cli/test_hints.py has an input for each row that evokes the sentence, follows what
- * it proposes, and fails where a row has no such input. */
+/* Every hint and every warning of the program, one row each. A hint follows a failure and says what to try; a warning
+ * is about a result that is there. tests/cli/test_hints.py has an input for each row that evokes the sentence, follows
+ * what it proposes, and fails where a row has no such input. */
 #ifndef BRIO_CLI_SENTENCES_H
 #define BRIO_CLI_SENTENCES_H
 

@@ -54,8 +54,8 @@ double cli_voronoi_bytes(double delaunay, size_t usual, bool vertices) {
 }
 
 double cli_locate_bytes(const brio_mesh *mesh, double delaunay, const brio_mesh *places) {
-    /* Of a locator for evenly spread points (brio.h, brio_locator_new), of which the triangulation's estimate covers the
-     * part that is sorted; and of a query with its answers. */
+    /* Of a locator for evenly spread points (brio.h, brio_locator_new), of which the triangulation's estimate covers
+     * the part that is sorted; and of a query with its answers. */
     static const double LOCATOR = 290, PLACE = 48;
     double bytes = delaunay + LOCATOR * (double)mesh->num_vertices;
     return places ? bytes + cli_mesh_bytes(places) + PLACE * (double)places->num_vertices : bytes;

@@ -14,8 +14,9 @@ double cli_mesh_bytes(const brio_mesh *mesh);
 brio_status cli_delaunay_bytes(run *r, const brio_mesh *mesh, const double *weights, const brio_delaunay_options *o,
                                double *bytes);
 
-/** Writes how many points have as many tetrahedra as the mesh's, if each has the usual number; never fewer than there are. What
- *  goes by the tetrahedra is estimated for so many points. Without --max-memory, unless `asked`, it is the number of points. */
+/** Writes how many points have as many tetrahedra as the mesh's, if each has the usual number; never fewer than there
+ *  are. What goes by the tetrahedra is estimated for so many points. Without --max-memory, unless `asked`, it is the
+ *  number of points. */
 brio_status cli_usual_points(run *r, const brio_mesh *mesh, const double *weights, bool asked, size_t *points);
 
 /** Estimate the commands that go beyond one triangulation.

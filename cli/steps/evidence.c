@@ -1,5 +1,5 @@
-/* What a file knows of the side from which its points were seen. Normals are the properties nx, ny, nz; places of scanners
- * are the properties x_origin, y_origin, z_origin, which readers of scans add on request. */
+/* What a file knows of the side from which its points were seen. Normals are the properties nx, ny, nz; places of
+ * scanners are the properties x_origin, y_origin, z_origin, which readers of scans add on request. */
 #include "cli/steps/evidence.h"
 #include <math.h>
 #include <stdlib.h>

@@ -28,7 +28,7 @@ typedef struct evidence {
     brio_evidence taken;
 } evidence;
 
-/** BRIO_ERR_ARGUMENT when --from is no place. */
+/** Fails with BRIO_ERR_ARGUMENT when --from is no place. */
 brio_status cli_check_evidence(run *r, const evidence_options *options);
 
 /** Takes the evidence of points from their properties and from the options. Places of scanners that the reader added as

@@ -13,7 +13,7 @@ static bool says(const run *r, brio_status status, const char *words) {
     return strstr(cli_message(r, status), words) != NULL;
 }
 
-/* Wrong usage: an example where an operand is missing, the formats where that of -o is wrong. */
+/* Suggests for wrong usage: an example where an operand is missing, the formats where that of -o is wrong. */
 static void suggest_for_argument(run *r) {
     const command *c = r->command;
     bool about_output = says(r, BRIO_ERR_ARGUMENT, "cannot hold") || says(r, BRIO_ERR_ARGUMENT, "no output") ||
@@ -42,7 +42,8 @@ static void suggest_for_subdivision(run *r) {
         cli_hint(r, HINT_CHECK);
 }
 
-/* What is said of flat points by cli_examine, and by a sentence that says how to scale, is all there is to say. */
+/* Suggests what to try. What is said of flat points by cli_examine, and by a sentence that says how to scale, is all
+ * there is to say. */
 static void suggest_for_no_answer(run *r) {
     if (r->flat || says(r, BRIO_ERR_NO_ANSWER, "scale the")) return;
     if (is(r, "alpha") && says(r, BRIO_ERR_NO_ANSWER, "no tetrahedron has a value")) cli_hint(r, HINT_ALPHA);
@@ -52,7 +53,8 @@ static void suggest_for_no_answer(run *r) {
     if (is(r, "surface") || is(r, "medial") || is(r, "offset") || is(r, "alpha")) cli_hint(r, HINT_METHODS);
 }
 
-/* Whether the big arrays alone are too big: the estimate is, which counts them, or a block that would be in a file. */
+/* Returns whether the big arrays alone are too big: the estimate is, which counts them, or a block that would be in a
+ * file. */
 static bool helps_scratch(const run *r) {
     enum { LEAST_MAPPED = 1 << 20 }; /* bytes of a block of the library that can be in a file */
     size_t bytes;

@@ -21,8 +21,12 @@ extern const option_choice cli_located_planes[];
 
 /** The row of the option --at for a command's table. */
 /* clang-format off */
-#define AT_ROW(type, field) {"at", 0, OPTION_INPUT, offsetof(type, field), "FILE", "the places asked about, points of a file", 0}
-#define LOCATED_PLANE_ROW(type, field) {"plane", 0, OPTION_CHOICE, offsetof(type, field), "NAME", "in a plane: xy, xz, yz, or fit, the plane nearest to the points; places are projected to it, and a text needs no z", cli_located_planes}
+#define AT_ROW(type, field)                                                                                            \
+    {"at", 0, OPTION_INPUT, offsetof(type, field), "FILE", "the places asked about, points of a file", 0}
+#define LOCATED_PLANE_ROW(type, field)                                                                                 \
+    {"plane", 0, OPTION_CHOICE, offsetof(type, field), "NAME",                                                         \
+     "in a plane: xy, xz, yz, or fit, the plane nearest to the points; places are projected to it, and a text needs "  \
+     "no z", cli_located_planes}
 /* clang-format on */
 
 /** Reads IN and the file --at. Refuses the work over --max-memory.   weights  NULL: points without weights. */

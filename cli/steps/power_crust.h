@@ -43,13 +43,13 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
      "a quarter as many faces, as far as the shape allows; triangles", 0},                                             \
     {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
      "write triangles, which is the default", 0},                                                                      \
-    {"normals", 0, OPTION_OUTPUT, offsetof(type, field.normals), "FILE",                                                 \
+    {"normals", 0, OPTION_OUTPUT, offsetof(type, field.normals), "FILE",                                               \
      "also write the points with oriented normals", 0}
 
 #define POWER_CRUST_ROWS(type, field)                                                                                  \
     {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
      "what tells inside from outside (default global); the others are those of the papers", cli_labelings},            \
-    {"sampling-density", 'R', OPTION_NUMBER | OPTION_POSITIVE, offsetof(type, field.sampling_density), "R",                              \
+    {"sampling-density", 'R', OPTION_NUMBER | OPTION_POSITIVE, offsetof(type, field.sampling_density), "R",            \
      "discard the nearer pole of cells too wide for an R-sample, 0 < R < 1", 0},                                       \
     {"sharp", 'B', OPTION_FLAG, offsetof(type, field.sharp), NULL,                                                     \
      "discard both poles there, for sharp edges without points (R defaults to 0.5)", 0}

@@ -18,7 +18,7 @@ brio_status cli_take_samples(run *r, brio_mesh *surface, uint32_t **samples);
  *  samples  the point of each vertex; NULL: the nearest point. */
 brio_status cli_carry_properties(run *r, const brio_mesh *points, const uint32_t *samples, brio_mesh *surface);
 
-/** The same for a surface whose vertex v is point v. */
+/** Does the same for a surface whose vertex v is point v. */
 brio_status cli_copy_properties(run *r, const brio_mesh *points, brio_mesh *surface);
 
 #endif

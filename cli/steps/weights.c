@@ -32,7 +32,7 @@ bool cli_is_weighted(const weights_options *options, const brio_mesh *mesh) {
 
 /* --- a file of weights --- */
 
-/* What a line holds: 1 a number, 0 nothing, -1 something else. */
+/* Returns what a line holds: 1 a number, 0 nothing, -1 something else. */
 static int line_number(char *line, double *value) {
     char *end;
     line[strcspn(line, "#\r\n")] = 0;
@@ -43,7 +43,7 @@ static int line_number(char *line, double *value) {
     return end == line || *end || !isfinite(*value) ? -1 : 1;
 }
 
-/* What it means that the system does not give a file or its bytes. */
+/* Returns what it means that the system does not give a file or its bytes. */
 static brio_status unread(void) {
     return errno == ENOMEM ? BRIO_ERR_NO_MEMORY : BRIO_ERR_OPEN;
 }

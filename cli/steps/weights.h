@@ -18,18 +18,21 @@ enum { NO_EXPONENT = INT_MIN };
 /** Rows of a command's option table whose struct has weights_options as its member `field`. */
 /* clang-format off */
 #define WEIGHTS_ROWS(type, field)                                                                                      \
-    {"weights", 0, OPTION_INPUT, offsetof(type, field.file), "FILE", "weights of the points, one number a line; overrules the properties weight and radius (weight = radius squared)", 0},    \
+    {"weights", 0, OPTION_INPUT, offsetof(type, field.file), "FILE",                                                   \
+     "weights of the points, one number a line; overrules the properties weight and radius "                           \
+     "(weight = radius squared)", 0},                                                                                  \
     {"weights-mod", 0, OPTION_INT, offsetof(type, field.exponent), "E", "weight i is ((i*7919) mod 1000) * 2^E", 0},   \
-    {"unweighted", 0, OPTION_FLAG, offsetof(type, field.unweighted), NULL, "ignore properties named weight and radius", 0}
+    {"unweighted", 0, OPTION_FLAG, offsetof(type, field.unweighted), NULL,                                             \
+     "ignore properties named weight and radius", 0}
 /* clang-format on */
 
-/** Wrong usage when more than one source is named. */
+/** Fails with wrong usage when more than one source is named. */
 brio_status cli_check_weights_options(run *r, const weights_options *options);
 
-/** Whether the points of this mesh are weighted. */
+/** Returns whether the points of this mesh are weighted. */
 bool cli_is_weighted(const weights_options *options, const brio_mesh *mesh);
 
-/** The weights, to be freed with free(); NULL for none. */
+/** Returns the weights in *weights, to be freed with free(); NULL for none. */
 brio_status cli_weights(run *r, const weights_options *options, const brio_mesh *mesh, double **weights);
 
 /** Makes the property `weight` of the mesh the weights that hold, so that its file can be checked by itself. Properties

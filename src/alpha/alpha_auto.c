@@ -1,8 +1,9 @@
 /* The least alpha whose shape is one solid with all vertices.
  *
- * Adds the tetrahedra, or in the plane the triangles, by ascending value and joins them across facets in a union-find. Looks, where the value rises, at
- * the number of sets and of vertices met so far. Rounding keeps the order of values, but those beyond the normal doubles
- * become equal. An alpha there is refused: its shape would change with the unit of the points.
+ * Adds the tetrahedra, or in the plane the triangles, by ascending value and joins them across facets in a union-find.
+ * Looks, where the value rises, at the number of sets and of vertices met so far. Rounding keeps the order of values,
+ * but those beyond the normal doubles become equal. An alpha there is refused: its shape would change with the unit of
+ * the points.
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
 #include "alpha/alpha_complex.h"

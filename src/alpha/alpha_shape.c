@@ -1,10 +1,10 @@
 /* The boundary of an alpha shape as a mesh.
  *
  * A tetrahedron is inside when its value is at most alpha. The boundary is the facets between inside and outside, seen
- * counterclockwise from outside. Where parts of the solid touch in an edge or a vertex only, the boundary is no manifold:
- * there the mesh gets one vertex for each sheet (mesh/split_vertices.c), so that the mesh is a manifold and the solid
- * stays the same. Facets, edges and vertices of the complex that bound no inside tetrahedron are singular: they are
- * counted, and are no part of the mesh.
+ * counterclockwise from outside. Where parts of the solid touch in an edge or a vertex only, the boundary is no
+ * manifold: there the mesh gets one vertex for each sheet (mesh/split_vertices.c), so that the mesh is a manifold and
+ * the solid stays the same. Facets, edges and vertices of the complex that bound no inside tetrahedron are singular:
+ * they are counted, and are no part of the mesh.
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
 #include "alpha/alpha_complex.h"
@@ -37,7 +37,8 @@ static bool is_boundary(const shape *s, uint32_t facet) {
     return is_inside(s, brio_tet_of(facet)) && !is_inside(s, brio_tet_of(*brio_mate(&s->t, facet)));
 }
 
-/* Lists the facets between inside and outside. A facet seen from inside is FACET[i]; from outside its order is reversed. */
+/* Lists the facets between inside and outside. A facet seen from inside is FACET[i]; from outside its order is
+ * reversed. */
 static brio_status list_faces(shape *s) {
     static const uint8_t FROM_OUTSIDE[3] = {0, 2, 1};
     brio_mesh *m = s->mesh;
@@ -74,7 +75,8 @@ static brio_status place_vertices(shape *s, const double *points) {
 
 /* --- all of it --- */
 
-/* Counts the singular simplices of a dimension. A simplex of the complex is singular when all tetrahedra that contain it are outside. */
+/* Counts the singular simplices of a dimension. A simplex of the complex is singular when all tetrahedra that contain
+ * it are outside. */
 static size_t count_singular(const shape *s, int dimension) {
     const double *value = s->complex->values[dimension], *solid = s->complex->solid[dimension];
     size_t count = 0;

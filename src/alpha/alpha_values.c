@@ -1,13 +1,14 @@
 /* The filtration values of the alpha complex: of every tetrahedron, facet, edge and vertex of a triangulation.
  *
  *   1. A tetrahedron has the squared radius of its orthosphere.
- *   2. A facet or an edge is Gabriel when no vertex is strictly inside its smallest orthosphere, decided exactly. Its value
- *      is then the squared radius of that sphere, and otherwise the least value of the simplices that it is a facet of.
- *      It suffices to test the vertices of its link: the smallest orthosphere's centre is in the dual of the simplex when
- *      it is on the right side of each face of the dual, and each face belongs to a vertex of the link.
- *   3. A vertex of weight w has the value -w or, with weights, the least value of its edges if a neighbour hides it at -w.
- * A value is never greater than one of the simplices that the simplex is a facet of: where rounding would make it so, it
- * becomes equal.
+ *   2. A facet or an edge is Gabriel when no vertex is strictly inside its smallest orthosphere, decided exactly. Its
+ *      value is then the squared radius of that sphere, and otherwise the least value of the simplices that it is a
+ *      facet of. It suffices to test the vertices of its link: the smallest orthosphere's centre is in the dual of the
+ *      simplex when it is on the right side of each face of the dual, and each face belongs to a vertex of the link.
+ *   3. A vertex of weight w has the value -w or, with weights, the least value of its edges if a neighbour hides it at
+ *      -w.
+ * A value is never greater than one of the simplices that the simplex is a facet of: where rounding would make it so,
+ * it becomes equal.
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994.
  *           Edelsbrunner. The union of balls and its dual shape. DCG 1995. */

@@ -1,10 +1,13 @@
-/* The filtration values of the alpha complex of points in the plane: of every triangle, edge and vertex of a triangulation.
+/* The filtration values of the alpha complex of points in the plane: of every triangle, edge and vertex of a
+ * triangulation.
  *
- * As in space (alpha_values.c), one dimension lower: a triangle has the squared radius of its circle, an edge that of its
- * smallest circle if neither apex of its triangles is strictly inside, decided exactly, or else the least value of its
- * triangles. Points of the plane are points of space with z = 0: the smallest spheres have the radii of the circles.
+ * As in space (alpha_values.c), one dimension lower: a triangle has the squared radius of its circle, an edge that of
+ * its smallest circle if neither apex of its triangles is strictly inside, decided exactly, or else the least value of
+ * its triangles. Points of the plane are points of space with z = 0: the smallest spheres have the radii of the
+ * circles.
  *
- * Based on: Edelsbrunner, Kirkpatrick, Seidel. On the shape of a set of points in the plane. IEEE Trans. Inf. Theory 1983.
+ * Based on: Edelsbrunner, Kirkpatrick, Seidel. On the shape of a set of points in the plane. IEEE Trans. Inf. Theory
+ * 1983.
  *           Edelsbrunner. The union of balls and its dual shape. DCG 1995. */
 #include "alpha/simplex_values.h"
 #include "base/finite.h"
@@ -53,8 +56,8 @@ static void find_edge(const evaluation *e, uint32_t h, size_t n) {
     e->out->gabriel[1][n] = gabriel;
 }
 
-/* Returns whether an edge is found at this handle: its lower handle, or that of its finite triangle, since finite triangles
- * come first. */
+/* Returns whether an edge is found at this handle: its lower handle, or that of its finite triangle, since finite
+ * triangles come first. */
 static bool is_first(const evaluation *e, size_t t, uint32_t slot) {
     return 4 * (uint32_t)t + slot < e->triangle[t].mate[slot];
 }

@@ -19,9 +19,9 @@
 
 /* Squared radii in double-doubles.
  *
- * The vertices are taken relative to the first one, a, exactly, and scaled by a power of two to at most 1. Let U, V, W be
- * the others and b_i = |U_i|^2 - (w_i - w_a). The centre is a + y with y in the span of U, V, W and 2 U_i y = b_i; the
- * squared radius is |y|^2 - w_a. */
+ * The vertices are taken relative to the first one, a, exactly, and scaled by a power of two to at most 1. Let U, V, W
+ * be the others and b_i = |U_i|^2 - (w_i - w_a). The centre is a + y with y in the span of U, V, W and 2 U_i y = b_i;
+ * the squared radius is |y|^2 - w_a. */
 
 typedef struct {
     brio_dd row[3][3]; /* U, V, W */
@@ -125,8 +125,8 @@ BRIO_TARGET_FMA static double squared_radius_fma(const double *const *p, int cou
 }
 
 /* Returns the squared radius of the smallest sphere that is orthogonal to the `count` weighted vertices of a simplex, 2
- *  to 4; without weights, of the smallest circumscribed sphere. INFINITY where doubles cannot hold it. The result depends
- *  on the order of the vertices in its last bits only.
+ *  to 4; without weights, of the smallest circumscribed sphere. INFINITY where doubles cannot hold it. The result
+ *  depends on the order of the vertices in its last bits only.
  *  p  the vertices, x y z weight; the weights are 0 without weights. */
 static double brio_squared_radius(const double *const *p, int count) {
     return brio_have_fma() ? squared_radius_fma(p, count) : squared_radius(p, count, false);

@@ -1,4 +1,5 @@
-/* What the filtrations of triangulations of space and of the plane share: values of single simplices and of vertices. */
+/* What the filtrations of triangulations of space and of the plane share: values of single simplices and of
+ * vertices. */
 #ifndef BRIO_ALPHA_SIMPLEX_VALUES_H
 #define BRIO_ALPHA_SIMPLEX_VALUES_H
 

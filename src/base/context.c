@@ -1,101 +1,13 @@
-/* The context: settings, last message, progress. */
+/* The last message of a context, and its progress. All code needs these; what makes a context needs memory and threads,
+ * and stands above them (context_new.c). */
 #include "base/context.h"
-#include "base/kept.h"
-#include "base/memory.h"
-#include "base/scratch_file.h"
-#include "base/team.h"
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
-
-static void *system_alloc(size_t size, void *user) {
-    (void)user;
-    return malloc(size);
-}
-static void *system_realloc(void *block, size_t size, void *user) {
-    (void)user;
-    return realloc(block, size);
-}
-static void system_free(void *block, void *user) {
-    (void)user;
-    free(block);
-}
-
-/* Returns the most threads that a context takes. More than four threads for a processor only wait for each other. On a
- * few processors a test may want more: 64 is chosen. */
-static int most_threads(int processors) {
-    int most = 4 * processors;
-    return most > 64 ? most : 64;
-}
-
-brio_status brio_context_new(const brio_allocator *allocator, brio_context **out) {
-    const brio_allocator system = {system_alloc, system_realloc, system_free, NULL};
-    const brio_allocator *a = allocator ? allocator : &system;
-    int processors = brio_processors(), most = most_threads(processors);
-    assert(1 <= processors && processors <= most);
-    brio_context *ctx = a->alloc(sizeof *ctx + brio_team_bytes(most), a->user);
-    *out = ctx;
-    if (!ctx) return BRIO_ERR_NO_MEMORY;
-    memset(ctx, 0, sizeof *ctx);
-    ctx->allocator = *a;
-    ctx->custom = allocator != NULL;
-    ctx->machine_limit = brio_machine_memory();
-    ctx->bar = (brio_bar){0, 1};
-    ctx->processors = processors;
-    ctx->most_threads = most;
-    ctx->team = brio_team_begin(ctx + 1, most, processors);
-    pthread_mutex_init(&ctx->lock, NULL);
-    return BRIO_OK;
-}
-
-void brio_context_free(brio_context *ctx) {
-    if (!ctx) return;
-    brio_release(ctx, ctx->scratch);
-    brio_kept_free(ctx);
-    brio_team_end(ctx->team);
-    pthread_mutex_destroy(&ctx->lock);
-    brio_allocator a = ctx->allocator;
-    a.free(ctx, a.user);
-}
 
 const char *brio_message(const brio_context *ctx) {
     return ctx->message;
-}
-
-void brio_context_set_threads(brio_context *ctx, int threads) {
-    assert(ctx->most_threads >= 1);
-    ctx->threads = threads < 0 ? 0 : threads < ctx->most_threads ? threads : ctx->most_threads;
-}
-
-int brio_context_threads(const brio_context *ctx) {
-    return ctx->threads > 0 ? ctx->threads : ctx->processors;
-}
-
-void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user) {
-    ctx->progress = progress;
-    ctx->progress_user = user;
-    ctx->stage = NULL;
-    ctx->share = 0;
-}
-
-void brio_context_set_memory_limit(brio_context *ctx, size_t bytes) {
-    ctx->caller_limit = bytes;
-}
-
-brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
-    BRIO_EXPECT(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT,
-                "a scratch folder and a caller's allocator exclude each other");
-    if (folder) BRIO_FORWARD(brio_scratch_try(ctx, folder));
-    brio_release(ctx, ctx->scratch);
-    ctx->scratch = NULL;
-    if (folder) {
-        BRIO_FORWARD(BRIO_ALLOC(ctx, ctx->scratch, strlen(folder) + 1));
-        strcpy(ctx->scratch, folder);
-    }
-    return BRIO_OK;
 }
 
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...) {

@@ -1,8 +1,8 @@
 /* The context behind the public handle: how all code reports failures, takes memory and reports progress.
  *
- * Error handling has two shapes. A function that has nothing to free returns at once: BRIO_FORWARD and BRIO_EXPECT. One that
- * has declares `brio_status status = BRIO_OK`; BRIO_TRY and BRIO_REQUIRE jump to its one label `done:`, where it frees its
- * workspace and returns the status. */
+ * Error handling has two shapes. A function that has nothing to free returns at once: BRIO_FORWARD and BRIO_EXPECT. One
+ * that has declares `brio_status status = BRIO_OK`; BRIO_TRY and BRIO_REQUIRE jump to its one label `done:`, where it
+ * frees its workspace and returns the status. */
 #ifndef BRIO_BASE_CONTEXT_H
 #define BRIO_BASE_CONTEXT_H
 
@@ -61,9 +61,9 @@ brio_status brio_ask(brio_context *ctx);
 /* BRIO_LOOK_EVERY: items of work between two looks; an item takes 1 ns to 2 us. Chosen. */
 enum { BRIO_LOOK_EVERY = 1 << 14 };
 
-/** Looks: counts `items` of work as done, and asks the callback whether to stop when they add up to BRIO_LOOK_EVERY. Every loop
- *  over data of the caller looks, or is a brio_for, so that the callback is asked within half a second of processor time. Returns BRIO_OK or BRIO_ERR_CANCELLED. Only the thread that called the library may call
- *  this. */
+/** Looks: counts `items` of work as done, and asks the callback whether to stop when they add up to BRIO_LOOK_EVERY.
+ *  Every loop over data of the caller looks, or is a brio_for, so that the callback is asked within half a second of
+ *  processor time. Returns BRIO_OK or BRIO_ERR_CANCELLED. Only the thread that called the library may call this. */
 static inline brio_status brio_look(brio_context *ctx, size_t items) {
     ctx->unlooked += items;
     return ctx->unlooked < BRIO_LOOK_EVERY ? BRIO_OK : brio_ask(ctx);

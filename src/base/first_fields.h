@@ -1,5 +1,6 @@
-/* The last field that each struct of the public interface had at first, in version 0.3: a `size` of 0 stands for the struct
- * up to there. The list is of that version for ever; a new struct gets a row with the last field that it begins with. */
+/* The last field that each struct of the public interface had at first, in version 0.3: a `size` of 0 stands for the
+ * struct up to there. The list is of that version for ever; a new struct gets a row with the last field that it begins
+ * with. */
 #ifndef BRIO_BASE_FIRST_FIELDS_H
 #define BRIO_BASE_FIRST_FIELDS_H
 

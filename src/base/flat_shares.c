@@ -1,8 +1,8 @@
 /* Barycentric coordinates in simplices so flat that rounding makes their volumes meaningless.
  *
- * The hull of points on the sides of a turned box has such simplices: their vertices are in one plane, or on one line, up to
- * rounding. A query inside is in one of the faces up to that rounding. So the query is projected to each triangle, edge and
- * vertex of the simplex, shares below 0 are cleared, and the nearest of these points counts. */
+ * The hull of points on the sides of a turned box has such simplices: their vertices are in one plane, or on one line,
+ * up to rounding. A query inside is in one of the faces up to that rounding. So the query is projected to each
+ * triangle, edge and vertex of the simplex, shares below 0 are cleared, and the nearest of these points counts. */
 #include "base/flat_shares.h"
 #include "base/vector.h"
 #include <assert.h>
@@ -45,8 +45,8 @@ static void project_to_plane(const double *a, const double *b, const double *c, 
     share[2] = 1 - share[0] - share[1];
 }
 
-/* Projects 0 to the face whose vertices are the bits of `face`, one to three of them. Returns false if the face is too flat
- * for that. */
+/* Projects 0 to the face whose vertices are the bits of `face`, one to three of them. Returns false if the face is too
+ * flat for that. */
 static bool project(const double (*row)[3], int count, unsigned face, double *share) {
     assert(face != 0 && face >> count == 0 && __builtin_popcount(face) <= 3);
     int corner[3], n = 0;

@@ -6,8 +6,8 @@
  *  row  the offsets of `count` vertices, 3 or 4, from the query. */
 int brio_shares_hold(const double (*row)[3], int count, const double *share);
 
-/** Sets share to numbers that are at least 0 and sum to 1, such that sum share[i] row[i] is as near to 0 as it can be with
- *  the projections of the query to a triangle, an edge or a vertex of the simplex.
+/** Sets share to numbers that are at least 0 and sum to 1, such that sum share[i] row[i] is as near to 0 as it can be
+ *  with the projections of the query to a triangle, an edge or a vertex of the simplex.
  *  zeros  bit i: share[i] is to be 0. Not all bits are set. */
 void brio_flat_shares(const double (*row)[3], int count, unsigned zeros, double *share);
 

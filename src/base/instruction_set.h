@@ -1,5 +1,5 @@
-/* The instruction set that the library uses: found once, when the library is loaded, for all code that comes in versions
- * for several sets. */
+/* The instruction set that the library uses: found once, when the library is loaded, for all code that comes in
+ * versions for several sets. */
 #ifndef BRIO_BASE_INSTRUCTION_SET_H
 #define BRIO_BASE_INSTRUCTION_SET_H
 
@@ -18,7 +18,8 @@ static inline brio_instruction_set brio_instructions(void) {
     return brio_instructions_in_use;
 }
 
-/** Returns whether the processor multiplies and adds in one rounding; a constant where the target always or never does. */
+/** Returns whether the processor multiplies and adds in one rounding; a constant where the target always or never
+ *  does. */
 static inline bool brio_have_fma(void) {
 #if defined(__FMA__) || defined(__aarch64__)
     return true;
@@ -35,8 +36,8 @@ const char *brio_instruction_set_name(brio_instruction_set set);
 /** Returns the largest set that this processor has. */
 brio_instruction_set brio_most_instructions(void);
 
-/** Returns the set for a value of the environment variable BRIO_INSTRUCTIONS: the set that the value names. A value that is NULL, that
- *  names no set, or a set that the processor does not have, gives the largest set. */
+/** Returns the set for a value of the environment variable BRIO_INSTRUCTIONS: the set that the value names. A value
+ *  that is NULL, that names no set, or a set that the processor does not have, gives the largest set. */
 brio_instruction_set brio_instructions_for(const char *name);
 
 /** Uses a set from now on, for tests. No other thread may be in the library. Returns false, and changes nothing, where

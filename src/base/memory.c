@@ -27,8 +27,8 @@
 /* HEADER: a cache line. FRONT: the bytes before a mapped block. */
 enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = BRIO_MAP_FROM };
 
-/* KIND_LOST is what is left of a header in a scratch file that somebody cut: zeros. Not even the size of such a block is
- * known, so that its mapping and its file stay. */
+/* KIND_LOST is what is left of a header in a scratch file that somebody cut: zeros. Not even the size of such a block
+ * is known, so that its mapping and its file stay. */
 typedef enum { KIND_LOST, KIND_HEAP, KIND_MAPPED, KIND_FILE } block_kind;
 
 typedef struct {

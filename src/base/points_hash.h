@@ -1,5 +1,5 @@
-/* A hash of points with their indices, by which a triangulation knows the points that it was made of. Numbers are mixed by
- * products of 128 bits. The constants are odd and have no pattern; chosen. */
+/* A hash of points with their indices, by which a triangulation knows the points that it was made of. Numbers are mixed
+ * by products of 128 bits. The constants are odd and have no pattern; chosen. */
 #ifndef BRIO_BASE_POINTS_HASH_H
 #define BRIO_BASE_POINTS_HASH_H
 

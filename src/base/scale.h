@@ -15,7 +15,8 @@ static inline double brio_power_of_two(int exponent) {
     return x;
 }
 
-/** Returns 2^-exponent, or the closest power of two that is a normal number: it brings numbers of that exponent near 1. */
+/** Returns 2^-exponent, or the closest power of two that is a normal number: it brings numbers of that exponent near
+ *  1. */
 static inline double brio_scale_to_one(int exponent) {
     return brio_power_of_two(exponent > 1022 ? -1022 : exponent < -1022 ? 1022 : -exponent);
 }
@@ -23,24 +24,26 @@ static inline double brio_scale_to_one(int exponent) {
 /** Returns the greatest magnitude of numbers, 0 if there are none. */
 double brio_greatest(const double *x, size_t n);
 
-/** Returns the exponent of the least power of two above x: x * 2^-exponent is below 1. 0 for 0 and for what is not finite. */
+/** Returns the exponent of the least power of two above x: x * 2^-exponent is below 1. 0 for 0 and for what is not
+ *  finite. */
 int brio_exponent(double x);
 
-/** Returns by how much the rounding of coordinates of magnitudes up to `greatest` may change the distance of two points: two
- *  units in the last place of each. Distances closer than that to a threshold count as equal to it, so that a grid of a spacing
- *  that no double holds is treated alike all over. */
+/** Returns by how much the rounding of coordinates of magnitudes up to `greatest` may change the distance of two
+ *  points: two units in the last place of each. Distances closer than that to a threshold count as equal to it, so that
+ *  a grid of a spacing that no double holds is treated alike all over. */
 static inline double brio_distance_rounding(double greatest) {
     return 0x1p-50 * greatest;
 }
 
-/** Returns an exponent so that usual points times 2^-exponent are near 1, and all points finite: the mean exponent of the
- *  greatest coordinates, which a few points far out hardly change.   points  #P by 3. */
+/** Returns an exponent so that usual points times 2^-exponent are near 1, and all points finite: the mean exponent of
+ *  the greatest coordinates, which a few points far out hardly change.   points  #P by 3. */
 int brio_usual_exponent(const double *points, size_t num_points);
 
 /** Sets out[i] to x[i] * 2^exponent for i < n, and -0 to 0. Uses all threads. `out` may be x. */
 brio_status brio_scale(brio_context *ctx, const double *x, size_t n, int exponent, double *out);
 
-/** Scales the vertices of a result in place. Returns BRIO_OK, or BRIO_ERR_NO_ANSWER if doubles cannot hold a coordinate. */
+/** Scales the vertices of a result in place. Returns BRIO_OK, or BRIO_ERR_NO_ANSWER if doubles cannot hold a
+ *  coordinate. */
 brio_status brio_scale_vertices(brio_context *ctx, double *vertices, size_t num_vertices, int exponent);
 
 #endif

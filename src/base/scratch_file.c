@@ -210,8 +210,8 @@ void brio_scratch_direct(brio_scratch_file *f, bool direct) {
 
 /* --- reading and writing --- */
 
-/* Makes the disk take bytes. A failure must not be lost: pages that the disk did not take are clean afterwards, and what
- * is read later is something else. Returns whether there was none. */
+/* Makes the disk take bytes. A failure must not be lost: pages that the disk did not take are clean afterwards, and
+ * what is read later is something else. Returns whether there was none. */
 static bool give(int file, size_t offset, size_t size, unsigned flags) {
     return sync_file_range(file, (off_t)offset, (off_t)size, flags) == 0 || errno == ESPIPE || errno == EINVAL ||
            errno == ENOSYS;

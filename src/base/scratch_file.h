@@ -26,8 +26,8 @@ brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file 
  *  was cut. */
 brio_status brio_scratch_grow(brio_context *ctx, brio_scratch_file *f, size_t size);
 
-/** Shrinks a file to `size` bytes, or leaves it as it is where the disk does not take its new end. No mapping may extend beyond
- *  them.
+/** Shrinks a file to `size` bytes, or leaves it as it is where the disk does not take its new end. No mapping may
+ *  extend beyond them.
  *  Returns BRIO_OK, or BRIO_ERR_NO_MEMORY for a file that was cut. */
 brio_status brio_scratch_shrink(brio_context *ctx, brio_scratch_file *f, size_t size);
 

@@ -1,7 +1,7 @@
 /* Least-significant-digit radix sorts of pairs and of items, and a sort of rows by their first number.
  *
- * Member 0 looks between pieces of its part. Where the callback asks to stop, every member leaves its loops when it sees
- * `stop`, and all of them end after the same digit: they read `stop` between two barriers, where nobody looks. */
+ * Member 0 looks between pieces of its part. Where the callback asks to stop, every member leaves its loops when it
+ * sees `stop`, and all of them end after the same digit: they read `stop` between two barriers, where nobody looks. */
 #include "base/sort.h"
 #include "base/memory.h"
 #include "base/places.h"

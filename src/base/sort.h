@@ -5,7 +5,8 @@
 #include "base/context.h"
 
 /** Sorts n pairs by key; the sort is stable.   keys  below 2^bits.   Workspace: 12 n bytes. Looks.
- *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED: then keys and values are in no order, and some may be lost. */
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED: then keys and values are in no order, and some may be
+ *  lost. */
 brio_status brio_radix_sort(brio_context *ctx, uint64_t *keys, uint32_t *values, size_t n, int bits);
 
 /** Sorts n items by their bits 32 to 32 + bits - 1; the sort is stable.
@@ -24,8 +25,8 @@ typedef int (*brio_compare_fn)(uint32_t, uint32_t, const void *user);
  *  input only if `compare` returns 0 for equal indices alone. */
 void brio_sort_indices(uint32_t *indices, size_t n, brio_compare_fn compare, const void *user);
 
-/** Sort as the two functions above do, and look. Return BRIO_OK or BRIO_ERR_CANCELLED: then entries are in any order, and some
- *  may be lost. Only the thread that called the library may call these. */
+/** Sort as the two functions above do, and look. Return BRIO_OK or BRIO_ERR_CANCELLED: then entries are in any order,
+ *  and some may be lost. Only the thread that called the library may call these. */
 brio_status brio_sort_many_keys(brio_context *ctx, uint64_t *keys, size_t n);
 brio_status brio_sort_many_indices(brio_context *ctx, uint32_t *indices, size_t n, brio_compare_fn compare,
                                    const void *user);

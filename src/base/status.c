@@ -1,4 +1,4 @@
-/* A sentence for each status. */
+/* The sentences of statuses, and the version. */
 #include "brio/brio.h"
 
 const char *brio_status_string(brio_status status) {
@@ -31,4 +31,12 @@ const char *brio_status_string(brio_status status) {
         break;
     }
     return "not a status";
+}
+
+const char *brio_version(void) {
+    return BRIO_VERSION;
+}
+
+int brio_version_number(void) {
+    return BRIO_VERSION_NUMBER;
 }

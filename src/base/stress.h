@@ -1,5 +1,6 @@
-/* What a build for tests of parallel work can do, with the option BRIO_STRESS of CMake, where the environment has BRIO_STRESS:
- * threads give way at random where they meet, and little work is divided among threads, too. Nothing in any other build. */
+/* What a build for tests of parallel work can do, with the option BRIO_STRESS of CMake, where the environment has
+ * BRIO_STRESS: threads give way at random where they meet, and little work is divided among threads, too. Nothing in
+ * any other build. */
 #ifndef BRIO_BASE_STRESS_H
 #define BRIO_BASE_STRESS_H
 

@@ -272,8 +272,8 @@ typedef struct {
     brio_status status; /* the first failure; atomic */
 } loop;
 
-/* Works on [begin, end), which counts as `work` items. Returns whether the loop goes on: not where the body itself asked the
- * callback, and was told to stop. */
+/* Works on [begin, end), which counts as `work` items. Returns whether the loop goes on: not where the body itself
+ * asked the callback, and was told to stop. */
 static bool do_some(loop *l, size_t begin, size_t end, size_t work, const brio_member *m) {
     l->body(l->user, begin, end, m->thread);
     if (l->looks && m->thread == 0)

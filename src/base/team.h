@@ -43,26 +43,27 @@ int brio_threads(brio_context *ctx, size_t n, size_t least);
 /** Calls work(user, member) in `threads` threads at once. Returns when all calls have returned. */
 void brio_run(brio_context *ctx, int threads, brio_work_fn work, void *user);
 
-/** Returns whether the caller is the thread that called the library: no run with several members goes on. Only then may it
- *  look (brio_look). */
+/** Returns whether the caller is the thread that called the library: no run with several members goes on. Only then may
+ *  it look (brio_look). */
 bool brio_may_look(const brio_context *ctx);
 
 /** Waits until every member of the run has called this. Afterwards each member sees what the others wrote before. */
 void brio_barrier(const brio_member *member);
 
-/** Divides [0, n) into equal parts in the order of the threads, and calls body for each piece of each part, in ascending
- *  order. A part has many pieces: body's work is to be in proportion to its piece (else: brio_for_parts). Between pieces the calling thread looks (brio_look): where the callback asks to stop, all threads do.
- *  Returns BRIO_OK or BRIO_ERR_CANCELLED: then some of the pieces were left out. */
+/** Divides [0, n) into equal parts in the order of the threads, and calls body for each piece of each part, in
+ *  ascending order. A part has many pieces: body's work is to be in proportion to its piece (else: brio_for_parts).
+ *  Between pieces the calling thread looks (brio_look): where the callback asks to stop, all threads do. Returns
+ *  BRIO_OK or BRIO_ERR_CANCELLED: then some of the pieces were left out. */
 brio_status brio_for(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user)
     __attribute__((warn_unused_result));
 
-/** Divides [0, n) as brio_for does, and calls body once for each part: for a body that reads all data, whatever its part is. So
- *  it takes a slice of the data that is read within half a second. Looks at the end. */
+/** Divides [0, n) as brio_for does, and calls body once for each part: for a body that reads all data, whatever its
+ *  part is. So it takes a slice of the data that is read within half a second. Looks at the end. */
 brio_status brio_for_parts(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user)
     __attribute__((warn_unused_result));
 
-/** Calls body for chunks of [0, n). Each chunk goes to the next thread that is free, in ascending order. Looks between chunks,
- *  and returns what brio_for returns. */
+/** Calls body for chunks of [0, n). Each chunk goes to the next thread that is free, in ascending order. Looks between
+ *  chunks, and returns what brio_for returns. */
 brio_status brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user)
     __attribute__((warn_unused_result));
 

@@ -19,8 +19,8 @@ static inline size_t brio_utf8_length(const char *s) {
     return overlong || surrogate || beyond ? 0 : length;
 }
 
-/** Copies a text; bytes that are no well-formed UTF-8 are taken for Latin-1. What does not fit in `room` bytes, the 0 at the
- *  end included, is left out, in whole characters.
+/** Copies a text; bytes that are no well-formed UTF-8 are taken for Latin-1. What does not fit in `room` bytes, the 0
+ *  at the end included, is left out, in whole characters.
  *  Returns whether all of it fits. */
 static inline bool brio_utf8_copy(char *to, size_t room, const char *from) {
     size_t n = 0;

@@ -3,8 +3,8 @@
  * Each struct begins with `size_t size`, the bytes of the struct that the caller was compiled with. New fields are
  * appended. The library reads and writes no byte of the caller beyond `size`, so a program built for an older header
  * works with a newer library. A program built for a newer header works with an older library if the fields unknown to
- * that library are zero. A size of 0 stands for the fields that the struct had at first (first_fields.h), so that a struct
- * of zeros works, too: a program that sets a later field sets the size. A field of 0 is the default. */
+ * that library are zero. A size of 0 stands for the fields that the struct had at first (first_fields.h), so that a
+ * struct of zeros works, too: a program that sets a later field sets the size. A field of 0 is the default. */
 #ifndef BRIO_BASE_VERSIONED_H
 #define BRIO_BASE_VERSIONED_H
 
@@ -30,8 +30,8 @@ brio_status brio_versioned_take(brio_context *ctx, const void *given, void *mine
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT if the size is impossible. */
 brio_status brio_versioned_check(brio_context *ctx, const void *given, const brio_layout *layout);
 
-/** Does what brio_versioned_check does for a result that owns memory and is never NULL. The size must be at least `least`: then
- *  the struct has all fields by which the result is freed. */
+/** Does what brio_versioned_check does for a result that owns memory and is never NULL. The size must be at least
+ *  `least`: then the struct has all fields by which the result is freed. */
 brio_status brio_versioned_check_owner(brio_context *ctx, const void *given, size_t least, const brio_layout *layout);
 
 /** Returns whether the caller's struct has `least` bytes, and a size that brio_versioned_check accepts. */

@@ -15,8 +15,8 @@ typedef struct brio_weighted_mean {
     size_t count;
 } brio_weighted_mean;
 
-/** Writes the mean of the rows. Each number is between the least and the greatest of those with a share; it is NaN if one
- *  of them is, or if they are infinite with both signs.   mean  receives `components` numbers. */
+/** Writes the mean of the rows. Each number is between the least and the greatest of those with a share; it is NaN if
+ *  one of them is, or if they are infinite with both signs.   mean  receives `components` numbers. */
 void brio_weighted_means(const brio_weighted_mean *m, double *mean);
 
 #endif

@@ -1,5 +1,5 @@
-/* Products of 128 bits, with the compiler's integers of 128 bits or, where it has none (32-bit processors), without them. The
- * option BRIO_USE_INT128 of CMake leaves those of the compiler out, for tests. */
+/* Products of 128 bits, with the compiler's integers of 128 bits or, where it has none (32-bit processors), without
+ * them. The option BRIO_USE_INT128 of CMake leaves those of the compiler out, for tests. */
 #ifndef BRIO_BASE_WIDE_H
 #define BRIO_BASE_WIDE_H
 
@@ -28,8 +28,8 @@ static inline uint64_t brio_multiply_add(uint64_t a, uint64_t b, uint64_t c, uin
 #endif
 }
 
-/** Returns the quotient of high 2^64 + low and the divisor, and the remainder; high < divisor, and the divisor's highest bit is
- *  set. Digit by digit: rare and short. */
+/** Returns the quotient of high 2^64 + low and the divisor, and the remainder; high < divisor, and the divisor's
+ *  highest bit is set. Digit by digit: rare and short. */
 static inline uint64_t brio_divide_wide(uint64_t high, uint64_t low, uint64_t divisor, uint64_t *remainder) {
     assert(high < divisor && divisor >> 63);
 #if BRIO_HAS_INT128

@@ -1,7 +1,7 @@
 /* The faces and vertices of all cells, in the order of the cells.
  *
- * Voronoi vertices come first, in the order of their tetrahedra, each once; then the vertices that clipping made, in the
- * order of the cells. */
+ * Voronoi vertices come first, in the order of their tetrahedra, each once; then the vertices that clipping made, in
+ * the order of the cells. */
 #include "base/memory.h"
 #include "base/team.h"
 #include "cells/cell_record.h"

@@ -69,8 +69,8 @@ static brio_status add_corner(brio_cell_recorder *r, uint32_t corner) {
     return BRIO_OK;
 }
 
-/* Writes the unit vector from a site to its neighbour. The caller's coordinates are subtracted: in scaled lengths, small
- * coordinates beside large ones are 0. A difference that doubles cannot hold is one of halves. */
+/* Writes the unit vector from a site to its neighbour. The caller's coordinates are subtracted: in scaled lengths,
+ * small coordinates beside large ones are 0. A difference that doubles cannot hold is one of halves. */
 static void unit_normal(const brio_diagram *d, uint32_t site, int64_t neighbour, double *n) {
     const double *from = d->points + 3 * (size_t)site, *to = d->points + 3 * (size_t)neighbour;
     double most, length;

@@ -1,7 +1,7 @@
 /* What is computed of each cell, by threads that do not know where it will stand in the result.
  *
- * Numbers of cells go to their place in the result. Faces, corners and vertices go to arrays of the thread that computed
- * them, and `brio_cell_place` remembers where. assemble.c puts them in the order of the cells. */
+ * Numbers of cells go to their place in the result. Faces, corners and vertices go to arrays of the thread that
+ * computed them, and `brio_cell_place` remembers where. assemble.c puts them in the order of the cells. */
 #ifndef BRIO_CELLS_CELL_RECORD_H
 #define BRIO_CELLS_CELL_RECORD_H
 
@@ -53,8 +53,8 @@ typedef struct brio_cell_job {
     int threads;
 } brio_cell_job;
 
-/** Returns a computed volume or area as the result has it. Where doubles cannot hold it, its terms are infinite, of either
- *  sign; where it is nothing, rounding can make it negative. */
+/** Returns a computed volume or area as the result has it. Where doubles cannot hold it, its terms are infinite, of
+ *  either sign; where it is nothing, rounding can make it negative. */
 static inline double brio_cells_held(double x) {
     return isfinite(x) ? fmax(x, 0) : INFINITY;
 }

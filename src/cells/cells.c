@@ -1,9 +1,10 @@
 /* Voronoi and power cells.
  *
- * The diagram is computed once: the centres of the tetrahedra, exact ties among them, the tetrahedra of each vertex. Then
- * threads compute the cells, each from the star of its site, along the array of tetrahedra. A cell is computed the same
- * way whichever thread takes it. Cells that reach outside the region are clipped. Where nothing but volumes is asked for,
- * one pass over the tetrahedra gives those of the other cells (volumes.c), and only clipped cells need their stars.
+ * The diagram is computed once: the centres of the tetrahedra, exact ties among them, the tetrahedra of each vertex.
+ * Then threads compute the cells, each from the star of its site, along the array of tetrahedra. A cell is computed the
+ * same way whichever thread takes it. Cells that reach outside the region are clipped. Where nothing but volumes is
+ * asked for, one pass over the tetrahedra gives those of the other cells (volumes.c), and only clipped cells need their
+ * stars.
  *
  * Based on: Aurenhammer. Power diagrams: properties, algorithms and applications. SIAM J. Computing 1987.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, sections 2.1 and 2.2. */
@@ -27,8 +28,8 @@
  *
  * Let q be a point off the plane of points of dimension 2. Every tetrahedron of all points has q as a vertex, and its
  * sphere meets the plane in the circle of the other three: the tetrahedra are cones over the Delaunay (regular)
- * triangulation of the plane. On a line the same holds for the edge between two added points. An added point is a corner
- * of the convex hull, so it is never hidden and hides no point. */
+ * triangulation of the plane. On a line the same holds for the edge between two added points. An added point is a
+ * corner of the convex hull, so it is never hidden and hides no point. */
 
 enum { BRIO_MOST_ADDED = 3 };
 
@@ -161,8 +162,8 @@ static brio_status triangulate_flat(cell_call *c) {
     return BRIO_OK;
 }
 
-/* Copies the caller's points: another thread of the caller may change them meanwhile, and the triangulation and the cells
- * must be those of the same points. */
+/* Copies the caller's points: another thread of the caller may change them meanwhile, and the triangulation and the
+ * cells must be those of the same points. */
 static brio_status copy_points(cell_call *c) {
     size_t n = c->num_points;
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->rows, 3 * n));
@@ -262,8 +263,8 @@ static exponents exponents_of(const cell_call *c) {
     return e;
 }
 
-/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. One above 1
- * leaves the weights, which are multiplied by its square, below 2^MOST. */
+/* Chooses the power of two that lengths are multiplied by: 1, unless squares and cubes could overflow or underflow. One
+ * above 1 leaves the weights, which are multiplied by its square, below 2^MOST. */
 static double choose_scale(const cell_call *c, exponents e) {
     enum { ORDINARY = 100, MOST = 1000 };
     int of_weights;
@@ -276,8 +277,9 @@ static double choose_scale(const cell_call *c, exponents e) {
     return brio_power_of_two(scale < highest ? scale : highest);
 }
 
-/* Scales lengths of the points and of the region so that doubles hold their cubes. The exponents of these lengths differ by at
- * most FARTHEST; scaled to the middle of them, the exponents of cubes are at most 3 / 2 FARTHEST, below 1022. */
+/* Scales lengths of the points and of the region so that doubles hold their cubes. The exponents of these lengths
+ * differ by at most FARTHEST; scaled to the middle of them, the exponents of cubes are at most 3 / 2 FARTHEST, below
+ * 1022. */
 static brio_status scale_points(cell_call *c) {
     enum { FARTHEST = 600 };
     brio_diagram *d = &c->diagram;
@@ -436,8 +438,8 @@ done:
     return status;
 }
 
-/* Checks that the cells fill the region. Where the region is much smaller than its distance from the sites, rounding loses more
- * than its volume. Skips volumes that doubles cannot hold. */
+/* Checks that the cells fill the region. Where the region is much smaller than its distance from the sites, rounding
+ * loses more than its volume. Skips volumes that doubles cannot hold. */
 static brio_status check_filled(brio_context *ctx, const brio_cells *cells) {
     static const double MOST = 0.01; /* chosen: what is left of the accuracy of the cells is of no use */
     double filled = cells->volume_sum / cells->region_volume;

@@ -1,17 +1,18 @@
 /* Cells clipped to the region.
  *
- * A cell whose vertices are all near the region is taken as it is and cut by the walls. A cell with vertices far away or
- * at infinity starts from the region instead, and is cut by the planes of its faces: then nothing far away is computed.
- * Both ways cut by the same planes; faces without area were dropped before, exactly. Which vertices a plane cuts off is
- * exact, too (exact_side.h): of a face whose area is lost in rounding, the polyhedron still knows that it has one. */
+ * A cell whose vertices are all near the region is taken as it is and cut by the walls. A cell with vertices far away
+ * or at infinity starts from the region instead, and is cut by the planes of its faces: then nothing far away is
+ * computed. Both ways cut by the same planes; faces without area were dropped before, exactly. Which vertices a plane
+ * cuts off is exact, too (exact_side.h): of a face whose area is lost in rounding, the polyhedron still knows that it
+ * has one. */
 #include "cells/clip.h"
 #include "cells/exact_side.h"
 #include "base/vector.h"
 #include <assert.h>
 #include <string.h>
 
-/* Cuts the region by the planes of all faces of the cell. A cell that has neighbours but no face with an area is an edge
- * or a point, as weights can make it: nothing is left. */
+/* Cuts the region by the planes of all faces of the cell. A cell that has neighbours but no face with an area is an
+ * edge or a point, as weights can make it: nothing is left. */
 static brio_status cut_from_region(const brio_star_cell *c, const brio_region *region, brio_polyhedron *p) {
     const brio_diagram *d = c->d;
     const double *site = d->at + 3 * (size_t)c->site;
@@ -32,8 +33,8 @@ static brio_status cut_from_region(const brio_star_cell *c, const brio_region *r
     return BRIO_OK;
 }
 
-/* Finds the vertex of the polyhedron with a name, or adds it. The hash table of the star cell now holds names: its sides
- * are complete. */
+/* Finds the vertex of the polyhedron with a name, or adds it. The hash table of the star cell now holds names: its
+ * sides are complete. */
 static brio_status vertex_of(brio_star_cell *c, brio_polyhedron *p, uint32_t name, uint32_t *vertex) {
     size_t mask = c->num_slots - 1, at = (name * UINT32_C(0x9E3779B1) >> 7) & mask;
     while (c->slot[at][1] && c->slot[at][0] != name) at = (at + 1) & mask;

@@ -1,14 +1,14 @@
 /* The Voronoi (power) diagram as the cells are read from it: the tetrahedra with their centres, the tetrahedra that
  * share a centre exactly, and the tetrahedra of each vertex.
  *
- * I1  Row t of `centre` is the centre of tetrahedron t and its place, a brio_place. It is NaN for infinite tetrahedra and
- *     for centres that doubles cannot hold, and then the place is BRIO_PLACE_FAR.
+ * I1  Row t of `centre` is the centre of tetrahedron t and its place, a brio_place. It is NaN for infinite tetrahedra
+ *     and for centres that doubles cannot hold, and then the place is BRIO_PLACE_FAR.
  * I2  Where `same` is not NULL, same[t] is the least of the tetrahedra that share the centre of t and are joined with t
  *     across facets. Rows of such tetrahedra are equal. For infinite tetrahedra the outward normal of the hull facet
  *     takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
  * I3  The tetrahedra of a vertex ascend.
- * I4  Row r of `ranked` is the point order[r], and rank[order[r]] = r. The order follows the array of tetrahedra: what is
- *     near in space is near in memory.
+ * I4  Row r of `ranked` is the point order[r], and rank[order[r]] = r. The order follows the array of tetrahedra: what
+ *     is near in space is near in memory.
  * I5  With `volumes_only` a vertex is marked if one of its tetrahedra is infinite or has its centre outside the region.
  *     Then ties, places and stars are only found for the listed tetrahedra, those with a marked vertex. */
 #ifndef BRIO_CELLS_DIAGRAM_H
@@ -61,8 +61,8 @@ void brio_diagram_free(brio_diagram *d);
 
 /** Orders the vertices: I4. */
 brio_status brio_diagram_order_vertices(brio_diagram *d);
-/** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. Marks vertices and lists
- *  tetrahedra: I5. */
+/** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. Marks vertices and
+ *  lists tetrahedra: I5. */
 brio_status brio_diagram_find_centres(brio_diagram *d, const brio_region *region);
 /** Finds the tetrahedra that share a centre, and makes their rows equal. */
 brio_status brio_diagram_unite_ties(brio_diagram *d);

@@ -1,7 +1,7 @@
 /* Sides of planes, exactly: see exact_side.h.
  *
- * Rows are relative to the site of the cell, where the numbers are small. In doubles, each number of a row comes with the
- * sum of its absolute terms; a determinant errs by at most ERROR of the same determinant with all terms positive.
+ * Rows are relative to the site of the cell, where the numbers are small. In doubles, each number of a row comes with
+ * the sum of its absolute terms; a determinant errs by at most ERROR of the same determinant with all terms positive.
  *
  * Based on: Shewchuk. Adaptive precision floating-point arithmetic and fast robust geometric predicates. DCG 1997. */
 #include "cells/exact_side.h"
@@ -9,11 +9,13 @@
 #include <assert.h>
 #include <math.h>
 
-/* A number of a row errs by at most 12 roundings of the sum of its terms: the differences, products and sums of an offset, or
- * the divisions of a normal. A determinant adds 3 products and 9 sums to 4 such numbers: less than 64 roundings of 2^-53. */
+/* A number of a row errs by at most 12 roundings of the sum of its terms: the differences, products and sums of an
+ * offset, or the divisions of a normal. A determinant adds 3 products and 9 sums to 4 such numbers: less than 64
+ * roundings of 2^-53. */
 static const double ERROR = 0x1p-47;
 
-/* Numbers that underflow lose at most 2^-1074 each. A determinant loses less than this of the cube of its greatest number. */
+/* Numbers that underflow lose at most 2^-1074 each. A determinant loses less than this of the cube of its greatest
+ * number. */
 static const double FLOOR = 0x1p-1000;
 
 /* Finds the sites of a plane. Returns false for a wall. */

@@ -1,13 +1,13 @@
 /* On which side of a plane a vertex of a clipped cell is, exactly.
  *
- * Planes are those between two sites, on which power distances are equal, and the walls of the region as the caller gave
- * them. Their names are numbers:
+ * Planes are those between two sites, on which power distances are equal, and the walls of the region as the caller
+ * gave them. Their names are numbers:
  *     -1 - i                            wall i of the region
  *     0 .. 2^32 - 1                     the plane between the cell's site and this site
  *     brio_plane_of_tetrahedron(t, k)   the plane between vertices 0 and 1 + k of tetrahedron t
  *
- * A vertex is the point of three planes. Its height over a fourth is a quotient of determinants: with rows (n, d) for the
- * planes n . x = d, that of all four planes with its sign changed, divided by that of the three normals.
+ * A vertex is the point of three planes. Its height over a fourth is a quotient of determinants: with rows (n, d) for
+ * the planes n . x = d, that of all four planes with its sign changed, divided by that of the three normals.
  *
  * The sign comes from doubles, against a bound of the rounding errors, or else from dyadic numbers. */
 #ifndef BRIO_CELLS_EXACT_SIDE_H

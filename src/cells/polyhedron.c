@@ -1,11 +1,11 @@
 /* Convex polyhedra that planes cut.
  *
- * A cut gives every vertex one height over the plane, so that all faces agree on which side it is. Vertices on the plane
- * count as under it. Each face keeps its corners under the plane; where an edge passes the plane, the two faces of the
- * edge share one new vertex. Every new vertex ends the cut of one of its faces and begins that of the other, so the cuts
- * join to cycles, which are the new face. Rounding can move a vertex from one side of a plane to the other, but never
- * opens the polyhedron; it can make faces without area. With a judge, exact signs decide, and heights only say where an
- * edge passes the plane.
+ * A cut gives every vertex one height over the plane, so that all faces agree on which side it is. Vertices on the
+ * plane count as under it. Each face keeps its corners under the plane; where an edge passes the plane, the two faces
+ * of the edge share one new vertex. Every new vertex ends the cut of one of its faces and begins that of the other, so
+ * the cuts join to cycles, which are the new face. Rounding can move a vertex from one side of a plane to the other,
+ * but never opens the polyhedron; it can make faces without area. With a judge, exact signs decide, and heights only
+ * say where an edge passes the plane.
  *
  * Based on: Sutherland, Hodgman. Reentrant polygon clipping. CACM 1974. */
 #include "cells/polyhedron.h"
@@ -138,7 +138,8 @@ static int find_heights(brio_polyhedron *p, const double plane[4], int64_t neigh
     return !over ? 0 : under ? 1 : -1;
 }
 
-/* Finds or makes the vertex where the edge between `in` and `out` passes the plane. The edge is of two faces, which ask one
+/* Finds or makes the vertex where the edge between `in` and `out` passes the plane. The edge is of two faces, which ask
+ * one
  * after the other.   planes  the neighbours of the face that asks, and of the plane */
 static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, const int64_t planes[2], uint32_t *vertex) {
     for (size_t i = p->num_cut; i-- > 0;)
@@ -162,8 +163,8 @@ static brio_status cut_edge(brio_polyhedron *p, uint32_t in, uint32_t out, const
     return BRIO_OK;
 }
 
-/* Adds to `kept` what a face has under the plane, or nothing. The new face runs along the cut of this face the other way:
- * from where the cycle of corners comes back under the plane to where it left. */
+/* Adds to `kept` what a face has under the plane, or nothing. The new face runs along the cut of this face the other
+ * way: from where the cycle of corners comes back under the plane to where it left. */
 static brio_status keep_face(brio_polyhedron *p, const brio_face *face, int64_t neighbour) {
     const uint32_t *corner = p->faces.corner;
     const int64_t planes[2] = {face->neighbour, neighbour};

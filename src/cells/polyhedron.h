@@ -4,8 +4,8 @@
  * vertices, so that faces share vertices. Coordinates are relative to an origin of the owner's choice.
  *
  * I1  Every directed edge of a face is, reversed, an edge of exactly one other face. Vertices may coincide.
- * I2  With a judge, a vertex is the point of three planes, whose normals are independent, and its coordinates are this point,
- *     rounded. Then every decision of a cut is exact. Without one, coordinates decide.
+ * I2  With a judge, a vertex is the point of three planes, whose normals are independent, and its coordinates are this
+ *     point, rounded. Then every decision of a cut is exact. Without one, coordinates decide.
  * I3  With a judge, a face is flat if and only if it has no area: it is kept for I1 alone.
  *
  * A polyhedron keeps its memory when it is filled again. One thread owns it. */
@@ -84,7 +84,8 @@ brio_status brio_polyhedron_add_corner(brio_polyhedron *p, uint32_t vertex);
  *  z. */
 brio_status brio_polyhedron_set_box(brio_polyhedron *p, const double low[3], const double high[3]);
 
-/** Fills `p` with a copy of `from`, each vertex moved by -origin. The vertices have no names; what they are exactly stays. */
+/** Fills `p` with a copy of `from`, each vertex moved by -origin. The vertices have no names; what they are exactly
+ *  stays. */
 brio_status brio_polyhedron_copy(brio_polyhedron *p, const brio_polyhedron *from, const double origin[3]);
 
 /** Cuts off what is over a plane: the points x with plane[0..2] . x > plane[3]. The face that closes the cut has the

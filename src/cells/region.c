@@ -1,7 +1,8 @@
 /* The region that cells are clipped to.
  *
- * A cube is cut by the planes of the region. The cube grows until the result stays clear of its walls; a last cut starts
- * from a box that fits the result, so that its vertices are accurate. Six planes of a box are taken as they are. */
+ * A cube is cut by the planes of the region. The cube grows until the result stays clear of its walls; a last cut
+ * starts from a box that fits the result, so that its vertices are accurate. Six planes of a box are taken as they
+ * are. */
 #include "cells/region.h"
 #include "base/memory.h"
 #include "base/vector.h"
@@ -59,8 +60,8 @@ static brio_status cut_out(brio_region *r, const double low[3], const double hig
     return BRIO_OK;
 }
 
-/* Cuts the region out of ever larger cubes; writes its bounds. A region without an end is cut by the walls of every cube,
- * until it is too thin beside a cube for doubles and seems to be empty. */
+/* Cuts the region out of ever larger cubes; writes its bounds. A region without an end is cut by the walls of every
+ * cube, until it is too thin beside a cube for doubles and seems to be empty. */
 static brio_status search(brio_context *ctx, brio_region *r, double low[3], double high[3]) {
     static const char *const UNBOUNDED = "the region is unbounded, or reaches too far beside its width for doubles";
     int64_t walls = -(int64_t)r->num_planes;
@@ -79,7 +80,8 @@ static brio_status search(brio_context *ctx, brio_region *r, double low[3], doub
     return BRIO_OK;
 }
 
-/* Returns whether plane i is the wall of a box, for i from 0 to 5 in the order of the neighbours of brio_polyhedron_set_box. */
+/* Returns whether plane i is the wall of a box, for i from 0 to 5 in the order of the neighbours of
+ * brio_polyhedron_set_box. */
 static bool is_box(const brio_region *r) {
     for (size_t i = 0; i < r->num_planes; i++)
         for (size_t k = 0; k < 3; k++)

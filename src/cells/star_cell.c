@@ -1,8 +1,8 @@
 /* A cell as the star of its site gives it.
  *
- * A facet of the Delaunay triangulation at the site p is dual to an edge of p's cell, between the centres c and d of two
- * mates. The edge borders the faces that the cell shares with the facet's other two vertices. The area vector of a face
- * is half the sum of the cross products (c - p) x (d - p) over its edges, in turn: the order of the edges does not
+ * A facet of the Delaunay triangulation at the site p is dual to an edge of p's cell, between the centres c and d of
+ * two mates. The edge borders the faces that the cell shares with the facet's other two vertices. The area vector of a
+ * face is half the sum of the cross products (c - p) x (d - p) over its edges, in turn: the order of the edges does not
  * matter, so that one pass over the star suffices. The volume is the sum of the pyramids from p, a third of the area
  * vector times the foot of the face. Written out over all cells, the signed tetrahedra (p, foot, c, d) fill space and
  * share their triangles, so errors of the centres cancel in the sum of the volumes.
@@ -22,8 +22,8 @@ void brio_star_cell_free(brio_star_cell *c) {
     brio_release(c->d->ctx, c->polygon);
 }
 
-/* Makes room for the sides of a star of `size` tetrahedra, and empties the hash table. A star of n tetrahedra has at most
- * n / 2 + 2 neighbours, the infinite vertex included. */
+/* Makes room for the sides of a star of `size` tetrahedra, and empties the hash table. A star of n tetrahedra has at
+ * most n / 2 + 2 neighbours, the infinite vertex included. */
 static brio_status make_room(brio_star_cell *c, size_t size) {
     brio_context *ctx = c->d->ctx;
     size_t most = size / 2 + 3, slots = 32;

@@ -1,5 +1,5 @@
-/* A cell as the star of its site gives it, before it is clipped. One thread owns a star_cell and fills it again for each
- * site. Positions are relative to the site. */
+/* A cell as the star of its site gives it, before it is clipped. One thread owns a star_cell and fills it again for
+ * each site. Positions are relative to the site. */
 #ifndef BRIO_CELLS_STAR_CELL_H
 #define BRIO_CELLS_STAR_CELL_H
 

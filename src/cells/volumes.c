@@ -1,14 +1,14 @@
 /* Volumes alone, in one pass over the tetrahedra.
  *
  * A facet abc of two mates with the centres c and d is dual to an edge of three cells. By star_cell.c the edge adds
- * (2 f_y - 2 f_z) . (c - p) x (d - p) to 12 times the volume of the cell of each vertex p, where f_y and f_z are the feet
- * of the faces with the facet's other two vertices y and z. Here 2 f_y = k (y - p), with k = 1, or with weights
- * k = 1 + (w_p - w_y) / |y - p|^2. For all three p these are combinations of the same three numbers. With a as the origin,
- * X = c x d and e, g the edges to the other two vertices, they are e . X, g . X, and (d - c) . (e x g). What a facet adds to
- * its three cells is -2 (d - c) . (e x g), whatever the rounding of the other two numbers.
+ * (2 f_y - 2 f_z) . (c - p) x (d - p) to 12 times the volume of the cell of each vertex p, where f_y and f_z are the
+ * feet of the faces with the facet's other two vertices y and z. Here 2 f_y = k (y - p), with k = 1, or with weights
+ * k = 1 + (w_p - w_y) / |y - p|^2. For all three p these are combinations of the same three numbers. With a as the
+ * origin, X = c x d and e, g the edges to the other two vertices, they are e . X, g . X, and (d - c) . (e x g). What a
+ * facet adds to its three cells is -2 (d - c) . (e x g), whatever the rounding of the other two numbers.
  *
- * A slice of tetrahedra at a time: first the terms of each tetrahedron and vertex, then the sums, where a thread adds to
- * the vertices that it owns. A vertex takes its terms in the order of the tetrahedra, for every number of threads.
+ * A slice of tetrahedra at a time: first the terms of each tetrahedron and vertex, then the sums, where a thread adds
+ * to the vertices that it owns. A vertex takes its terms in the order of the tetrahedra, for every number of threads.
  *
  * Cells that the region clips, and unbounded ones, get wrong numbers here; they are computed from their stars.
  *

@@ -1,8 +1,8 @@
 /* Memory estimates.
  *
  * The constants are those of the data structures or measured, as said beside them; measurement adjusts them here and
- * nowhere else. docs/measured/performance.md compares the estimates with the peaks of many inputs. An input that no estimate
- * foresees meets the memory limit of the context, which refuses memory while the work runs. */
+ * nowhere else. docs/measured/performance.md compares the estimates with the peaks of many inputs. An input that no
+ * estimate foresees meets the memory limit of the context, which refuses memory while the work runs. */
 #include "base/float_state.h"
 #include "base/versioned.h"
 #include "estimate/triangulation_size.h"
@@ -30,8 +30,8 @@ static const double PLANE_BYTES_A_POINT = 88, PLANE_BYTES_A_WEIGHT = 10;
 /* Measured, the samples not included: models take 1,460 to 1,570 bytes a sample, a raw scan 1,590, offsets 1,240, the
  * co-cone 540 to 640. */
 static const double CRUST_BYTES_A_POINT = 1426, OFFSET_BYTES_A_POINT = 1300, COCONE_BYTES_A_POINT = 616;
-/* Measured: a raw scan of a million samples takes 993 bytes a sample, simulated scans of 60,000 and 20,000 samples 1,063 and
- * 1,213. */
+/* Measured: a raw scan of a million samples takes 993 bytes a sample, simulated scans of 60,000 and 20,000 samples
+ * 1,063 and 1,213. */
 static const double LABELED_BYTES_A_POINT = 1110;
 static const double TRIANGLE_BYTES_A_POINT = 300;  /* more, triangulated: a scan of 20,000 points 210, bunny 350 */
 static const double SIMPLIFY_BYTES_A_POINT = 1850; /* more, simplified: knot2 1,780, bunny 1,850, fandisk 1,900 */
@@ -104,8 +104,9 @@ static uint64_t crust_bytes(size_t num_points, double each, bool triangulate, bo
     return bytes_of(each * (double)num_points);
 }
 
-/* Returns the estimate of the co-cones. The super co-cone keeps the points and the triangles of all pieces, and works on one piece of up to twice the mean size.
- * Measured on scans of 60,000 and 200,000 points in 3 to 154 pieces, with one thread. */
+/* Returns the estimate of the co-cones. The super co-cone keeps the points and the triangles of all pieces, and works
+ * on one piece of up to twice the mean size. Measured on scans of 60,000 and 200,000 points in 3 to 154 pieces, with
+ * one thread. */
 static double cocone_bytes(double points, double pieces) {
     static const double KEPT_A_POINT = 210, A_PIECE = 180e3;
     double whole = COCONE_BYTES_A_POINT * points;

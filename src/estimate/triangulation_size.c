@@ -1,13 +1,15 @@
 /* The size of a triangulation, estimated from the surroundings of a few points.
  *
  * What the triangulation is like near a point depends on the points near it, and these are triangulated as they are. A
- * random sample of all points would not do: it keeps neither the noise of a scan, nor a lattice, nor what a weight hides.
- * On exact curved surfaces the number of tetrahedra a point grows with the size of the surroundings. There it is
- * extrapolated with the logarithm of the number of points; on curves, where it may grow as that number does, with a power.
+ * random sample of all points would not do: it keeps neither the noise of a scan, nor a lattice, nor what a weight
+ * hides. On exact curved surfaces the number of tetrahedra a point grows with the size of the surroundings. There it is
+ * extrapolated with the logarithm of the number of points; on curves, where it may grow as that number does, with a
+ * power.
  *
  * Points times a power of two have the same estimate. Distances are of points times the power of two that brings the
- * greatest coordinate near 1: their squares would overflow or vanish. What is triangulated is times the power of two that
- * brings its usual point near 1, where the filters of the predicates work, and weights are times the square of that. */
+ * greatest coordinate near 1: their squares would overflow or vanish. What is triangulated is times the power of two
+ * that brings its usual point near 1, where the filters of the predicates work, and weights are times the square of
+ * that. */
 #include "estimate/triangulation_size.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -19,8 +21,8 @@
 
 /* Chosen. MOST_TETRAHEDRA: a ball with more is made smaller. That is 32 a point of the largest. */
 enum { BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400, MOST_TETRAHEDRA = 1 << 17 };
-/* Chosen. MOST_EXACT: tests of triangulations that took exact arithmetic, after which FEW_BALLS are enough: points on a line, or
- * of a turned lattice, whose balls are alike, took seconds. */
+/* Chosen. MOST_EXACT: tests of triangulations that took exact arithmetic, after which FEW_BALLS are enough: points on a
+ * line, or of a turned lattice, whose balls are alike, took seconds. */
 enum { FEW_BALLS = 3, MOST_EXACT = 1 << 17 };
 /* Derived: a set that fits into one ball is triangulated once. Twelve balls that hold all of it would cost more. */
 enum { ALL = BALL_MOST };
@@ -31,8 +33,8 @@ static const double USUAL = 6.8; /* tetrahedra a point of uniform points */
 /* The share of the tetrahedra a point that a ball has more than the ball of half its radius. In space the border of the
  * balls makes a share of 0.03. */
 static const double GROWS = 0.1;
-/* Chosen: the power from which on a power is extrapolated. A logarithm has less at all sizes of interest; points on a curve
- * have 1, on two lines, too. */
+/* Chosen: the power from which on a power is extrapolated. A logarithm has less at all sizes of interest; points on a
+ * curve have 1, on two lines, too. */
 static const double POWER = 0.5;
 
 /* A set of points. */
@@ -122,8 +124,8 @@ static void count_inner(const brio_triangulation *t, const uint8_t *inner, tally
     }
 }
 
-/* Returns the exponent of the power of two that a set is divided by: that of its usual point, or a greater one that leaves
- * all weights finite. */
+/* Returns the exponent of the power of two that a set is divided by: that of its usual point, or a greater one that
+ * leaves all weights finite. */
 static int exponent_of_set(const double *points, const double *weights, size_t count) {
     int exponent = brio_usual_exponent(points, count);
     if (!weights) return exponent;
@@ -145,8 +147,8 @@ done:
     return status;
 }
 
-/* Triangulates the points of a ball within radius2 of its centre and counts at the inner ones. BRIO_ERR_TOO_LARGE if there are
- * too many tetrahedra. */
+/* Triangulates the points of a ball within radius2 of its centre and counts at the inner ones. BRIO_ERR_TOO_LARGE if
+ * there are too many tetrahedra. */
 static brio_status count_ball(const cloud *c, const ball *b, double radius2, tally *sum) {
     brio_status status = BRIO_OK;
     double *points = NULL, *weights = NULL;

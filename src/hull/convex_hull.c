@@ -1,10 +1,10 @@
 /* The convex hull of a point set as a mesh.
  *
  *   1. Points that are certainly inside are skipped (interior.c).
- *   2. The candidates, copied in a biased randomized insertion order, are inserted one by one (polytope.c). Hulls so flat
- *      that doubles hold no point inside come from the Delaunay triangulation (delaunay_polytope.c).
- *   3. Triangles of one plane become one polygon between strictly extreme points (hull_faces.c). So the result depends on
- *      the points only, and not on the way to it.
+ *   2. The candidates, copied in a biased randomized insertion order, are inserted one by one (polytope.c). Hulls so
+ *      flat that doubles hold no point inside come from the Delaunay triangulation (delaunay_polytope.c).
+ *   3. Triangles of one plane become one polygon between strictly extreme points (hull_faces.c). So the result depends
+ *      on the points only, and not on the way to it.
  *   4. Polygons are cut into fans of triangles, unless the caller wants polygons.
  *
  * Based on: Clarkson, Shor. Applications of random sampling in computational geometry, II. DCG 1989.
@@ -39,8 +39,8 @@ static void lap(hull *h, double *seconds) {
     h->lap = now;
 }
 
-/* Copies the candidates in a biased randomized insertion order. They were finite when the call began, but another thread
- * of the caller may have written to them since; from here on the hull is that of the copies. */
+/* Copies the candidates in a biased randomized insertion order. They were finite when the call began, but another
+ * thread of the caller may have written to them since; from here on the hull is that of the copies. */
 static brio_status take_records(hull *h, size_t n) {
     brio_status status = BRIO_OK;
     double *rows = NULL;

@@ -4,8 +4,8 @@
 #include "hull/polytope.h"
 #include <assert.h>
 
-/* Makes triangle abc of each infinite tetrahedron (a, b, c, infinite); its mate across edge i, opposite to vertex i, is the
- * mate of facet i, which is a handle of an infinite tetrahedron, too. */
+/* Makes triangle abc of each infinite tetrahedron (a, b, c, infinite); its mate across edge i, opposite to vertex i, is
+ * the mate of facet i, which is a handle of an infinite tetrahedron, too. */
 static void take_triangles(const brio_triangulation *t, brio_polytope *out) {
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
     size_t finite = brio_triangulation_stats(t)->tetrahedra;

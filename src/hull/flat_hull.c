@@ -1,7 +1,7 @@
 /* The convex hull of points of dimension 2 or less, exactly.
  *
- * The projection along one axis maps a plane that is not parallel to that axis one to one, and the hull to the hull. The
- * projected points are sorted; the lower and the upper half of the hull are found from the sorted points.
+ * The projection along one axis maps a plane that is not parallel to that axis one to one, and the hull to the hull.
+ * The projected points are sorted; the lower and the upper half of the hull are found from the sorted points.
  *
  * Based on: Andrew. Another efficient algorithm for convex hulls in two dimensions. IPL 1979. */
 #include "base/memory.h"

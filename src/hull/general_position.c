@@ -1,7 +1,7 @@
 /* Records in general position, far from each other.
  *
- * Each record is chosen by rounded arithmetic, as the one that is farthest from those before, and checked exactly. If the
- * check fails, the first record that passes it takes its place; if there is none, the records before span all. */
+ * Each record is chosen by rounded arithmetic, as the one that is farthest from those before, and checked exactly. If
+ * the check fails, the first record that passes it takes its place; if there is none, the records before span all. */
 #include "base/vector.h"
 #include "hull/polytope.h"
 #include <assert.h>

@@ -1,8 +1,9 @@
 /* The faces of a polytope of triangles.
  *
  * An edge is a crease when the triangles on its two sides are in different planes, decided exactly. Triangles that are
- * joined across other edges make one face. Each face at a vertex takes one sector, between two creases. So a vertex with
- * three or more creases is strictly extreme; one with two is inside an edge of the hull, and one without inside a face. */
+ * joined across other edges make one face. Each face at a vertex takes one sector, between two creases. So a vertex
+ * with three or more creases is strictly extreme; one with two is inside an edge of the hull, and one without inside a
+ * face. */
 #include "hull/hull_faces.h"
 #include "base/memory.h"
 #include <assert.h>

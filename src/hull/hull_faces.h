@@ -11,15 +11,16 @@ typedef struct {
     size_t count;
 } brio_hull_polygons;
 
-/** Joins the triangles of each plane to one polygon, counterclockwise as seen from outside. The corners are the strictly
- *  extreme points, of coincident ones the record of the lowest index; the lexicographically least corner is first.
+/** Joins the triangles of each plane to one polygon, counterclockwise as seen from outside. The corners are the
+ *  strictly extreme points, of coincident ones the record of the lowest index; the lexicographically least corner is
+ *  first.
  *  out  owned by the caller (brio_hull_polygons_free).   Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_hull_faces(brio_context *ctx, const brio_polytope *p, const brio_hull_records *records,
                             brio_hull_polygons *out);
 
-/** Finds the convex hull of records of dimension 2 as one polygon, of dimension 1 as a polygon of two corners, of dimension
- *  0 of one. The polygon is seen counterclockwise from the end of the first of the axes z, x, y that is not parallel to
- *  its plane.
+/** Finds the convex hull of records of dimension 2 as one polygon, of dimension 1 as a polygon of two corners, of
+ *  dimension 0 of one. The polygon is seen counterclockwise from the end of the first of the axes z, x, y that is not
+ *  parallel to its plane.
  *  corner  what brio_general_position found.   Returns as brio_hull_faces. */
 brio_status brio_flat_hull(brio_context *ctx, const brio_hull_records *records, int dimension, const uint32_t *corner,
                            brio_hull_polygons *out);

@@ -1,13 +1,13 @@
-/* Skips points inside the hull before any work: the extreme points along 26 directions span a polytope, and a point that is
- * strictly inside all planes of the polytope is strictly inside the hull.
+/* Skips points inside the hull before any work: the extreme points along 26 directions span a polytope, and a point
+ * that is strictly inside all planes of the polytope is strictly inside the hull.
  *
  * The planes are evaluated in doubles, against a bound of all rounding errors; points nearer to a plane are kept. Both
  * passes hold a block of points as three arrays, so that the compiler computes several points at a time.
  *
- * Let E be the greatest difference of two coordinates on one axis, M the greatest magnitude of a coordinate, u = 2^-53. A
- * component of a rounded normal is at most 2.01 E^2 and wrong by at most 8 u E^2, so the products with coordinates are
- * wrong by at most 3 * 8 u E^2 M; the offset, a sum of three such products, by as much again, and the roundings of both
- * sums add less than 2 * 4 u * 3 * 2.01 E^2 M. Together less than 128 u E^2 M. ERROR is eight times that.
+ * Let E be the greatest difference of two coordinates on one axis, M the greatest magnitude of a coordinate, u = 2^-53.
+ * A component of a rounded normal is at most 2.01 E^2 and wrong by at most 8 u E^2, so the products with coordinates
+ * are wrong by at most 3 * 8 u E^2 M; the offset, a sum of three such products, by as much again, and the roundings of
+ * both sums add less than 2 * 4 u * 3 * 2.01 E^2 M. Together less than 128 u E^2 M. ERROR is eight times that.
  *
  * The caller's points may change meanwhile. What is computed from them here only chooses which points are candidates.
  *
@@ -114,7 +114,8 @@ static void set_planes(const brio_polytope *p, const double (*record)[4], planes
 }
 
 /* Finds the planes of the hull of the extreme points. The extremes along the axes bound all coordinates, so E and M are
- * those of all points. Leaves no planes where the hull is flat or the coordinates are too large or have changed to no numbers. */
+ * those of all points. Leaves no planes where the hull is flat or the coordinates are too large or have changed to no
+ * numbers. */
 static brio_status find_planes(brio_context *ctx, const double *points, const extremes *e, planes *out) {
     double record[EXTREMES + 1][4], extent;
     uint32_t corner[4];

@@ -1,13 +1,13 @@
 /* The convex hull by insertion of the points, one after the other.
  *
- * A walk finds the triangle in whose cone the point is; the cones have their apex at a fixed point inside the hull. If the
- * point is beyond no triangle that the walk sees, it is in the hull. Otherwise all triangles that the point is beyond are
- * removed, and the point is joined to the edges of the hole. Both take constant expected time where the points come in a
- * biased randomized insertion order.
+ * A walk finds the triangle in whose cone the point is; the cones have their apex at a fixed point inside the hull. If
+ * the point is beyond no triangle that the walk sees, it is in the hull. Otherwise all triangles that the point is
+ * beyond are removed, and the point is joined to the edges of the hole. Both take constant expected time where the
+ * points come in a biased randomized insertion order.
  *
- * Degenerate inputs need no perturbation. "Beyond" is strict, so the removed triangles are those of whole facets and form
- * a disk; an edge of the hole is never collinear with the point, because the point is strictly beyond the facet on one
- * side of the edge and not on that facet's plane. Points on the hull change nothing.
+ * Degenerate inputs need no perturbation. "Beyond" is strict, so the removed triangles are those of whole facets and
+ * form a disk; an edge of the hole is never collinear with the point, because the point is strictly beyond the facet on
+ * one side of the edge and not on that facet's plane. Points on the hull change nothing.
  *
  * The walk ends: along the line from the centre to the point, each step goes to a facet that is met no later. Among
  * triangles of one plane it could go round, so each step begins with a random edge [Devillers Pion Teillaud 2002].
@@ -45,8 +45,8 @@ static bool is_beyond(builder *b, uint32_t triangle, const double *point) {
     return brio_orient3d_sign(&b->filter, b->record[v[0]], b->record[v[1]], b->record[v[2]], point) > 0;
 }
 
-/* Walks to a triangle that the point is beyond. Returns false when the point is in the hull; b->last is then the triangle
- * in whose cone the point is. */
+/* Walks to a triangle that the point is beyond. Returns false when the point is in the hull; b->last is then the
+ * triangle in whose cone the point is. */
 static bool walk(builder *b, const double *point) {
     const brio_hull_triangle *t = b->p->triangle;
     while (!is_beyond(b, b->last, point)) {
@@ -72,8 +72,8 @@ static brio_status remove_triangle(builder *b, uint32_t triangle, uint32_t mark)
     return status;
 }
 
-/* Removes the triangles that record r is beyond, from b->last on. The removed triangles are a disk and the edges of each
- * are crossed counterclockwise, so the border is found in its order along the hole. */
+/* Removes the triangles that record r is beyond, from b->last on. The removed triangles are a disk and the edges of
+ * each are crossed counterclockwise, so the border is found in its order along the hole. */
 static brio_status dig(builder *b, uint32_t r) {
     const brio_hull_triangle *t = b->p->triangle;
     b->num_hole = b->num_border = 0;

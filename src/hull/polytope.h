@@ -1,11 +1,11 @@
 /* A convex polytope that grows point by point: the convex hull of the records inserted so far, as triangles.
  *
- * I1  The triangles are a closed surface. A triangle (a, b, c) is seen counterclockwise from outside: orient3d(a, b, c, p)
- *     is positive for a point p beyond its plane.
- * I2  Edge i of a triangle runs from vertex i + 1 to vertex i + 2 (modulo 3). The handle 4 f + i names edge i of triangle f;
- *     mate[i] is the handle of the same edge in the triangle on its other side.
- * I3  No triangle has area 0. Triangles may lie in one plane, and a vertex may be inside a facet or an edge of the polytope:
- *     hull_faces.c finds the facets.
+ * I1  The triangles are a closed surface. A triangle (a, b, c) is seen counterclockwise from outside: orient3d(a, b, c,
+ *     p) is positive for a point p beyond its plane.
+ * I2  Edge i of a triangle runs from vertex i + 1 to vertex i + 2 (modulo 3). The handle 4 f + i names edge i of
+ *     triangle f; mate[i] is the handle of the same edge in the triangle on its other side.
+ * I3  No triangle has area 0. Triangles may lie in one plane, and a vertex may be inside a facet or an edge of the
+ *     polytope: hull_faces.c finds the facets.
  * I4  At positions that several records share, the vertex is the first record that was inserted. */
 #ifndef BRIO_HULL_POLYTOPE_H
 #define BRIO_HULL_POLYTOPE_H

@@ -1,5 +1,5 @@
-/* How much is read, written and handed on at once. All chosen; builds for tests have less, so that small files have several
- * blocks, and a fault can come between any two parts of them. */
+/* How much is read, written and handed on at once. All chosen; builds for tests have less, so that small files have
+ * several blocks, and a fault can come between any two parts of them. */
 #ifndef BRIO_IO_BLOCKS_H
 #define BRIO_IO_BLOCKS_H
 

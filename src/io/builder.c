@@ -38,7 +38,8 @@ bool brio_salvage(brio_builder *b, brio_stream *s, uint64_t before, bool points,
 /* --- places of scanners --- */
 
 /* Places of scanners as properties of the points that they saw. A place is written for each point: points are then
- * complete in blocks, however many scans a file has, and the properties pass through all that properties pass through. */
+ * complete in blocks, however many scans a file has, and the properties pass through all that properties pass
+ * through. */
 
 static const char *const NAMES[] = {"x_origin", "y_origin", "z_origin"};
 

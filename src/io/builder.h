@@ -94,14 +94,14 @@ brio_status brio_builder_property(brio_builder *b, const char *name, brio_scalar
 /** Makes a name that no property has: SOURCE, or SOURCE_2, SOURCE_3 and so on, cut in whole characters.
  *  source  any bytes; those that are no UTF-8 are taken for Latin-1 */
 void brio_builder_new_name(brio_builder *b, const char *source, char name[64]);
-/** Makes the name of number `which` of the `count` numbers that SOURCE is the name of: as above, of SOURCE_WHICH if there
- *  are several. */
+/** Makes the name of number `which` of the `count` numbers that SOURCE is the name of: as above, of SOURCE_WHICH if
+ *  there are several. */
 void brio_builder_component_name(brio_builder *b, const char *source, uint64_t which, uint64_t count, char name[64]);
 /** Adds a property whose values are in `data`. The mesh takes the block; on failure the function frees the block. */
 brio_status brio_builder_adopt_property(brio_builder *b, const char *name, brio_scalar type, void *data);
-/** Adds a property of the faces, one of at most BRIO_MOST_NUMBERS. Faces that are there already, and new ones, have 0 until
- *  the caller sets their values. The name may be taken by no other property of the faces: brio_builder_new_face_name.
- *  The property is b->mesh->face_properties[which], with `which` their number before. */
+/** Adds a property of the faces, one of at most BRIO_MOST_NUMBERS. Faces that are there already, and new ones, have 0
+ *  until the caller sets their values. The name may be taken by no other property of the faces:
+ *  brio_builder_new_face_name. The property is b->mesh->face_properties[which], with `which` their number before. */
 brio_status brio_builder_face_property(brio_builder *b, const char *name, brio_scalar type);
 /** Makes a name that no property of the faces has: SOURCE, or SOURCE_2 and so on; as brio_builder_new_name. */
 void brio_builder_new_face_name(const brio_builder *b, const char *source, char name[64]);
@@ -124,8 +124,8 @@ brio_status brio_builder_finish(brio_builder *b);
 
 /* Keeps the whole rows of a file that ends early, where the caller asked for that (brio_builder.salvage). */
 
-/** Looks at the row s->row that was read, or could not be, because the file ended within it. A last line without its end is
- *  such a row unless the file announces no row behind it: its last number may have lost digits.
+/** Looks at the row s->row that was read, or could not be, because the file ended within it. A last line without its
+ *  end is such a row unless the file announces no row behind it: its last number may have lost digits.
  *  before  the number of vertices before the row; what the row added disappears.
  *  points  whether the rows are the points, which b->missing then counts; other rows are named as left out.
  *  status  of the row; becomes that of this function if the row is given up.
@@ -136,9 +136,9 @@ bool brio_salvage(brio_builder *b, brio_stream *s, uint64_t before, bool points,
 
 /* Places of scanners as properties of the points that they saw. */
 
-/** Adds the properties x_origin, y_origin, z_origin (float64), if the caller asked for them (brio_read_options.origins) and
- *  the file has none of these names. Call once all other properties are there, before the first vertex or with all of
- *  them NaN. Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+/** Adds the properties x_origin, y_origin, z_origin (float64), if the caller asked for them (brio_read_options.origins)
+ *  and the file has none of these names. Call once all other properties are there, before the first vertex or with all
+ *  of them NaN. Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_plan_origins(brio_builder *b);
 
 /** Gives the mesh's vertices from `first` on their place. Does nothing if there is no such property.

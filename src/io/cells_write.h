@@ -9,7 +9,7 @@ static inline uint64_t brio_cells_num_faces(const brio_cells *cells, size_t c) {
     return cells->face_offsets[c + 1] - cells->face_offsets[c];
 }
 
-/** comment  NULL: none. */
+/** Writes cells as VTU.   comment  NULL: none. */
 brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, const char *comment);
 
 #endif

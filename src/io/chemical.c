@@ -81,7 +81,7 @@ static bool is_count(const char *line) {
     return !*skip_blanks(p);
 }
 
-/* Whether a row begins with a word and three numbers. */
+/* Returns whether a row begins with a word and three numbers. */
 static bool is_atom(const char *line, bool *symbol) {
     const char *p = skip_blanks(line);
     double value;
@@ -95,7 +95,8 @@ static bool is_atom(const char *line, bool *symbol) {
     return true;
 }
 
-/* Whether a comment cannot be a row of points, a comment of a text of points, or a line of three names or more. */
+/* Returns whether a comment cannot be a row of points, a comment of a text of points, or a line of three names or
+ * more. */
 static bool is_prose(const char *line) {
     double value;
     size_t words = 0, others = 0;

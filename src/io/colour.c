@@ -1,8 +1,8 @@
 /* Colours and normals: their names, their depth, and the change of depth from format to format.
  *
- * From 16 to 8 bits a value loses its lower byte: writers of 16 bits multiply bytes by 256, as the LAS specification says, or
- * by 257, and both come back exactly so. From 8 to 16 bits a value is multiplied by 257, so that white stays white.
- * Floating-point numbers from 0 to 1 are rounded to the nearest of the 256 or 65536 values. */
+ * From 16 to 8 bits a value loses its lower byte: writers of 16 bits multiply bytes by 256, as the LAS specification
+ * says, or by 257, and both come back exactly so. From 8 to 16 bits a value is multiplied by 257, so that white stays
+ * white. Floating-point numbers from 0 to 1 are rounded to the nearest of the 256 or 65536 values. */
 #include "io/colour.h"
 #include "base/memory.h"
 #include "io/scalar.h"
@@ -18,9 +18,9 @@ enum { COLOUR, NORMAL, INTENSITY, KINDS, MOST = 4 };
 static const char *const usual[KINDS][MOST] = {{"red", "green", "blue", "alpha"}, {"nx", "ny", "nz"}, {"intensity"}};
 static const int needed[KINDS] = {3, 3, 1}; /* of the names; the others may be missing */
 
-/* Names by which programs know the same, in small letters and without signs. Rf, Gf and Bf go from 0 to 1 in CloudCompare,
- * which also writes scalar_NAME; diffuse_red is what old PLY files have, normal_x and color_r what PCL's users write; names
- * with numbers are the parts of an array. */
+/* Names by which programs know the same, in small letters and without signs. Rf, Gf and Bf go from 0 to 1 in
+ * CloudCompare, which also writes scalar_NAME; diffuse_red is what old PLY files have, normal_x and color_r what PCL's
+ * users write; names with numbers are the parts of an array. */
 static const struct {
     int kind;
     const char *names[MOST];
@@ -149,7 +149,8 @@ static void look(brio_colour_depth *plan, const brio_mesh *m) {
         }
 }
 
-/* Returns white of values in the range that was seen. Values a little over 1 that are no whole numbers are not bytes. */
+/* Returns white of values in the range that was seen. Values a little over 1 that are no whole numbers are not
+ * bytes. */
 static double seen_white(const brio_colour_depth *plan, brio_scalar type) {
     if (plan->least < 0 || plan->most > WORD) return 0;
     if (is_real(type) && (plan->most <= UNIT || (plan->fraction && plan->most < 2))) return UNIT;
@@ -210,7 +211,7 @@ static double changed(brio_colour_depth *plan, double x, double white) {
     return fmin(step, white);
 }
 
-/* A guess by the first block holds as long as no value shows that white is more. */
+/* Checks a guess of the depth. A guess by the first block holds as long as no value shows that white is more. */
 static brio_status check_guess(brio_context *ctx, brio_colour_depth *plan, const brio_mesh *m) {
     brio_channels c = brio_colour_of(m);
     double guess = plan->white;

@@ -1,4 +1,5 @@
-/* One rule for colours and normals: by which names they are known, how deep colours are, and what a format holds of them.
+/* One rule for colours and normals: by which names they are known, how deep colours are, and what a format holds of
+ * them.
  *
  * A colour is the properties red, green, blue, and alpha if its type is theirs. Its depth is what white is in them: 1,
  * 255 or 65535. Bytes have 8 bits, uint16 has 16 unless the metadata colour.depth says "8". In all other types the
@@ -21,8 +22,8 @@ brio_channels brio_normal_of(const brio_mesh *m);
 /** Returns whether a property is one of the channels. */
 bool brio_channels_have(const brio_channels *c, const brio_property *p);
 
-/** Gives colours, normals and intensities their usual names, red green blue alpha, nx ny nz, intensity, where all of them
- *  are there under other names that are known, such as R G B or normal_x normal_y normal_z. */
+/** Gives colours, normals and intensities their usual names, red green blue alpha, nx ny nz, intensity, where all of
+ *  them are there under other names that are known, such as R G B or normal_x normal_y normal_z. */
 void brio_colour_name(brio_mesh *m);
 
 typedef enum {
@@ -52,12 +53,13 @@ typedef struct brio_colour_plan {
     brio_colour_depth points, faces;
 } brio_colour_plan;
 
-/** Returns whether the depth of the colours of a mesh's points shows only in all values of the file, and is not known yet. */
+/** Returns whether the depth of the colours of a mesh's points shows only in all values of the file, and is not known
+ *  yet. */
 bool brio_colour_is_open(const brio_colour_plan *plan, const brio_mesh *m);
 /** Takes note of the values of a block. */
 void brio_colour_look(brio_colour_plan *plan, const brio_mesh *m);
-/** Makes a view of a mesh whose colours are those of the format; everything else is the mesh's own. Without `looked` the
- *  depth is the one that the first mesh shows.
+/** Makes a view of a mesh whose colours are those of the format; everything else is the mesh's own. Without `looked`
+ *  the depth is the one that the first mesh shows.
  *  shown  valid as long as the mesh; call brio_colour_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_FORMAT (the depth was guessed, and this block has deeper colours), BRIO_ERR_NO_MEMORY. */
 brio_status brio_colour_show(brio_context *ctx, brio_colour_plan *plan, const brio_mesh *m, brio_mesh *shown);

@@ -1,8 +1,8 @@
-/* Finds the code and the name of a coordinate system. Neither text nor keys are interpreted beyond that: brio computes in
- * the coordinates that the file has.
+/* Finds the code and the name of a coordinate system. Neither text nor keys are interpreted beyond that: brio computes
+ * in the coordinates that the file has.
  *
- * Based on: OGC. Geographic information: well-known text representation of coordinate reference systems. 2019. OGC. GeoTIFF
- * standard 1.1. 2019. */
+ * Based on: OGC. Geographic information: well-known text representation of coordinate reference systems. 2019. OGC.
+ * GeoTIFF standard 1.1. 2019. */
 #include "io/crs.h"
 #include "base/utf8.h"
 #include "io/little_endian.h"
@@ -41,7 +41,8 @@ static bool is_word(const char *at, const char *word) {
     return !strncmp(at, word, length) && (at[length] == '[' || at[length] == '(');
 }
 
-/* Copies the code of the system between two brackets: from the AUTHORITY[...] or ID[...] of the whole system, not of one of its parts. */
+/* Copies the code of the system between two brackets: from the AUTHORITY[...] or ID[...] of the whole system, not of
+ * one of its parts. */
 static bool copy_code(const char *open, const char *end, char text[TEXT]) {
     char authority[TEXT];
     int depth = 0;

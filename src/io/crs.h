@@ -20,7 +20,8 @@ enum {
 
 /** Goes to the next record of "crs.geokeys" or "las.records".
  *  at      0 before the first record; then behind the record that was found.
- *  header  receives the record's header, which the `size` bytes of the record follow.   Returns whether there is one. */
+ *  header  receives the record's header, which the `size` bytes of the record follow.   Returns whether there is
+ *          one. */
 bool brio_record_next(const brio_metadata *records, size_t *at, const char **header, size_t *size);
 
 /** Adds crs.code and crs.name to a mesh whose crs.wkt or crs.geokeys tell them; the text counts first.

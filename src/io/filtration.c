@@ -1,7 +1,8 @@
 /* Filtrations as text: for GUDHI all simplices, for ripser the edges as a sparse distance matrix.
  *
  * Based on: GUDHI's file formats (simplex tree), https://gudhi.inria.fr/doc/latest/fileformats.html.
- *           Bauer. Ripser: efficient computation of Vietoris-Rips persistence barcodes. J. Appl. Comput. Topol. 2021. */
+ *           Bauer. Ripser: efficient computation of Vietoris-Rips persistence barcodes. J. Appl. Comput. Topol.
+ *           2021. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "io/output.h"

@@ -1,5 +1,5 @@
-/* What is known of each format, in one table: all that needs a format's name, its extensions, its beginning, its reader, its
- * writer or what it can hold asks here. */
+/* What is known of each format, in one table: all that needs a format's name, its extensions, its beginning, its
+ * reader, its writer or what it can hold asks here. */
 #include "io/row_format.h"
 #include "mesh/properties.h"
 #include <stdio.h>

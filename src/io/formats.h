@@ -18,7 +18,7 @@ typedef struct brio_write_job {
 } brio_write_job;
 
 brio_status brio_ply_read(brio_stream *s, brio_builder *b);
-/* columns  the names of the columns that the caller gives (brio_read_options), or NULL */
+/* Reads a text of points.   columns  the names of the columns that the caller gives (brio_read_options), or NULL */
 brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns);
 brio_status brio_obj_read(brio_stream *s, brio_builder *b);
 brio_status brio_off_read(brio_stream *s, brio_builder *b);
@@ -118,7 +118,8 @@ bool brio_npy_starts(const char *bytes, size_t size);
 bool brio_glb_starts(const char *bytes, size_t size);
 bool brio_e57_starts(const char *bytes, size_t size);
 bool brio_npz_starts(const char *bytes, size_t size);
-/* Only asked of what is called .xyz, and of standard input: other texts are not so far from it. */
+/* Returns whether the first bytes are those of a chemical file. Only asked of what is called .xyz, and of standard
+ * input: other texts are not so far from it. */
 bool brio_chemical_starts(const char *bytes, size_t size);
 
 /** Returns whether this build can compress VTU and VTP. */

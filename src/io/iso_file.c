@@ -22,7 +22,7 @@ static bool has_extension(const char *path, const char *const *extensions) {
     return false;
 }
 
-/* Content before extension; standard input that is no map is taken for atoms. */
+/* Finds the kind, by content before extension; standard input that is no map is taken for atoms. */
 static brio_status find_kind(brio_stream *s, const char *path, bool *is_map) {
     static const char *const maps[] = {".map", ".mrc", ".ccp4", NULL}, *const atoms[] = {".pdb", ".ent", NULL};
     BRIO_FORWARD(brio_stream_fill(s, MAP_WORD + 4));

@@ -1,6 +1,6 @@
-/* What a file can claim, and how much of it is believed: one limit and one function for each count that costs more than the
- * bytes that claim it. A reader asks before it acts on the claim, so that time and memory stay linear in the size of the
- * file. Counts of rows need no limit here: brio_stream_expect compares them with the size of the file.
+/* What a file can claim, and how much of it is believed: one limit and one function for each count that costs more than
+ * the bytes that claim it. A reader asks before it acts on the claim, so that time and memory stay linear in the size
+ * of the file. Counts of rows need no limit here: brio_stream_expect compares them with the size of the file.
  *
  * All limits are chosen: far above what programs write, far below what hurts.
  *
@@ -31,8 +31,8 @@ brio_status brio_limit_elements(brio_context *ctx, const char *name, size_t line
 /** Refuses texts that nest deeper than BRIO_MOST_LEVELS.   what  such as "the JSON". */
 brio_status brio_limit_levels(brio_context *ctx, const char *name, const char *what, uint64_t levels);
 
-/** Refuses a text whose rows lack far more numbers than are there, which a few wide rows among many short ones cause: each
- *  number that is lacking takes as much memory as one that is there. */
+/** Refuses a text whose rows lack far more numbers than are there, which a few wide rows among many short ones cause:
+ *  each number that is lacking takes as much memory as one that is there. */
 brio_status brio_limit_lacking(brio_context *ctx, const char *name, size_t line, uint64_t lacking, uint64_t there);
 
 /** Refuses a file of `bytes` bytes whose parts, used several times, make too many numbers.   what  has the numbers. */

@@ -170,9 +170,7 @@ static brio_status ele_write(brio_output *out, const brio_write_job *job) {
 /* Writes TetGen's set of files: .node, .ele, and where they are asked for .neigh, .face and .edge.
  *
  * Rows count from 0 in all of them. Neighbours are found from the tetrahedra, so that tetrahedra from anywhere have
- * them.
- *
- * Based on: Si. TetGen user's manual, section 5.2. WIAS 2015. */
+ * them. */
 
 typedef struct {
     const brio_write_job *job;
@@ -206,14 +204,15 @@ static brio_status write_neighbours(brio_output *out, const node_job *job) {
     return BRIO_OK;
 }
 
-/* A row of indices between the row's number and its marker. */
+/* Writes a row of indices between the row's number and its marker. */
 static brio_status write_row(brio_output *out, size_t row, const uint32_t *vertices, int count, bool hull) {
     BRIO_FORWARD(brio_output_integer(out, 0, (int64_t)row));
     for (int i = 0; i < count; i++) BRIO_FORWARD(brio_output_integer(out, ' ', vertices[i]));
     return brio_output_string(out, hull ? " 1\n" : " 0\n");
 }
 
-/* A facet is written for the first of its two tetrahedra. BRIO_INFINITE is greater than all. */
+/* Returns whether a facet is written here: a facet is written for the first of its two tetrahedra. BRIO_INFINITE is
+ * greater than all. */
 static bool is_written(const node_job *job, size_t facet) {
     return job->neighbours[facet] > facet / 4;
 }

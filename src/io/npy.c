@@ -1,7 +1,8 @@
 /* NPY files of NumPy: an array of rows, or of records with names.
  *
- * Rows have three or more numbers: x, y, z, and properties column4, column5, ... Records have fields x, y, z or X, Y, Z, or
- * one field of three numbers such as xyz; all other fields of numbers are properties. Integers of 64 bits become doubles. An array in Fortran's order is one column after the other.
+ * Rows have three or more numbers: x, y, z, and properties column4, column5, ... Records have fields x, y, z or X, Y,
+ * Z, or one field of three numbers such as xyz; all other fields of numbers are properties. Integers of 64 bits become
+ * doubles. An array in Fortran's order is one column after the other.
  *
  * Based on: NumPy enhancement proposal 1: a simple file format for NumPy arrays. 2007. */
 #include "base/memory.h"
@@ -21,7 +22,7 @@ bool brio_npy_starts(const char *bytes, size_t size) {
 
 /* --- reading --- */
 
-/* The letters of the coordinates' fields: PDAL writes X, Y, Z. */
+/* Returns the letters of the coordinates' fields: PDAL writes X, Y, Z. */
 static const char *letters_of(const brio_npy_header *h) {
     for (size_t i = 0; i < h->num_fields; i++)
         if (h->fields[i].name[0] >= 'x' && h->fields[i].name[0] <= 'z' && !h->fields[i].name[1]) return "xyz";

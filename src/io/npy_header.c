@@ -42,7 +42,7 @@ static bool take(parser *p, char c) {
     return true;
 }
 
-/* The quote that ends a string, or NULL. Behind a backslash it is one of its characters. */
+/* Returns the quote that ends a string, or NULL. Behind a backslash it is one of its characters. */
 static const char *end_of_string(const char *at, char quote) {
     while (*at && *at != quote) at += *at == '\\' && at[1] ? 2 : 1;
     return *at ? at : NULL;
@@ -121,7 +121,8 @@ static brio_status add_field(parser *p, brio_npy_header *h, const char *name, co
     return BRIO_OK;
 }
 
-/* The bytes of a type that is no number of a property, such as <U8, |S4, <M8[ns] or <f2; 0 if they are not known. */
+/* Returns the bytes of a type that is no number of a property, such as <U8, |S4, <M8[ns] or <f2; 0 if they are not
+ * known. */
 static size_t size_of_other(const char *type) {
     const char *digits = type + 2;
     uint64_t count;
@@ -169,8 +170,9 @@ static brio_status take_elements(parser *p, uint64_t *count) {
     return BRIO_OK;
 }
 
-/* Reads [('x', '<f8'), ...]. Names are Latin-1 in versions 1.0 and 2.0, UTF-8 in 3.0 and as brio 0.1 wrote them: builder.h takes
- * either. A field without a name is padding in NumPy, which writes it as bytes '|V4'. A field with a title has both as a pair. */
+/* Reads [('x', '<f8'), ...]. Names are Latin-1 in versions 1.0 and 2.0, UTF-8 in 3.0 and as brio 0.1 wrote them:
+ * builder.h takes either. A field without a name is padding in NumPy, which writes it as bytes '|V4'. A field with a
+ * title has both as a pair. */
 static brio_status take_records(parser *p, brio_npy_header *h) {
     char name[64], type[64];
     brio_npy_field number;

@@ -17,8 +17,8 @@ bool brio_parse_number(const char **text, double *value);
  *  exceed 2^64 - 1. */
 bool brio_parse_count(const char **text, uint64_t *value);
 
-/** Returns whether a number's text, of digits alone behind a sign, is a whole number that `value`, which was read from it,
- *  does not hold. */
+/** Returns whether a number's text, of digits alone behind a sign, is a whole number that `value`, which was read from
+ *  it, does not hold. */
 bool brio_is_rounded(const char *text, size_t length, double value);
 
 /** Print a number without a 0 at its end, and return its length.   text  room for BRIO_NUMBER_LENGTH bytes. */

@@ -1,11 +1,11 @@
 /* Wavefront OBJ: reads vertices with their colours, their normals, and faces; writes the same.
  *
- * A vertex may have a colour behind its coordinates, as most programs write it, or in the comments #MRGB of ZBrush, which
- * follow the vertices. Colours go from 0 to 1; a file with one beyond 1 has bytes. A vertex without a colour beside others
- * that have one is white.
+ * A vertex may have a colour behind its coordinates, as most programs write it, or in the comments #MRGB of ZBrush,
+ * which follow the vertices. Colours go from 0 to 1; a file with one beyond 1 has bytes. A vertex without a colour
+ * beside others that have one is white.
  *
- * Normals belong to corners. They become nx, ny, nz of the vertices where all corners at a vertex have one normal. In a file
- * without faces normal i is that of vertex i. Whatever else is in the file is named as left out.
+ * Normals belong to corners. They become nx, ny, nz of the vertices where all corners at a vertex have one normal. In a
+ * file without faces normal i is that of vertex i. Whatever else is in the file is named as left out.
  *
  * Based on: Wavefront Technologies. Object files (.obj). Advanced Visualizer Manual, appendix B1. */
 #include "base/memory.h"
@@ -137,7 +137,7 @@ static brio_status read_painted(obj_reader *r, const char *digits) {
     return BRIO_OK;
 }
 
-/* The colours of #MRGB are those of the vertices if there are as many. */
+/* Ends the colours. The colours of #MRGB are those of the vertices if there are as many. */
 static brio_status end_painted(obj_reader *r) {
     static const char *const names[] = {"red", "green", "blue"};
     brio_mesh *m = r->builder->mesh;

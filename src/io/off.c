@@ -1,10 +1,11 @@
-/* OFF, the Object File Format of Geomview. Reads OFF and its variants with normals (N), colours (C) and texture coordinates
- * (ST) of the vertices, which become properties, as text and binary. Colours of faces are three or four numbers behind the
- * corners: bytes, or from 0 to 1; faces without one have NaN. An index in a table of colours is passed over, and said so.
+/* OFF, the Object File Format of Geomview. Reads OFF and its variants with normals (N), colours (C) and texture
+ * coordinates (ST) of the vertices, which become properties, as text and binary. Colours of faces are three or four
+ * numbers behind the corners: bytes, or from 0 to 1; faces without one have NaN. An index in a table of colours is
+ * passed over, and said so.
  *
  * A binary file has the keyword and BINARY in its first line. Behind it are integers and floats of 32 bits, the most
- * significant byte first, in the order of the text; a vertex's colour is four floats, and behind the corners of a face is
- * the number of its colour's floats.
+ * significant byte first, in the order of the text; a vertex's colour is four floats, and behind the corners of a face
+ * is the number of its colour's floats.
  *
  * Based on: Phillips et al. Geomview manual, section 4.2.5. The Geometry Center 1992. */
 #include "base/memory.h"
@@ -24,7 +25,8 @@ typedef struct {
     size_t num_extra; /* numbers behind the coordinates of a vertex */
 } off_kind;
 
-/* Reads the keyword at p, whose letters may come in any order. Returns the place behind it, or NULL if there is none. */
+/* Reads the keyword at p, whose letters may come in any order. Returns the place behind it, or NULL if there is
+ * none. */
 static const char *scan_keyword(const char *p, off_kind *kind) {
     *kind = (off_kind){.num_extra = 0};
     for (;;) {
@@ -133,8 +135,8 @@ static brio_status read_vertex(brio_text *t, brio_builder *b, off_kind *kind) {
     return BRIO_OK;
 }
 
-/* Gives the face that was added last its colour, 3 or 4 numbers or none; all other numbers are left out. The first colour
- * decides whether there is an alpha. */
+/* Gives the face that was added last its colour, 3 or 4 numbers or none; all other numbers are left out. The first
+ * colour decides whether there is an alpha. */
 static brio_status keep_face_colour(brio_builder *b, const double *numbers, size_t count) {
     static const char *const names[] = {"red", "green", "blue", "alpha"};
     const brio_mesh *m = b->mesh;

@@ -1,7 +1,7 @@
 /* Buffered output to a file that appears only when it is complete.
  *
- * target.c finds the file. A target that is no regular file, or is open already, is written in place. The reader of a pipe may never be
- * ready: such an output waits in wait.h, where the caller can cancel. */
+ * target.c finds the file. A target that is no regular file, or is open already, is written in place. The reader of a
+ * pipe may never be ready: such an output waits in wait.h, where the caller can cancel. */
 #define _GNU_SOURCE
 #include "io/output.h"
 #include "base/memory.h"

@@ -16,7 +16,8 @@
  * A control byte below 32 announces that many bytes and one. Otherwise its upper three bits are a length (7: the next
  * byte adds to it), and its lower five bits and the next byte the distance. Copies may overlap what they make.
  *
- * The compressor remembers where it last saw each three bytes, by a hash of them, and copies from there if they are the same.
+ * The compressor remembers where it last saw each three bytes, by a hash of them, and copies from there if they are the
+ * same.
  *
  * Based on: Lehmann. LibLZF's format. 2000. */
 

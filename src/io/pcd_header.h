@@ -24,8 +24,8 @@ static inline size_t brio_lzf_room(size_t count) {
 
 enum { BRIO_LZF_TABLE = 1 << 14 };
 
-/** Compresses bytes.   count  below 2^32.   out  brio_lzf_room(count) bytes.   table  BRIO_LZF_TABLE numbers, workspace.
- *  Returns the size of what was written. */
+/** Compresses bytes.   count  below 2^32.   out  brio_lzf_room(count) bytes.   table  BRIO_LZF_TABLE numbers,
+ *  workspace. Returns the size of what was written. */
 size_t brio_lzf_compress(const uint8_t *bytes, size_t count, uint8_t *out, uint32_t *table);
 
 /* --- the header --- */

@@ -1,8 +1,8 @@
 /* Writes PCD files: binary, text, or compressed by LZF.
  *
- * Colours of bytes are packed into the field rgb (rgba with alpha), and normals have the names of PCL. All other properties are
- * fields of their types and names. Compressed data have all numbers of a field before those of the next one, so they are in
- * memory until the end; they hold 4 GiB at most.
+ * Colours of bytes are packed into the field rgb (rgba with alpha), and normals have the names of PCL. All other
+ * properties are fields of their types and names. Compressed data have all numbers of a field before those of the next
+ * one, so they are in memory until the end; they hold 4 GiB at most.
  *
  * Based on: Rusu Cousins. 3D is here: Point Cloud Library. ICRA 2011; PCL's description of the format, version 0.7. */
 #include "base/memory.h"
@@ -67,7 +67,8 @@ static brio_status plan(brio_output *out, const brio_write_job *job, pcd_writer 
     return BRIO_OK;
 }
 
-/* PCL's reader takes rgb and rgba for packed colours, and _ for bytes to skip. */
+/* Returns whether a name has a meaning of PCL's: its reader takes rgb and rgba for packed colours, and _ for bytes to
+ * skip. */
 static bool is_reserved(const char *name) {
     return !strcmp(name, "rgb") || !strcmp(name, "rgba") || !strcmp(name, "_");
 }
@@ -84,7 +85,8 @@ static brio_status write_name(brio_output *out, const brio_write_job *job, const
     return brio_output_format(out, " %s", job->names[f->from]);
 }
 
-/* A text has packed colours as whole numbers; in binary data PCL's rgb is a float and its rgba an integer. */
+/* Returns the letter of a type. A text has packed colours as whole numbers; in binary data PCL's rgb is a float and its
+ * rgba an integer. */
 static char letter_of(const brio_write_job *job, const pcd_writer *w, const pcd_field *f) {
     if (f->kind == FIELD_AXIS) return 'F';
     if (f->kind == FIELD_COLOUR) return w->colour.count == 4 || job->options->ascii ? 'U' : 'F';

@@ -49,8 +49,8 @@ typedef struct brio_ply_header {
 /** Returns PLY's name of a scalar type. */
 const char *brio_ply_type_name(brio_scalar type);
 
-/** Reads the header and, unless the file may end early, checks that it is large enough for what the header announces. Call
- *  brio_ply_header_free even if this fails.
+/** Reads the header and, unless the file may end early, checks that it is large enough for what the header announces.
+ *  Call brio_ply_header_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_ply_header_read(brio_stream *s, bool may_end_early, brio_ply_header *header);
 void brio_ply_header_free(brio_context *ctx, brio_ply_header *header);

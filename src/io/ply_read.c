@@ -1,8 +1,8 @@
 /* Reads PLY files: text, little and big endian.
  *
  * Each element is read in one of three ways. Binary rows of fixed size are read block by block: vertices are converted
- * column by column, and other elements are skipped, except edges. All other rows are read scalar by scalar, whatever their
- * lists and encoding.
+ * column by column, and other elements are skipped, except edges. All other rows are read scalar by scalar, whatever
+ * their lists and encoding.
  *
  * Based on: Turk. The PLY polygon file format. Stanford 1994. */
 #include "base/memory.h"
@@ -99,7 +99,7 @@ static brio_status plan_of_faces(brio_builder *b, const brio_ply_header *header,
     return BRIO_OK;
 }
 
-/* Edges are read if both their ends are there. */
+/* Plans an edge. Edges are read if both their ends are there. */
 static void plan_edge(brio_ply_element *e) {
     brio_ply_property *ends[2] = {NULL, NULL};
     for (size_t i = 0; i < e->num_properties; i++) {

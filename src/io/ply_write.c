@@ -48,8 +48,8 @@ static brio_status write_count(brio_output *out, const brio_write_job *job, ply_
     return brio_output_string(out, text);
 }
 
-/* Writes the coordinate system as comments of at most CRS_LINE bytes, which readers with short lines take. No line ends with
- * a blank, which some of them drop. */
+/* Writes the coordinate system as comments of at most CRS_LINE bytes, which readers with short lines take. No line ends
+ * with a blank, which some of them drop. */
 static brio_status write_crs(brio_output *out, const brio_mesh *m) {
     enum { CRS_LINE = 200 };
     const brio_metadata *crs = brio_mesh_metadata(m, "crs.wkt");

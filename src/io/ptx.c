@@ -1,8 +1,8 @@
 /* Reads PTX files: scans as grids of rows, each scan with its own position.
  *
- * A scan begins with the numbers of columns and rows, the scanner's position and axes, and a matrix of 4 by 4 by which a
- * row (x, y, z, 1) is multiplied. A point at the origin is a place without a return and is left out. Points go column by
- * column.
+ * A scan begins with the numbers of columns and rows, the scanner's position and axes, and a matrix of 4 by 4 by which
+ * a row (x, y, z, 1) is multiplied. A point at the origin is a place without a return and is left out. Points go column
+ * by column.
  *
  * Based on: Leica Geosystems. Description of the PTX format. */
 #include "io/formats.h"

@@ -1,8 +1,9 @@
-/* Writes PTX files: the points of each scanner's place as a scan, in rows and columns where their places in a grid are known.
+/* Writes PTX files: the points of each scanner's place as a scan, in rows and columns where their places in a grid are
+ * known.
  *
  * All points are seen before the first one is written, for the scans (scans.h) and their grids. A scan whose points go
- * column by column is written as its grid, with lines of zeros where no point is; any other one as a grid of one row. The
- * matrix moves by the scanner's place and does not turn.
+ * column by column is written as its grid, with lines of zeros where no point is; any other one as a grid of one row.
+ * The matrix moves by the scanner's place and does not turn.
  *
  * Based on: Leica Geosystems. Description of the PTX format. */
 #include "base/memory.h"

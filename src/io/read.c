@@ -18,7 +18,7 @@ static const char *extension_of(const char *path) {
     return dot ? dot + 1 : name;
 }
 
-/* Whether the extension of a name, which may have .gz or .zst behind it, is the one wanted. */
+/* Returns whether the extension of a name, which may have .gz or .zst behind it, is the one wanted. */
 static bool has_extension(const char *path, const char *wanted) {
     size_t stem = brio_unpacked_length(path), length = strlen(wanted);
     if (stem == strlen(path)) return !strcasecmp(extension_of(path), wanted);
@@ -58,7 +58,8 @@ brio_status brio_sibling(brio_context *ctx, const char *path, const char *extens
 }
 
 /* Finds the format by the content or, failing that, the extension. What has no name (standard input, "-") and is in no
- * known format is read as rows of numbers; so is a file .xyz whose columns have names from the caller, whatever its first line. */
+ * known format is read as rows of numbers; so is a file .xyz whose columns have names from the caller, whatever its
+ * first line. */
 static brio_status find_format(brio_stream *s, const char *path, brio_read_job *job) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_stream_fill(s, START));

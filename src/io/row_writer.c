@@ -100,8 +100,8 @@ static bool is_taken(char (*names)[64], size_t count, const char *name) {
     return false;
 }
 
-/* A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole fits: no result of long work is
- * refused for a name. */
+/* Makes the names of the properties. A name that is taken gets _2, _3 and so on behind it, and is cut so that the whole
+ * fits: no result of long work is refused for a name. */
 static brio_status make_names(const brio_row_writer *w, const char *path, const brio_property *of, size_t count,
                               bool (*reserved)(const char *name), char (**out)[64]) {
     BRIO_FORWARD(BRIO_ALLOC(w->ctx, *out, count));
@@ -149,7 +149,8 @@ brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_form
     return brio_zeroed(ctx, &w->state, 1, w->format->state + 1);
 }
 
-/* Another pass over a file that somebody replaced can have other properties: what was planned is then of no use. */
+/* Takes a block. Another pass over a file that somebody replaced can have other properties: what was planned is then of
+ * no use. */
 static brio_status take_block(brio_row_writer *w, const brio_mesh *block) {
     if (!w->shown) w->columns = block->num_properties;
     w->shown = true;

@@ -30,7 +30,8 @@ typedef struct brio_scans {
     double moved;    /* writing: how far a point of the last block is at most from where a reader finds it */
 } brio_scans;
 
-/** The functions of a format (row_format.h) whose state begins with a brio_scans, as far as all such formats share them. */
+/** Do the work of a format (row_format.h) whose state begins with a brio_scans, as far as all such formats share
+ *  them. */
 brio_status brio_scans_survey(brio_context *ctx, const brio_write_job *job, void *state);
 uint64_t brio_scans_points(const void *state);
 bool brio_scans_round(const void *state);

@@ -1,8 +1,8 @@
 /* STL files: triangles as text or binary.
  *
  * The format has no vertices, only corners: corners at the same position become one vertex. Normals are passed
- * over, since they follow from the corners. Written are single-precision coordinates and the normals of the triangles; polygons of more corners are
- * cut into triangles from their first corner.
+ * over, since they follow from the corners. Written are single-precision coordinates and the normals of the triangles;
+ * polygons of more corners are cut into triangles from their first corner.
  *
  * A binary file may begin with the word "solid", too: what decides is whether its size is that of the triangles that it
  * announces, or, in a pipe, whether there is a byte 0 within its beginning.
@@ -202,7 +202,8 @@ typedef struct {
     float numbers[4][3];
 } triangle;
 
-/* The normal is computed from the rounded corners, scaled so that products neither overflow nor vanish. */
+/* Makes a triangle. The normal is computed from the rounded corners, scaled so that products neither overflow nor
+ * vanish. */
 static triangle make_triangle(const brio_mesh *m, const uint32_t *corners) {
     triangle t = {{{0}}};
     double edges[2][3], size = 0, normal[3], length = 0;

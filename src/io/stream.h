@@ -1,7 +1,7 @@
 /* A file, a pipe, bytes in memory or a part of another stream's file, read once from front to end through one buffer.
  * What is compressed by gzip or zstd is decompressed on the way (unpack.h): then all places are those of decompressed
- * data. The stream knows the byte offset, the line, and the row of the element that is being read, so that every message
- * can name them. It reports progress and can be cancelled.
+ * data. The stream knows the byte offset, the line, and the row of the element that is being read, so that every
+ * message can name them. It reports progress and can be cancelled.
  *
  * Pointers into the buffer are valid until the next call with the stream. All functions that return a status return
  * BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
@@ -40,12 +40,13 @@ typedef struct brio_stream {
 
 /** Opens a file; "-" is standard input. Call brio_stream_close even if this fails. */
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path);
-/** Opens bytes in memory; they are only read, and stay as they are until the stream is closed. Call brio_stream_close even
+/** Opens bytes in memory; they are only read, and stay as they are until the stream is closed. Call brio_stream_close
+ *  even
  *  if this fails.   name  for messages. */
 brio_status brio_stream_open_memory(brio_stream *s, brio_context *ctx, const char *name, const void *bytes,
                                     size_t size);
-/** Opens the bytes of another stream once more, from their front. The other stream's size is known and its bytes are not
- *  compressed; it must stay open and not move meanwhile. Call brio_stream_close even if this fails. */
+/** Opens the bytes of another stream once more, from their front. The other stream's size is known and its bytes are
+ *  not compressed; it must stay open and not move meanwhile. Call brio_stream_close even if this fails. */
 brio_status brio_stream_open_again(brio_stream *s, brio_stream *other);
 void brio_stream_close(brio_stream *s);
 
@@ -71,12 +72,12 @@ brio_status brio_stream_skip(brio_stream *s, uint64_t count);
 /** Returns the next line in *line, with a 0 in place of its end (LF or CR LF), or NULL at the end of the file. */
 brio_status brio_stream_line(brio_stream *s, char **line);
 
-/** Reads a pipe or a compressed file to its end into the buffer, so that its size is known and brio_stream_peek works; the
- *  buffer then has all of it and nothing may be taken before. Does nothing for a regular file and for memory. */
+/** Reads a pipe or a compressed file to its end into the buffer, so that its size is known and brio_stream_peek works;
+ *  the buffer then has all of it and nothing may be taken before. Does nothing for a regular file and for memory. */
 brio_status brio_stream_hold(brio_stream *s);
 
-/** Copies bytes from any place of a regular file, of memory, of a stream that brio_stream_hold read, or of a part that is not
- *  compressed, without moving it.
+/** Copies bytes from any place of a regular file, of memory, of a stream that brio_stream_hold read, or of a part that
+ *  is not compressed, without moving it.
  *  Fails if the file ends before. */
 brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_t size);
 

@@ -128,8 +128,8 @@ static bool take_permissions(int file, const struct stat *old) {
     return fchmod(file, old->st_mode & kept) == 0;
 }
 
-/* Returns a number that others cannot guess, so that they cannot take the temporary names before. Where the system has none
- * to give, the name is merely new: it is created, never opened. */
+/* Returns a number that others cannot guess, so that they cannot take the temporary names before. Where the system has
+ * none to give, the name is merely new: it is created, never opened. */
 static uint64_t unguessable(void) {
     uint64_t seed;
     if (getentropy(&seed, sizeof seed) == 0) return seed;
@@ -182,7 +182,8 @@ done:
     return status;
 }
 
-/* Gives a nameless file the name, if no other file has it, or else a temporary name: no call makes it replace a file. */
+/* Gives a nameless file the name, if no other file has it, or else a temporary name: no call makes it replace a
+ * file. */
 static bool give_name(brio_target *target, int file) {
     char path[PATH_BYTES];
     snprintf(path, sizeof path, OPEN_FILE, file);

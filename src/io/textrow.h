@@ -20,7 +20,7 @@ typedef struct brio_excerpt {
 } brio_excerpt;
 brio_excerpt brio_excerpt_of(const char *word);
 
-/** Whether a comment begins here in a text of points. */
+/** Returns whether a comment begins here in a text of points. */
 static inline bool brio_starts_comment(const char *p) {
     return *p == '#' || *p == '%' || (*p == '/' && p[1] == '/');
 }

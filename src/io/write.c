@@ -21,7 +21,7 @@ brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format
     return BRIO_OK;
 }
 
-/* As many as the readers take, which must not believe every header. */
+/* Checks that properties are at most as many as the readers take, which must not believe every header. */
 brio_status brio_check_properties(brio_context *ctx, const char *path, brio_format format, size_t count) {
     const brio_format_info *info = brio_format_facts(format);
     BRIO_EXPECT(ctx, !info->most_properties || count <= info->most_properties, BRIO_ERR_ARGUMENT,

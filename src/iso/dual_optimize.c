@@ -1,10 +1,11 @@
 /* Sharp edges of iso-surfaces, by moving dual and primal vertices in turn.
  *
- * Each triangle has a dual vertex: its centroid, moved along the gradient onto the zero set, with the normal there. Each
- * vertex moves to the point of least squared distance from the tangent planes at the dual vertices of its triangles. On
- * a crease these planes have two directions, at a corner three. The least squares are solved in the directions in which
- * the planes determine the point; in the others the vertex takes the mean of its dual vertices, which evens the mesh
- * out. Where the surface is strongly curved the planes meet beside it; so vertices are moved onto the zero set last.
+ * Each triangle has a dual vertex: its centroid, moved along the gradient onto the zero set, with the normal there.
+ * Each vertex moves to the point of least squared distance from the tangent planes at the dual vertices of its
+ * triangles. On a crease these planes have two directions, at a corner three. The least squares are solved in the
+ * directions in which the planes determine the point; in the others the vertex takes the mean of its dual vertices,
+ * which evens the mesh out. Where the surface is strongly curved the planes meet beside it; so vertices are moved onto
+ * the zero set last.
  *
  * A triangle is turned over when its normal disagrees with the normal at its dual vertex. Vertices of such triangles
  * take their old places again, until no triangle is worse than before.
@@ -121,8 +122,9 @@ static bool is_tooth(const optimizer *o, size_t f, double *mean) {
     return false;
 }
 
-/* Along a crease, triangles that straddle it fall to one side or the other. Where they alternate, the vertices of both
- * sides would move onto the crease, and the triangles between would vanish. So teeth join their neighbours' side. */
+/* Joins teeth. Along a crease, triangles that straddle it fall to one side or the other. Where they alternate, the
+ * vertices of both sides would move onto the crease, and the triangles between would vanish. So teeth join their
+ * neighbours' side. */
 static void join_teeth(optimizer *o) {
     bool changed = true;
     for (int sweep = 0; sweep < MOST_SWEEPS && changed; sweep++) {

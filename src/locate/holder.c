@@ -1,6 +1,6 @@
-/* Point location in a finished triangulation: a walk from the last answer, or from a vertex that the k-d tree finds near
- * the query. The walk ends in some tetrahedron that holds the query. Which one depends on its start; the facets whose
- * planes hold the query lead to all the others.
+/* Point location in a finished triangulation: a walk from the last answer, or from a vertex that the k-d tree finds
+ * near the query. The walk ends in some tetrahedron that holds the query. Which one depends on its start; the facets
+ * whose planes hold the query lead to all the others.
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "locate/holder.h"
@@ -17,8 +17,8 @@
 /* Many queries at once: sorted along a Hilbert curve, so that each walk is short and the memory that it reads is in the
  * cache, and divided among threads. The queries are taken in blocks, which bounds the workspace. */
 
-/* FEWEST_SORTED, QUERIES_A_CHUNK, QUERIES_A_THREAD, BLOCK: chosen. SPARSE: chosen; where the locator has this many times
- * more vertices than there are queries, a query starts from the tree and not from the query before it. */
+/* FEWEST_SORTED, QUERIES_A_CHUNK, QUERIES_A_THREAD, BLOCK: chosen. SPARSE: chosen; where the locator has this many
+ * times more vertices than there are queries, a query starts from the tree and not from the query before it. */
 enum { FEWEST_SORTED = 32, QUERIES_A_CHUNK = 512, QUERIES_A_THREAD = 1024, BLOCK = 1 << 20, SPARSE = 16 };
 
 int brio_query_threads(brio_context *ctx, size_t count) {
@@ -50,8 +50,8 @@ static inline size_t query_at(const block_job *job, size_t i) {
     return job->begin + (job->items ? (size_t)(uint32_t)job->items[i] : i);
 }
 
-/* Takes the queries i, i + stride, ... before `end` in the order of the block. Returns false if one is not finite: all were
- * when the call began, but another thread of the caller may write to them. */
+/* Takes the queries i, i + stride, ... before `end` in the order of the block. Returns false if one is not finite: all
+ * were when the call began, but another thread of the caller may write to them. */
 static bool take_row(const block_job *job, size_t i, size_t stride, size_t end, brio_query_row *row) {
     const double *queries = job->batch->queries;
     for (row->count = 0; i < end && row->count < BRIO_ABREAST; i += stride) {
@@ -172,7 +172,7 @@ void brio_find_holders(brio_querent *q, const brio_query_row *row, brio_holder h
 
 /* --- the tetrahedra that share a facet, an edge or a vertex with the query on it --- */
 
-/* The two slots whose bits are not set, in ascending order. */
+/* Finds the two slots whose bits are not set, in ascending order. */
 static void other_slots(unsigned two, int *i, int *j) {
     unsigned rest = ~two & 15;
     *i = __builtin_ctz(rest);

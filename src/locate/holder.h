@@ -8,8 +8,8 @@
 
 /* Many queries at once: sorted along a Hilbert curve, divided among threads.
  *
- * A thread answers a row of queries at a time. The queries of a row are far from each other, and each is near the one in
- * its column in the row before. So the walks of a row do not wait for each other's memory. */
+ * A thread answers a row of queries at a time. The queries of a row are far from each other, and each is near the one
+ * in its column in the row before. So the walks of a row do not wait for each other's memory. */
 
 /** A row of queries. */
 typedef struct {

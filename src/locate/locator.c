@@ -1,5 +1,5 @@
-/* Makes the object that queries read (locator.h): sorts the vertices into a k-d tree, and copies the tetrahedra with the
- * places of their vertices. */
+/* Makes the object that queries read (locator.h): sorts the vertices into a k-d tree, and copies the tetrahedra with
+ * the places of their vertices. */
 #include "locate/locator.h"
 #include "base/float_state.h"
 #include "base/memory.h"
@@ -134,8 +134,8 @@ done:
 
 /* --- points in a plane --- */
 
-/* Whether all tetrahedra may be flat up to the rounding of coordinates: brio_plane_fit then decides. In usual triangulations
- * one of the first is not. */
+/* Returns whether all tetrahedra may be flat up to the rounding of coordinates: brio_plane_fit then decides. In usual
+ * triangulations one of the first is not. */
 static bool may_be_flat(const brio_locator *l, const brio_triangulation *t, const brio_record *record) {
     double greatest = 0;
     for (int k = 0; k < 3; k++) greatest = fmax(greatest, fmax(fabs(l->low[k]), fabs(l->high[k])));

@@ -1,8 +1,9 @@
 /* A finished triangulation in the form that queries read: its tetrahedra, and its vertices as records in the order of a
  * k-d tree.
  *
- * Vertices have places 0 to num_vertices - 1. The order of places is the tree (query/nearest_points.h): the middle place
- * of a range cuts the range. Vertices that are near in space have near places, so walks and searches touch few pages.
+ * Vertices have places 0 to num_vertices - 1. The order of places is the tree (query/nearest_points.h): the middle
+ * place of a range cuts the range. Vertices that are near in space have near places, so walks and searches touch few
+ * pages.
  *
  * I1  tet[t] is tetrahedron t of the triangulation, with places for indices of points. No tetrahedron is renumbered.
  * I2  vertex_tet[v] is the finite tetrahedron of lowest index that has vertex v.
@@ -32,7 +33,7 @@ struct brio_locator {
     brio_locator2 *flat;
 };
 
-/** Whether x is in the box of the vertices, where the locator's filter holds. */
+/** Returns whether x is in the box of the vertices, where the locator's filter holds. */
 static inline bool brio_locator_boxes(const brio_locator *l, const double *x) {
     return x[0] >= l->low[0] && x[0] <= l->high[0] && x[1] >= l->low[1] && x[1] <= l->high[1] && x[2] >= l->low[2] &&
            x[2] <= l->high[2];

@@ -1,17 +1,17 @@
 /* Sibson's coordinates of a query, from its cavity.
  *
- * The cavity is the set of tetrahedra whose circumspheres hold the query x (Bowyer, Watson). Inserted, x would take from
- * the Voronoi cell of each vertex a of the cavity a convex polytope R(a). Its corners are circumcentres of the cavity's
- * tetrahedra, and circumcentres of x with the facets on the cavity's border. Its facets are on the bisector of a and x,
- * and, for every edge ab of the cavity, on the bisector of a and b. The coordinate of a is the volume of R(a), divided by
- * the sum of all these volumes.
+ * The cavity is the set of tetrahedra whose circumspheres hold the query x (Bowyer, Watson). Inserted, x would take
+ * from the Voronoi cell of each vertex a of the cavity a convex polytope R(a). Its corners are circumcentres of the
+ * cavity's tetrahedra, and circumcentres of x with the facets on the cavity's border. Its facets are on the bisector of
+ * a and x, and, for every edge ab of the cavity, on the bisector of a and b. The coordinate of a is the volume of R(a),
+ * divided by the sum of all these volumes.
  *
  * Each facet of the cavity's tetrahedra is dual to one segment between two centres. The segments go round the polygon
  * on the bisector of ab, for each of the three edges of the facet. Summed up as cross products they give the polygon's
- * vector area, relative to a corner of the polygon. If ab is on the border, that corner is one of the two on the bisector
- * with x, so that the segment between these two adds nothing. The volume of R(a) is the sum of the cones over its
- * polygons from a corner on the bisector of a and x, so that the facet there adds nothing either. All heights and areas
- * are positive but for rounding; nothing large cancels, even where x is in the plane of a facet.
+ * vector area, relative to a corner of the polygon. If ab is on the border, that corner is one of the two on the
+ * bisector with x, so that the segment between these two adds nothing. The volume of R(a) is the sum of the cones over
+ * its polygons from a corner on the bisector of a and x, so that the facet there adds nothing either. All heights and
+ * areas are positive but for rounding; nothing large cancels, even where x is in the plane of a facet.
  *
  * Rounding leaves an error in what the coordinates must reproduce: x itself. The last step changes each coordinate by a
  * factor 1 + g . (a - x) + c near 1, with g and c such that the sum of the coordinates is 1 and x is reproduced.
@@ -33,9 +33,9 @@
  * the facets, divided by their sum. Coordinates are relative to the query.
  *
  * A flat tetrahedron makes the volumes inexact. So the shares are refined: while the shares do not reproduce the query,
- * the shares of the residual are taken off. Where that does not reproduce the query, the tetrahedron is flat up to rounding,
- * and its faces take its place (base/flat_shares.h). So linear functions are reproduced almost to the rounding of their
- * values, whatever the shape. */
+ * the shares of the residual are taken off. Where that does not reproduce the query, the tetrahedron is flat up to
+ * rounding, and its faces take its place (base/flat_shares.h). So linear functions are reproduced almost to the
+ * rounding of their values, whatever the shape. */
 
 enum { REFINEMENTS = 2 };
 
@@ -159,8 +159,8 @@ static brio_status add_tetrahedron(brio_natural *n, uint32_t tet) {
     return status;
 }
 
-/* Sets *number to the place of a tetrahedron in the cavity, or to OUTSIDE. Adds a tetrahedron that was not met before and
- * is in conflict. x is strictly inside the hull, so infinite tetrahedra are outside. */
+/* Sets *number to the place of a tetrahedron in the cavity, or to OUTSIDE. Adds a tetrahedron that was not met before
+ * and is in conflict. x is strictly inside the hull, so infinite tetrahedra are outside. */
 static brio_status meet(brio_natural *n, brio_querent *q, uint32_t tet, const double *x, uint32_t *number) {
     bool is_new;
     uint32_t *value;

@@ -10,7 +10,8 @@
 
 /* Coordinates of a query in the tetrahedron that holds it. */
 
-/** Sets share[i] to the barycentric coordinate of x at vertex i of the tetrahedron. The shares are at least 0 and sum to
+/** Sets share[i] to the barycentric coordinate of x at vertex i of the tetrahedron. The shares are at least 0 and sum
+ *  to
  *  1. They are exactly 0 for vertices opposite to a facet whose plane holds x.   h  not outside. */
 void brio_barycentric(const brio_locator *l, const brio_holder *h, const double *x, double share[4]);
 
@@ -45,8 +46,8 @@ static inline size_t brio_map_place(const brio_index_map *map, uint64_t key) {
     return i;
 }
 
-/** Sets *value to where the number of a key is kept; a new key has the number `fresh`, and *is_new is set. The pointer is
- *  valid until the next call.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+/** Sets *value to where the number of a key is kept; a new key has the number `fresh`, and *is_new is set. The pointer
+ *  is valid until the next call.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 static inline brio_status brio_map_find(brio_context *ctx, brio_index_map *map, uint64_t key, uint32_t fresh,
                                         uint32_t **value, bool *is_new) {
     if (2 * map->size >= map->capacity) {
@@ -94,8 +95,8 @@ typedef struct {
 
 void brio_natural_free(brio_natural *n);
 
-/** Computes the coordinates of x: share[1 .. num_vertices) of the vertices place[1 .. num_vertices). They are at least 0
- *  and sum to 1. Sets *found to false where doubles do not suffice, very near the hull.
+/** Computes the coordinates of x: share[1 .. num_vertices) of the vertices place[1 .. num_vertices). They are at least
+ *  0 and sum to 1. Sets *found to false where doubles do not suffice, very near the hull.
  *  h  what brio_find_holders found: inside, not on the hull, not at a vertex. The locator has no weights.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_natural_coordinates(brio_natural *n, brio_querent *q, const brio_holder *h, const double *x,

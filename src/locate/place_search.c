@@ -3,8 +3,8 @@
  * A search keeps the best vertices found so far in ascending order. Two vertices are compared by their rounded values
  * where the error bounds of these decide, else exactly (brio_power_compare), and by position where they are equal. The
  * far half of a range is left out only if every value there is greater than the last one kept, for all rounding errors.
- * Rounded values are of coordinates times the locator's scale: else all would be infinite or 0 for vertices far from 1, and
- * a search would compare all of them exactly.
+ * Rounded values are of coordinates times the locator's scale: else all would be infinite or 0 for vertices far from 1,
+ * and a search would compare all of them exactly.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977.

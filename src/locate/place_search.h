@@ -4,8 +4,8 @@
 
 #include "locate/locator.h"
 
-/** A vertex that a search has found. Its value, the squared distance or the power distance, is rounded; the terms of the
- *  value sum to `magnitude` at most, so that the error is at most 5 u magnitude. */
+/** A vertex that a search has found. Its value, the squared distance or the power distance, is rounded; the terms of
+ *  the value sum to `magnitude` at most, so that the error is at most 5 u magnitude. */
 typedef struct {
     double value, magnitude;
     uint32_t place;

@@ -1,11 +1,11 @@
 /* Vertices that have moved go back until their faces cross no others.
  *
  * A vertex has taken all of its way, half, a quarter, or nothing of it. Of the faces with a vertex that moved, all that
- * cross others are found exactly, and the vertices of both take the next smaller share. Then again, since a face may cross
- * others because of a vertex that went back. Of two faces that cross and did not cross before, some vertex has not gone
- * back all its way, so that the rounds end: a vertex takes part in three at most. What still crosses after a round crosses
- * a face of a vertex that has just gone back. Shares are of the way that the vertex took at first, so that rounds do not add
- * up errors. */
+ * cross others are found exactly, and the vertices of both take the next smaller share. Then again, since a face may
+ * cross others because of a vertex that went back. Of two faces that cross and did not cross before, some vertex has
+ * not gone back all its way, so that the rounds end: a vertex takes part in three at most. What still crosses after a
+ * round crosses a face of a vertex that has just gone back. Shares are of the way that the vertex took at first, so
+ * that rounds do not add up errors. */
 #include "mesh/back_off.h"
 #include "base/memory.h"
 #include "mesh/crossing_faces.h"
@@ -15,7 +15,8 @@
 static const double SHARE[] = {1, 0.5, 0.25, 0};
 enum { LAST = sizeof SHARE / sizeof *SHARE - 1 };
 
-/* Gives the vertices of the faces that cross others the next share, and marks those that change. Returns whether one does. */
+/* Gives the vertices of the faces that cross others the next share, and marks those that change. Returns whether one
+ * does. */
 static bool step_back(const brio_mesh *mesh, const uint8_t *crosses, uint8_t *step, uint8_t *now) {
     bool changed = false;
     memset(now, 0, mesh->num_vertices);

@@ -4,9 +4,9 @@
 
 #include "base/context.h"
 
-/** Moves vertices back towards where they were, where faces cross. Each goes half of its way back, a quarter, and then all
- *  of it; vertices of no face that crosses another stay where they are. So no faces cross at the end if none crossed before
- *  the vertices moved. Those that crossed before are where they were.
+/** Moves vertices back towards where they were, where faces cross. Each goes half of its way back, a quarter, and then
+ *  all of it; vertices of no face that crosses another stay where they are. So no faces cross at the end if none
+ *  crossed before the vertices moved. Those that crossed before are where they were.
  *  mesh    triangles; its vertices are read and written.   before  #V by 3: where the vertices were.
  *  moved   NULL, or receives the number of vertices that went back.
  *  Cost: that of brio_mesh_self_intersections, some times over; 100 bytes a face and one a vertex.

@@ -216,8 +216,8 @@ static void mark_small_faces(void *user, size_t begin, size_t end, int thread) {
     add_relaxed(&c->thin, thin);
 }
 
-/* Marks the vertices of degenerate faces. Counts the degenerate faces, including faces without corners, and those of fewer
- * than three corners. */
+/* Marks the vertices of degenerate faces. Counts the degenerate faces, including faces without corners, and those of
+ * fewer than three corners. */
 static brio_status mark_degenerate_faces(const topology *t, size_t *degenerate, size_t *thin) {
     brio_status status = BRIO_OK;
     const uint64_t *offsets = t->mesh->face_offsets;

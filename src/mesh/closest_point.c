@@ -294,8 +294,8 @@ static void walk_along(const double *a, const double *u, double x, double *close
     for (int k = 0; k < 3; k++) closest[k] = a[k] + x * u[k];
 }
 
-/* Writes the point of triangle abc nearest to p. The signs of products of the sides with the ways to p tell whether it is a
- * corner, on a side, or inside. Triangles without area have sides only. */
+/* Writes the point of triangle abc nearest to p. The signs of products of the sides with the ways to p tell whether it
+ * is a corner, on a side, or inside. Triangles without area have sides only. */
 static void closest_on_triangle(const double *a, const double *b, const double *c, const double *p, double *closest) {
     double u[3], v[3], w[3];
     for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], w[k] = p[k] - a[k];

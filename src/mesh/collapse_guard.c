@@ -1,13 +1,15 @@
 /* An octree of the triangles of a mesh whose edges collapse.
  *
- * A triangle is in the deepest node whose side is at least that of the triangle's box and that holds the middle of the box. So
- * it reaches beyond its node by half the node's side at most: a loose octree, in which a triangle is put and from which
- * it is taken along one path. Each node counts the triangles in and below it, so that a search passes over what is empty.
+ * A triangle is in the deepest node whose side is at least that of the triangle's box and that holds the middle of the
+ * box. So it reaches beyond its node by half the node's side at most: a loose octree, in which a triangle is put and
+ * from which it is taken along one path. Each node counts the triangles in and below it, so that a search passes over
+ * what is empty.
  *
- * A collapse makes new triangles round one point. They are tested, exactly, against each other and against all others whose
- * boxes they meet, but those that the collapse replaces. So the pairs of triangles that cross never become more.
+ * A collapse makes new triangles round one point. They are tested, exactly, against each other and against all others
+ * whose boxes they meet, but those that the collapse replaces. So the pairs of triangles that cross never become more.
  *
- * Based on: Ulrich. Loose octrees. Game Programming Gems 2000. Gumhold, Borodin, Klein. Intersection free simplification.
+ * Based on: Ulrich. Loose octrees. Game Programming Gems 2000. Gumhold, Borodin, Klein. Intersection free
+ * simplification.
  *           International Journal of Shape Modeling 2003 (tests before each collapse). */
 #include "mesh/collapse_guard.h"
 #include "base/memory.h"
@@ -215,7 +217,7 @@ typedef struct {
     double centre[3], half;
 } place;
 
-/* Whether what is in or below a node may meet a box. */
+/* Returns whether what is in or below a node may meet a box. */
 static bool node_meets(const place *p, const box *b) {
     for (int k = 0; k < 3; k++)
         if (b->low[k] > p->centre[k] + 2 * p->half || b->high[k] < p->centre[k] - 2 * p->half) return false;

@@ -15,8 +15,8 @@ void brio_collapse_guard_free(brio_context *ctx, brio_collapse_guard *guard);
  *  than common corners and edges. False, and a status of the guard, where memory is refused. */
 bool brio_collapse_guard_allows(const brio_collapse_mesh *m, uint32_t h, const double *point);
 
-/** Takes the triangles round both ends of the last edge that was asked for out of the octree, and puts those that are left
- *  of them back when they have moved. */
+/** Takes the triangles round both ends of the last edge that was asked for out of the octree, and puts those that are
+ *  left of them back when they have moved. */
 void brio_collapse_guard_before(const brio_collapse_mesh *m);
 void brio_collapse_guard_after(const brio_collapse_mesh *m);
 

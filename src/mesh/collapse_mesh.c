@@ -286,8 +286,8 @@ static void add_quadrics(void *user, size_t begin, size_t end, int thread) {
         if (m->marks[v] & BRIO_COLLAPSE_BOUNDARY) continue;
         do
             quadric_add_triangle(&m->quadric[v], brio_collapse_at(m, (uint32_t)v),
-                                      brio_collapse_at(m, brio_collapse_end(m, g)),
-                                      brio_collapse_at(m, m->vertex[brio_collapse_before(g)]));
+                                 brio_collapse_at(m, brio_collapse_end(m, g)),
+                                 brio_collapse_at(m, m->vertex[brio_collapse_before(g)]));
         while ((g = brio_collapse_turn(m, g)) != h);
     }
 }

@@ -1,8 +1,8 @@
 /* Polygons cut into triangles, by ears where a fan will not do.
  *
- * An ear is a corner whose triangle with its neighbours is turned as the polygon is and holds no other corner. The polygon
- * is seen along the axis of the longest side of its normal; every sign there is exact. What is left of a polygon without
- * an ear, which crosses itself, becomes a fan.
+ * An ear is a corner whose triangle with its neighbours is turned as the polygon is and holds no other corner. The
+ * polygon is seen along the axis of the longest side of its normal; every sign there is exact. What is left of a
+ * polygon without an ear, which crosses itself, becomes a fan.
  *
  * Based on: Meisters. Polygons have ears. American Mathematical Monthly 1975. */
 #include "mesh/cut_polygon.h"

@@ -1,5 +1,5 @@
-/* The extent of a surface, see extent.h. Only vertices that faces use count: a vertex far away that no face uses must not
- * make the faces vanish. */
+/* The extent of a surface, see extent.h. Only vertices that faces use count: a vertex far away that no face uses must
+ * not make the faces vanish. */
 #include "mesh/extent.h"
 #include "base/scale.h"
 #include <math.h>

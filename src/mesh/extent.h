@@ -17,8 +17,8 @@ int brio_box_exponent(const double low[3], const double high[3]);
  *  brio_mesh_check_faces. */
 double brio_surface_scale(const brio_mesh *mesh);
 
-/** Writes the normal of triangle abc, whose corners are multiplied by `scale`; the normal's length is twice the area. With
- *  a power of two the result is exactly scale^2 times what it is without, where doubles hold both. */
+/** Writes the normal of triangle abc, whose corners are multiplied by `scale`; the normal's length is twice the area.
+ *  With a power of two the result is exactly scale^2 times what it is without, where doubles hold both. */
 static inline void brio_scaled_normal(const double *a, const double *b, const double *c, double scale, double *n) {
     double u[3], v[3];
     for (int k = 0; k < 3; k++) u[k] = b[k] * scale - a[k] * scale, v[k] = c[k] * scale - a[k] * scale;

@@ -17,9 +17,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Cells are wider than half the distance by this factor, and a coordinate has fewer than MOST_PLACES of them. Derived: a
- * place is then rounded by less than 2^-13 cells. So vertices within the distance are at most two places apart, and those
- * of one cell, whose diagonal is 0.87 distances, are within it. */
+/* Cells are wider than half the distance by this factor, and a coordinate has fewer than MOST_PLACES of them. Derived:
+ * a place is then rounded by less than 2^-13 cells. So vertices within the distance are at most two places apart, and
+ * those of one cell, whose diagonal is 0.87 distances, are within it. */
 static const double WIDER = 1 + 0x1p-8, MOST_PLACES = 0x1p40;
 /* Chosen: the most that rounding of coordinates counts for, a share of the distance. Far less than WIDER adds. */
 static const double MOST_ROUNDED = 0x1p-14;
@@ -93,7 +93,7 @@ static brio_status join_cells(merger *m) {
     return BRIO_OK;
 }
 
-/* Rounded, but the same for both orders of the two. */
+/* Returns whether two vertices are near: rounded, but the same for both orders of the two. */
 static bool is_near(const merger *m, uint32_t a, uint32_t b) {
     const double *p = m->mesh->vertices + 3 * (size_t)a, *q = m->mesh->vertices + 3 * (size_t)b;
     double sum = 0;

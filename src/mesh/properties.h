@@ -7,9 +7,9 @@
 /** Frees the properties that were added last, so that `left` remain. */
 void brio_mesh_drop_properties(brio_mesh *mesh, size_t left);
 
-/** As brio_mesh_add_property, for a name that no property has: nothing is compared. */
+/** Adds a property as brio_mesh_add_property, for a name that no property has: nothing is compared. */
 brio_status brio_mesh_append_property(brio_mesh *mesh, const char *name, brio_scalar type);
-/** As brio_mesh_add_face_property, likewise. */
+/** Adds a property as brio_mesh_add_face_property, likewise. */
 brio_status brio_mesh_append_face_property(brio_mesh *mesh, const char *name, brio_scalar type);
 
 /** Adds the property "sample" of the vertices of a surface: the index of the point that each of them is, or -1.

@@ -57,7 +57,7 @@ static void box_add(box *b, const double *low, const double *high) {
     }
 }
 
-/* Which side misses cannot be predicted, so there is no branch. */
+/* Returns whether boxes meet. Which side misses cannot be predicted, so there is no branch. */
 static inline bool boxes_meet(const box *a, const box *b) {
     bool meet = true;
     for (int k = 0; k < 3; k++) meet &= (a->low[k] <= b->high[k]) & (b->low[k] <= a->high[k]);
@@ -201,7 +201,8 @@ static bool is_done(const tree *t, range r, size_t at) {
     return r.high <= at + 1 && (!t->beside || t->beside[r.low] == t->beside[r.high]);
 }
 
-/* Counts the faces that cross the face at place `at` of the order and come after `at` in the order, or are not asked about.
+/* Counts the faces that cross the face at place `at` of the order and come after `at` in the order, or are not asked
+ * about.
  * only     NULL, or #F: the faces that are asked about.
  * crosses  NULL, or #F: set to 1 for the faces of these pairs. */
 static int64_t count_crossing(const tree *t, size_t at, const uint8_t *only, uint8_t *crosses) {

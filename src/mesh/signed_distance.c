@@ -1,12 +1,12 @@
 /* Distances of points from a surface, with the side on which they are.
  *
- * The nearest point of the surface is found in a hierarchy of boxes. Of a closed surface the winding number tells the side, exactly.
- * Of any other, the triangles at the nearest point do: if they all have the point on one side, which is exact, it is that one;
- * otherwise it is the side of the mean of their normals, weighted by their angles at that point.
+ * The nearest point of the surface is found in a hierarchy of boxes. Of a closed surface the winding number tells the
+ * side, exactly. Of any other, the triangles at the nearest point do: if they all have the point on one side, which is
+ * exact, it is that one; otherwise it is the side of the mean of their normals, weighted by their angles at that point.
  *
  * Based on: Baerentzen, Aanaes. Signed distance computation using the angle weighted pseudonormal. IEEE TVCG 2005.
- * Differs from the paper: the triangles at a point are found by their distance from it, not by edges and vertices, so that
- * faces that do not share vertices, and edges of more than two faces, are met alike. */
+ * Differs from the paper: the triangles at a point are found by their distance from it, not by edges and vertices, so
+ * that faces that do not share vertices, and edges of more than two faces, are met alike. */
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
@@ -22,8 +22,9 @@
 /* HUGE_EXPONENT: sizes beyond need another unit, as in distance.c. BATCH: points between two reports. Chosen. */
 enum { HUGE_EXPONENT = 100, BATCH = 1 << 15, POINTS_A_CHUNK = 64, MOST_LEVELS = 64 };
 
-/* Two triangles have one nearest point if their squared distances differ by less than this share, and the points by less than the
- * second one, of the distance. A corner is where that point is within the third share of a triangle's size. Chosen: far over rounding. */
+/* Two triangles have one nearest point if their squared distances differ by less than this share, and the points by
+ * less than the second one, of the distance. A corner is where that point is within the third share of a triangle's
+ * size. Chosen: far over rounding. */
 static const double SAME_SQUARE = 1e-12, SAME_POINT = 1e-7, SAME_CORNER = 1e-9;
 
 typedef struct {

@@ -1,17 +1,17 @@
 /* Edges collapse in passes, those of least error first.
  *
- * A pass has a limit: a quarter of the edges that may be tried have errors of at most the limit, or fewer when the number of
- * faces comes near its target. A pass divides the vertices into blocks along a curve and collapses, in each block, edges
- * up to the limit in the order of their errors (collapse_blocks.h). Edges at the borders of blocks wait: passes use two
- * curves in turns, whose blocks have different borders. So all parts of the surface reach one error together, as they do
- * with one queue, and what a pass does at borders is not farther behind than the limits of two passes. The last few
- * collapses, and all collapses of small meshes, are a pass of one block.
+ * A pass has a limit: a quarter of the edges that may be tried have errors of at most the limit, or fewer when the
+ * number of faces comes near its target. A pass divides the vertices into blocks along a curve and collapses, in each
+ * block, edges up to the limit in the order of their errors (collapse_blocks.h). Edges at the borders of blocks wait:
+ * passes use two curves in turns, whose blocks have different borders. So all parts of the surface reach one error
+ * together, as they do with one queue, and what a pass does at borders is not farther behind than the limits of two
+ * passes. The last few collapses, and all collapses of small meshes, are a pass of one block.
  *
  * The limits come from a histogram of errors, whose classes differ by less than 1%, and not from a share of the blocks'
  * own edges: so they do not depend on threads.
  *
- * Collapses in blocks look at the surface near them, not at other sheets of it. Where triangles of the result cross, all is
- * done once more, as one block, with a guard that sees every sheet (collapse_guard.h).
+ * Collapses in blocks look at the surface near them, not at other sheets of it. Where triangles of the result cross,
+ * all is done once more, as one block, with a guard that sees every sheet (collapse_guard.h).
  *
  * Based on: Garland, Heckbert. Surface simplification using quadric error metrics. SIGGRAPH 1997.
  * Differs from the paper: blocks instead of one queue; see also collapse.c and collapse_mesh.h. */

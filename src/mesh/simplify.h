@@ -15,10 +15,10 @@ typedef struct {
 
 /** Collapses edges of a manifold oriented triangle mesh in place, edges of least error first. The mesh stays manifold
  *  and oriented, and keeps its components, genus and boundary; triangles do not turn over. Vertices of the boundary
- *  stay. Vertices that no triangle uses are dropped. A vertex has the properties that it had before its edges collapsed.
- *  The result does not depend on the number of threads.
- *  With `embedded` edges collapse as without; if triangles then cross, the work begins anew in one thread, with an exact test
- *  of each collapse. A mesh whose triangles cross already is always treated like that.
+ *  stay. Vertices that no triangle uses are dropped. A vertex has the properties that it had before its edges
+ *  collapsed. The result does not depend on the number of threads.
+ *  With `embedded` edges collapse as without; if triangles then cross, the work begins anew in one thread, with an
+ *  exact test of each collapse. A mesh whose triangles cross already is always treated like that.
  *  Cost: O(n log n); 175 bytes a vertex, with `embedded` 48 more, and 112 more if the work begins anew.
  *  Returns BRIO_OK; BRIO_ERR_ARGUMENT when a face is not a triangle or the mesh is not manifold and oriented at an
  *  edge or a vertex, and leaves the mesh unchanged; BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED, after which the mesh can

@@ -1,7 +1,7 @@
 /* Simplification of a mesh as a whole: one tolerance everywhere, edges of any length. See simplify.c for the collapses.
  *
- * Products of seven lengths, as the quadrics' solutions have them, would overflow or vanish with coordinates beyond 2^HUGE or
- * below 2^-HUGE: such meshes are scaled meanwhile. */
+ * Products of seven lengths, as the quadrics' solutions have them, would overflow or vanish with coordinates beyond
+ * 2^HUGE or below 2^-HUGE: such meshes are scaled meanwhile. */
 #include "base/context.h"
 #include "base/finite.h"
 #include "base/float_state.h"
@@ -21,9 +21,9 @@
 
 /* Any mesh made fit for the collapse of edges, and put together again.
  *
- * Edges collapse on manifold, oriented meshes of triangles. Other meshes are taken apart where they are not: the parts meet at
- * boundaries, and vertices of boundaries stay where they are. So the parts fit together afterwards, and what was joined
- * at a vertex or an edge still is. */
+ * Edges collapse on manifold, oriented meshes of triangles. Other meshes are taken apart where they are not: the parts
+ * meet at boundaries, and vertices of boundaries stay where they are. So the parts fit together afterwards, and what
+ * was joined at a vertex or an edge still is. */
 
 static const uint32_t NONE = UINT32_MAX;
 
@@ -103,9 +103,11 @@ done:
 
 /* --- apart and together --- */
 
-/* Cuts polygons into triangles, drops faces without three distinct corners, and gives each fan of faces its own vertices, so that the
- *  mesh is manifold and oriented. Each vertex knows where it comes from by a property that is the last one. Faces keep their properties.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
+/* Cuts polygons into triangles, drops faces without three distinct corners, and gives each fan of faces its own
+ * vertices, so that the
+ *  mesh is manifold and oriented. Each vertex knows where it comes from by a property that is the last one. Faces keep
+ *  their properties. Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_NO_MEMORY. */
 static brio_status mesh_take_apart(brio_context *ctx, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     cutting c = {.ctx = ctx, .mesh = mesh};

@@ -146,8 +146,8 @@ done:
     return status;
 }
 
-/* Makes half-edges of edges that are no pair, or run in one direction, half-edges of boundaries. Members of a ring follow
- * each other in ascending order, so that a pair is seen at its first one. */
+/* Makes half-edges of edges that are no pair, or run in one direction, half-edges of boundaries. Members of a ring
+ * follow each other in ascending order, so that a pair is seen at its first one. */
 static brio_status leave_pairs(brio_context *ctx, const brio_mesh *m, uint32_t *ring) {
     brio_status status = BRIO_OK;
     size_t corners = m->num_faces ? (size_t)m->face_offsets[m->num_faces] : 0;
@@ -175,9 +175,9 @@ done:
     return status;
 }
 
-/* After pairing across inside wedges, two sheets may still be connected round both ends of an edge, which then stays
- * one edge of four faces. There the fan of each end passes the edge twice. Pairing across the outside wedges instead
- * splits that fan in two. */
+/* Splits vertices where sheets touch. After pairing across inside wedges, two sheets may still be connected round both
+ * ends of an edge, which then stays one edge of four faces. There the fan of each end passes the edge twice. Pairing
+ * across the outside wedges instead splits that fan in two. */
 brio_status brio_mesh_split_sheets(brio_context *ctx, brio_mesh *m) {
     brio_status status = BRIO_OK;
     uint32_t *ring = NULL, *partner = NULL;

@@ -9,8 +9,9 @@
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 brio_status brio_mesh_split_vertices(brio_context *ctx, brio_mesh *mesh);
 
-/** Does what brio_mesh_split_vertices does, and joins no faces across an edge that has more than two of them, or two that run
- *  along it in one direction. So the result is manifold and oriented for every mesh whose faces have distinct vertices. */
+/** Does what brio_mesh_split_vertices does, and joins no faces across an edge that has more than two of them, or two
+ *  that run along it in one direction. So the result is manifold and oriented for every mesh whose faces have distinct
+ *  vertices. */
 brio_status brio_mesh_cut_apart(brio_context *ctx, brio_mesh *mesh);
 
 /** Does what brio_mesh_split_vertices does for the boundary of a solid, made of triangles, where edges may have more

@@ -293,7 +293,7 @@ static brio_status make_property(brio_context *ctx, subdivider *s, size_t number
     return BRIO_OK;
 }
 
-/* The four parts of a face have its properties. */
+/* Makes a property of the new faces. The four parts of a face have its properties. */
 static brio_status make_face_property(brio_context *ctx, const subdivider *s, const brio_property *property) {
     size_t size = brio_scalar_size(property->type), faces = s->mesh->num_faces;
     char *data;
@@ -334,7 +334,8 @@ done:
 
 /* --- all levels --- */
 
-/* A level is four times the work of the level before, and has its share of the progress bar. */
+/* Subdivides level by level. A level is four times the work of the level before, and has its share of the progress
+ * bar. */
 static brio_status subdivide_levels(brio_context *ctx, const brio_mesh *mesh, int levels, brio_mesh **out) {
     brio_status status = BRIO_OK;
     brio_mesh *coarse = NULL, *fine = NULL;

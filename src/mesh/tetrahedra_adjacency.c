@@ -67,7 +67,7 @@ static brio_status report(brio_context *ctx, const brio_mesh *m, size_t v) {
 
 /* --- neighbours --- */
 
-/* The two greater vertices of a facet. */
+/* Finds the two greater vertices of a facet. */
 static void greater_vertices(const brio_mesh *m, uint32_t facet, uint32_t least, uint32_t *middle, uint32_t *greatest) {
     uint32_t v[3];
     facet_vertices(m, facet, v);
@@ -77,8 +77,8 @@ static void greater_vertices(const brio_mesh *m, uint32_t facet, uint32_t least,
     *greatest = a < b ? b : a;
 }
 
-/* Joins the facets in keys[0] to keys[n - 1], which have the two least vertices in common. A key is the facet's greatest
- * vertex, then its place among the items. */
+/* Joins the facets in keys[0] to keys[n - 1], which have the two least vertices in common. A key is the facet's
+ * greatest vertex, then its place among the items. */
 static brio_status join_run(brio_context *ctx, const brio_mesh *m, const uint32_t *items, uint64_t *keys, size_t n,
                             uint32_t *neighbours) {
     brio_sort_keys(keys, n);

@@ -1,8 +1,8 @@
 /* Least distances between a triangle and a surface, by the hierarchy of boxes about the surface's triangles.
  *
- * Two triangles that do not meet are closest in two points of which one is a corner, or in points of two edges. A box is
- * skipped where one of five directions separates it from the triangle by more than the least distance found: the axes
- * together, the normal of the triangle, and the normals of its edges in its plane.
+ * Two triangles that do not meet are closest in two points of which one is a corner, or in points of two edges. A box
+ * is skipped where one of five directions separates it from the triangle by more than the least distance found: the
+ * axes together, the normal of the triangle, and the normals of its edges in its plane.
  *
  * Based on: Ericson. Real-time collision detection. 2005, sections 5.1.9 (segments) and 5.2.1 (separating axes). */
 #include "mesh/triangle_distance.h"

@@ -1,7 +1,8 @@
 /* Decides whether two triangles meet in more than what they share, by exact orientations only.
  *
- * Most triangles of a surface whose boxes meet are neighbours, and in the projection along an axis a line through an edge of
- * one keeps them apart. This is tried first, with bounds of errors only: neighbours in one plane would need exact arithmetic.
+ * Most triangles of a surface whose boxes meet are neighbours, and in the projection along an axis a line through an
+ * edge of one keeps them apart. This is tried first, with bounds of errors only: neighbours in one plane would need
+ * exact arithmetic.
  *
  * Triangles that share nothing meet when an edge of one meets the other triangle. With one common corner, the
  * intersection is convex and contains the corner. If it contains more, a ray from the corner runs in both triangles
@@ -177,8 +178,8 @@ static int broad_axis(const point t[3]) {
     return normal[1] > normal[2] ? 1 : 2;
 }
 
-/* Returns whether it is sure that a line through an edge of t has t on one side and u on the other, in the projection: then
- * t and u meet at most in corners that they share, or in that edge. */
+/* Returns whether it is sure that a line through an edge of t has t on one side and u on the other, in the projection:
+ * then t and u meet at most in corners that they share, or in that edge. */
 static bool edge_parts(const point t[3], const double flat_t[3][2], const point u[3], const double flat_u[3][2]) {
     int side = sure_orient2d(flat_t[0], flat_t[1], flat_t[2]);
     for (int i = 0; i < 3 && side; i++) {

@@ -1,7 +1,8 @@
 /* Normals of vertices: the sum of the area vectors of the faces round each vertex. The area vector of a polygon does
  * not depend on how the polygon is cut into triangles. Faces that are nearly points or lines, whose directions are
- * noise, hardly count. Where the sum has no direction, because the faces have no area, the vertices at the same position
- * that edges of length 0 join to the vertex count as one vertex. The normal is 0 where their sum has no direction.
+ * noise, hardly count. Where the sum has no direction, because the faces have no area, the vertices at the same
+ * position that edges of length 0 join to the vertex count as one vertex. The normal is 0 where their sum has no
+ * direction.
  *
  * The surface is scaled to about 1 meanwhile, so that its area vectors neither overflow nor vanish. */
 #include "mesh/vertex_normals.h"

@@ -1,6 +1,6 @@
 /* Parts of an offset that the surface through its samples misses: points of the offset in the cells of a grid that it
- * crosses, which are looked for in an octree. A cell whose centre is farther from the offset than a corner is not crossed,
- * because the distance changes as much as the place at most. */
+ * crosses, which are looked for in an octree. A cell whose centre is farther from the offset than a corner is not
+ * crossed, because the distance changes as much as the place at most. */
 #include "base/team.h"
 #include "base/vector.h"
 #include "offset/work.h"

@@ -1,14 +1,15 @@
-/* The surface through samples of an offset: the boundary between the tetrahedra of their Delaunay triangulation that are
- * covered and those that are free. It is closed and does not cross itself, whatever the samples are.
+/* The surface through samples of an offset: the boundary between the tetrahedra of their Delaunay triangulation that
+ * are covered and those that are free. It is closed and does not cross itself, whatever the samples are.
  *
- * A tetrahedron is what its centroid is. Between samples of one sheet are tetrahedra so flat that rounding decides; they
- * are of the solid that the offset bounds, so that all samples are on the surface. Specks take the other label: sets of
- * tetrahedra, joined across facets, all of whose centroids are close to the offset, and small ones thinner than the error.
+ * A tetrahedron is what its centroid is. Between samples of one sheet are tetrahedra so flat that rounding decides;
+ * they are of the solid that the offset bounds, so that all samples are on the surface. Specks take the other label:
+ * sets of tetrahedra, joined across facets, all of whose centroids are close to the offset, and small ones thinner than
+ * the error.
  *
- * Based on: Boissonnat, Oudot. Provably good sampling and meshing of surfaces. Graphical Models 2005 (the surface as part
- * of the Delaunay triangulation of points on it, refined where it is wrong).
- * Differs from the paper: tetrahedra are labeled, in place of Voronoi edges intersected, so that any number of samples gives
- * a closed surface. */
+ * Based on: Boissonnat, Oudot. Provably good sampling and meshing of surfaces. Graphical Models 2005 (the surface as
+ * part of the Delaunay triangulation of points on it, refined where it is wrong).
+ * Differs from the paper: tetrahedra are labeled, in place of Voronoi edges intersected, so that any number of samples
+ * gives a closed surface. */
 #include "base/team.h"
 #include "base/union_find.h"
 #include "base/vector.h"
@@ -57,8 +58,8 @@ static void look_at(const brio_offset_work *w, const double *const facet[3], con
     add_height(w, p, sqrt(brio_closest_point(&w->field.solid->tree, p, nearest, &triangle)), h);
 }
 
-/* Looks at the heights of a triangle at places half an offset's distance apart, but not where none can be over `most`: the
- * distance from one triangle of the surface is a convex function. */
+/* Looks at the heights of a triangle at places half an offset's distance apart, but not where none can be over `most`:
+ * the distance from one triangle of the surface is a convex function. */
 static void look_above(const brio_offset_work *w, const double *const corner[3], double most, heights *h) {
     const brio_triangle_tree *tree = &w->field.solid->tree;
     double centroid[3], nearest[3], middle[3], square = 0, side = 0;
@@ -92,8 +93,8 @@ static void look_at_facet(const brio_offset_work *w, const double *const facet[3
     look_above(w, facet, clear, h);
 }
 
-/* Returns the label of a tetrahedron whose centroid is close to the offset: that of the place of its facets farthest from the
- * offset. */
+/* Returns the label of a tetrahedron whose centroid is close to the offset: that of the place of its facets farthest
+ * from the offset. */
 static uint8_t label_of_thin(const brio_offset_work *w, const double *const corner[4], double height) {
     heights h = {0, 0};
     for (int i = 0; i < 4; i++)
@@ -186,8 +187,8 @@ static void add_to_part(const labeler *l, size_t i, part *p) {
         if ((l->label[l->tet[i].mate[f] / 4] ^ l->label[i]) & COVERED) p->area += area_of(l->w, l->tet[i].vertex, f);
 }
 
-/* Returns whether a part is none of the offset: nothing in it is certain, or it is of few tetrahedra and thinner than the
- * error. (The radius of a ball is three times its volume over its area.) */
+/* Returns whether a part is none of the offset: nothing in it is certain, or it is of few tetrahedra and thinner than
+ * the error. (The radius of a ball is three times its volume over its area.) */
 static bool is_speck(const brio_offset_work *w, const part *p) {
     return !p->certain || (p->count <= FEW && p->volume < THIN * w->error * p->area);
 }
@@ -236,7 +237,7 @@ static brio_status take_boundary(const labeler *l) {
     return BRIO_OK;
 }
 
-/* The triangulation is a part of the work whose stages are not the caller's. */
+/* Passes progress on. The triangulation is a part of the work whose stages are not the caller's. */
 static int pass_progress_on(const char *stage, double fraction, void *user) {
     const brio_offset_work *w = user;
     (void)stage, (void)fraction;

@@ -1,15 +1,15 @@
 /* Whether a surface through samples of an offset is within the error, and samples where it is not.
  *
  * A first test looks at seven places of each triangle. The proof bounds the distance from the solid over each whole
- * triangle. It is nowhere less than the least distance between the triangle and the solid's surface. It is nowhere more than
- * the largest distance of the triangle's corners from any one triangle of that surface, because the distance from a convex
- * set is a convex function. Where this bound is too large, the triangle is cut into four, and so on.
+ * triangle. It is nowhere less than the least distance between the triangle and the solid's surface. It is nowhere more
+ * than the largest distance of the triangle's corners from any one triangle of that surface, because the distance from
+ * a convex set is a convex function. Where this bound is too large, the triangle is cut into four, and so on.
  *
- * The distance falls short where a chord cuts through a round part; a sample is put there on the offset. It is too large
- * where a chord spans a crease; a sample is put on the crease.
+ * The distance falls short where a chord cuts through a round part; a sample is put there on the offset. It is too
+ * large where a chord spans a crease; a sample is put on the crease.
  *
- * Based on: Tang, Lee, Kim. Interactive Hausdorff distance computation for general polygonal models. ACM TOG 2009 (bounds by
- * single triangles, and subdivision). */
+ * Based on: Tang, Lee, Kim. Interactive Hausdorff distance computation for general polygonal models. ACM TOG 2009
+ * (bounds by single triangles, and subdivision). */
 #include "base/team.h"
 #include "base/vector.h"
 #include "mesh/triangle_distance.h"
@@ -19,8 +19,8 @@
 
 enum { BATCH = 1 << 13, TRIANGLES_A_CHUNK = 32, DEEPEST = 14 /* cuts into four for a proof; chosen */ };
 
-/* Side of the smallest part of a triangle in a proof, in means of distance and error: the distance of two points of a plane
- * at this distance from each other differs by a hundredth of the error. Chosen. */
+/* Side of the smallest part of a triangle in a proof, in means of distance and error: the distance of two points of a
+ * plane at this distance from each other differs by a hundredth of the error. Chosen. */
 static const double SMALLEST = 0.14;
 static const double PROOF_SHARE = 0x1p-30; /* of the error, for rounding */
 

@@ -8,8 +8,9 @@
  * Flat parts of the offset need samples at their corners only; round ones as many as the error asks for. Concave edges
  * are sharp, because samples are put on them.
  *
- * Based on: Boissonnat, Oudot. Provably good sampling and meshing of surfaces. Graphical Models 2005. Chen, Panozzo, Dou,
- * Chen, Liu. Half-space power diagrams and discrete surface offsets. IEEE TVCG 2019 (what an offset has to keep). */
+ * Based on: Boissonnat, Oudot. Provably good sampling and meshing of surfaces. Graphical Models 2005. Chen, Panozzo,
+ * Dou, Chen, Liu. Half-space power diagrams and discrete surface offsets. IEEE TVCG 2019 (what an offset has to
+ * keep). */
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/scale.h"

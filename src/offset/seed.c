@@ -1,5 +1,5 @@
-/* The first samples of an offset surface: those over the corners of the faces. They are the corners of the flat parts of
- * the offset, and the ends of its round parts. */
+/* The first samples of an offset surface: those over the corners of the faces. They are the corners of the flat parts
+ * of the offset, and the ends of its round parts. */
 #include "base/team.h"
 #include "base/vector.h"
 #include "offset/work.h"

@@ -6,9 +6,9 @@
 #include "offset/work.h"
 #include <math.h>
 
-/* Measured on cubes, prisms, an L, spheres, tori and machined parts. Bytes: a sample; a corner of the mesh, for its tree and
- * its check; batches. Samples: a corner of a face, those of an edge in arcs as long as the error allows, those of all
- * round corners in 4 pi D / E, most of an area in units of D E. */
+/* Measured on cubes, prisms, an L, spheres, tori and machined parts. Bytes: a sample; a corner of the mesh, for its
+ * tree and its check; batches. Samples: a corner of a face, those of an edge in arcs as long as the error allows, those
+ * of all round corners in 4 pi D / E, most of an area in units of D E. */
 static const double SAMPLE_BYTES = 1250, CORNER_BYTES = 110, FIXED_BYTES = 4e6;
 static const double A_CORNER = 0.9, AN_ARC = 4, A_BALL = 0.6, DENSEST = 10;
 

@@ -47,8 +47,8 @@ brio_status brio_offset_progress(brio_offset_work *w);
 /** Adds a sample. */
 brio_status brio_offset_add(brio_offset_work *w, const double *p);
 
-/** Adds the points of the offset over the corners of the faces; where none of a face's corners has one, over its centroid.
- *  Points that lie close together are thinned out. */
+/** Adds the points of the offset over the corners of the faces; where none of a face's corners has one, over its
+ *  centroid. Points that lie close together are thinned out. */
 brio_status brio_offset_seed(brio_offset_work *w);
 
 /** Makes the surface through the samples: the boundary of the tetrahedra of their Delaunay triangulation that are

@@ -1,5 +1,5 @@
-/* The smallest cube around points, cut into a grid of cells. A coordinate that is not finite, or that was changed after the cube
- * was found, falls in some cell. */
+/* The smallest cube around points, cut into a grid of cells. A coordinate that is not finite, or that was changed after
+ * the cube was found, falls in some cell. */
 #ifndef BRIO_ORDER_CUBE_H
 #define BRIO_ORDER_CUBE_H
 

@@ -1,8 +1,8 @@
 /* Sorts points along a Hilbert curve: a radix sort by keys of at most ten levels. Cells with more than CELL_MOST points
  * are sorted again, along the curve through the cube of their own points. So clusters of any size are resolved.
  *
- * The caller's points may change meanwhile. A pass reads them twice, for the cube and for the keys; the order of the items
- * follows from the keys alone, so it stays a permutation, and each pass leaves a cell with fewer points. */
+ * The caller's points may change meanwhile. A pass reads them twice, for the cube and for the keys; the order of the
+ * items follows from the keys alone, so it stays a permutation, and each pass leaves a cell with fewer points. */
 #include "order/curve.h"
 #include "base/memory.h"
 #include "base/sort.h"

@@ -38,8 +38,8 @@ typedef struct {
     size_t num_next;        /* number of cells in `next`; all threads of a turn raise it atomically */
 } octree;
 
-/* The points of a pass and their cube, divided into 8^levels cells. The pass counts the points of the cells and then places
- * them; it keeps the cells in between, because the caller's points may change meanwhile. */
+/* The points of a pass and their cube, divided into 8^levels cells. The pass counts the points of the cells and then
+ * places them; it keeps the cells in between, because the caller's points may change meanwhile. */
 typedef struct {
     const double *points;
     const uint32_t *from; /* the indices before the pass; NULL: index i is at position i */

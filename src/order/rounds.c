@@ -6,9 +6,9 @@
  *
  * With weights a light point may be inserted and then hidden by a heavier one, for nothing. So a second sequence is
  * made, in which the points of a block, BLOCK neighbours along the order of the indices, exchange the rounds that they
- * drew: the heavier one takes the earlier round. A round keeps its number of points in each block, so it still is spread
- * over space as the points are; but it is no random sample any more, and the bounds of the analysis do not hold for it.
- * With equal weights the sequence is the order.
+ * drew: the heavier one takes the earlier round. A round keeps its number of points in each block, so it still is
+ * spread over space as the points are; but it is no random sample any more, and the bounds of the analysis do not hold
+ * for it. With equal weights the sequence is the order.
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 5.3.
@@ -21,8 +21,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* BLOCK: of a scan with 60 % hidden points, blocks of 8 points create 12.4 million tetrahedra, of 64 points 11.3, of 256
- * points 11.2, and the rounds that were drawn 15.9. */
+/* BLOCK: of a scan with 60 % hidden points, blocks of 8 points create 12.4 million tetrahedra, of 64 points 11.3, of
+ * 256 points 11.2, and the rounds that were drawn 15.9. */
 enum { BLOCK = 64, INDICES_A_THREAD = 1 << 13 };
 
 /* Sets least[r]: a point whose hash is less than least[r] is at least r rounds before the last round. Returns the
@@ -104,8 +104,8 @@ static void count_blocks(void *user, size_t first, size_t last, int thread) {
     }
 }
 
-/* Writes order and sequence. A block has as many points in a round before the exchange as after it, so order and sequence
- * have the same places. */
+/* Writes order and sequence. A block has as many points in a round before the exchange as after it, so order and
+ * sequence have the same places. */
 static void place_blocks(void *user, size_t first, size_t last, int thread) {
     const division *d = user;
     const brio_division *of = d->of;

@@ -1,5 +1,5 @@
-/* The longest side of a box, divided into cells; the same cells along the other sides. Neither a side beyond doubles nor one of
- * the least doubles loses anything: coordinates times a power of two have the cells of the coordinates. */
+/* The longest side of a box, divided into cells; the same cells along the other sides. Neither a side beyond doubles
+ * nor one of the least doubles loses anything: coordinates times a power of two have the cells of the coordinates. */
 #ifndef BRIO_ORDER_RULER_H
 #define BRIO_ORDER_RULER_H
 

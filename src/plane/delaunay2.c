@@ -19,10 +19,10 @@
 
 /* Gives each point that owns no cell the vertex that represents it.
  *
- * Without weights such a point is a duplicate, and insertion has named its vertex. With weights the point that hid it may
- * have been hidden later, and a vertex at its place may have come after it. So each such point is located in the finished
- * triangulation. A point at the place of a vertex is a duplicate; any other point is hidden, and descent finds its vertex
- * of least power distance. The apex of points on a line is skipped: the edges along the line suffice. */
+ * Without weights such a point is a duplicate, and insertion has named its vertex. With weights the point that hid it
+ * may have been hidden later, and a vertex at its place may have come after it. So each such point is located in the
+ * finished triangulation. A point at the place of a vertex is a duplicate; any other point is hidden, and descent finds
+ * its vertex of least power distance. The apex of points on a line is skipped: the edges along the line suffice. */
 
 typedef struct {
     brio_plane_store *store;
@@ -96,8 +96,8 @@ done:
     return status;
 }
 
-/* Represents points that are all at one place: the heaviest represents the others; among equal weights, the one with the
- * lowest index. */
+/* Represents points that are all at one place: the heaviest represents the others; among equal weights, the one with
+ * the lowest index. */
 static void represent_coincident(brio_plane_store *s) {
     uint32_t best = 0;
     for (uint32_t p = 1; p < s->num_points; p++) {
@@ -108,7 +108,8 @@ static void represent_coincident(brio_plane_store *s) {
     s->stats.duplicates = s->num_points - 1;
 }
 
-/* Gives each record that is no vertex the vertex that represents it. Sets the numbers of vertices, duplicates and hidden
+/* Gives each record that is no vertex the vertex that represents it. Sets the numbers of vertices, duplicates and
+ * hidden
  *  points. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 static brio_status plane_represent(brio_plane_store *s) {
     brio_status status = BRIO_OK;

@@ -1,8 +1,8 @@
 /* The public queries of the plane for triangles and for vertices.
  *
- * The vertex of least power distance: a walk to the query, or to the point of the box nearest to it, and a descent along
- * edges from there (plane_nearest.c). On a line the vertices stand in order, and each is nearer than the next one from
- * some place on, so halving finds the nearest. */
+ * The vertex of least power distance: a walk to the query, or to the point of the box nearest to it, and a descent
+ * along edges from there (plane_nearest.c). On a line the vertices stand in order, and each is nearer than the next one
+ * from some place on, so halving finds the nearest. */
 #include "base/float_state.h"
 #include "plane/plane_holder.h"
 #include "plane/plane_nearest.h"

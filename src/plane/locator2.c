@@ -1,7 +1,8 @@
 /* Makes the object that queries of the plane read (locator2.h).
  *
- * The grid has a square for every four triangles. A square keeps the triangle of lowest index whose first vertex is in it;
- * a square without one keeps that of the square before. So a walk takes a few steps where points are spread evenly. */
+ * The grid has a square for every four triangles. A square keeps the triangle of lowest index whose first vertex is in
+ * it; a square without one keeps that of the square before. So a walk takes a few steps where points are spread
+ * evenly. */
 #include "plane/locator2.h"
 #include "base/float_state.h"
 #include "base/memory.h"
@@ -75,7 +76,8 @@ static brio_status take_line(brio_locator2 *l, const brio_triangulation2 *t) {
 
 /* --- points on a line up to rounding --- */
 
-/* Returns whether all triangles are flat up to the rounding of coordinates. In usual triangulations the first one is not. */
+/* Returns whether all triangles are flat up to the rounding of coordinates. In usual triangulations the first one is
+ * not. */
 static bool is_line(const brio_locator2 *l) {
     double greatest = 0;
     for (int k = 0; k < 2; k++) greatest = fmax(greatest, fmax(fabs(l->low[k]), fabs(l->high[k])));

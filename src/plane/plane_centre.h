@@ -18,8 +18,9 @@ typedef struct {
 /** Adds the triangle of three records: u, v, any number, weight. The batch is not full. */
 void brio_plane_circles_add(brio_plane_circles *b, const double *p, const double *q, const double *r);
 
-/** Computes the centres and empties the batch. The error is at most 2^-44 of the centre's distance from the points, plus the
- *  rounding to doubles; a centre that doubles cannot hold has NaN first.   centre  #count by 3; the third number is of no use. */
+/** Computes the centres and empties the batch. The error is at most 2^-44 of the centre's distance from the points,
+ *  plus the rounding to doubles; a centre that doubles cannot hold has NaN first.   centre  #count by 3; the third
+ *  number is of no use. */
 void brio_plane_circles_solve(brio_plane_circles *b, bool weighted, double (*centre)[3]);
 
 #endif

@@ -1,7 +1,7 @@
 /* The exact check of a triangulation of the plane.
  *
- * The tests are those of triangulation/check.c one dimension lower, where the theorem and its proof stand. The seed o is
- * a point of the first triangle, infinitesimally close to its first vertex, on no line of an edge.
+ * The tests are those of triangulation/check.c one dimension lower, where the theorem and its proof stand. The seed o
+ * is a point of the first triangle, infinitesimally close to its first vertex, on no line of an edge.
  *   1  Every finite triangle is counterclockwise, and the infinite vertex is only ever in slot 2.
  *   2  Mates are mutual and have the same two vertices.
  *   3  Mates see their vertices in opposite orders.
@@ -101,8 +101,8 @@ static brio_status check_edges(brio_plane_judge *j) {
     return BRIO_OK;
 }
 
-/* Returns the side of the line ab on which o lies. The first of the seed's vertices off the line decides: o is infinitely
- * closer to this vertex than to the later ones. */
+/* Returns the side of the line ab on which o lies. The first of the seed's vertices off the line decides: o is
+ * infinitely closer to this vertex than to the later ones. */
 static int side_of_seed(brio_plane_judge *j, uint32_t a, uint32_t b) {
     const uint32_t *seed = j->view.triangle[0].vertex;
     int side = 0;

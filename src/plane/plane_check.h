@@ -16,8 +16,8 @@ typedef struct {
     brio_plane_filter filter;
 } brio_plane_judge;
 
-/** Runs test 6 on one point: point p must not be inside the (ortho)circle of finite triangle t, and ties must be broken by
- *  the perturbation. */
+/** Runs test 6 on one point: point p must not be inside the (ortho)circle of finite triangle t, and ties must be broken
+ *  by the perturbation. */
 brio_status brio_plane_check_circle(brio_plane_judge *j, uint32_t t, uint32_t p);
 
 /** Runs test 7 on the points that are no vertex, and checks every representative and the counts of vertices, duplicates

@@ -1,5 +1,5 @@
-/* The check of the points that are no vertex: test 7 of plane_check.c, representatives and counts. Each point is located
- * exactly: the triangles have passed tests 1 to 6, so the visibility walk ends. */
+/* The check of the points that are no vertex: test 7 of plane_check.c, representatives and counts. Each point is
+ * located exactly: the triangles have passed tests 1 to 6, so the visibility walk ends. */
 #include "base/memory.h"
 #include "base/sort.h"
 #include "plane/plane_check.h"
@@ -51,8 +51,8 @@ static brio_status check_duplicate(workspace *w, uint32_t p, uint32_t v) {
     return BRIO_OK;
 }
 
-/* Checks point p, which is in triangle t and at the position of no vertex. Without weights p is inside the circle, so the
- * check fails. */
+/* Checks point p, which is in triangle t and at the position of no vertex. Without weights p is inside the circle, so
+ * the check fails. */
 static brio_status check_hidden(workspace *w, uint32_t p, uint32_t t) {
     brio_plane_judge *j = w->j;
     brio_plane_nearest nearest = {&j->view, &j->filter, j->num_points, w->corner};

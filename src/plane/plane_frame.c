@@ -1,13 +1,13 @@
 /* Finds the plane or the line of points in space, and coordinates in it.
  *
- * Three points span the frame: the lexicographically first point, the point farthest from that, and the point farthest from
- * the line through both. No rounding makes the points of a plane leave it by more than ROUNDING times the greatest
- * coordinate, so points that are nearer are in the plane, as those of a file of decimals are. Points off the plane get the
- * plane of least squares: the two main axes of the points about their mean. Sums go along the canonical order of the points,
- * so that the frame does not depend on the order of the input.
+ * Three points span the frame: the lexicographically first point, the point farthest from that, and the point farthest
+ * from the line through both. No rounding makes the points of a plane leave it by more than ROUNDING times the greatest
+ * coordinate, so points that are nearer are in the plane, as those of a file of decimals are. Points off the plane get
+ * the plane of least squares: the two main axes of the points about their mean. Sums go along the canonical order of
+ * the points, so that the frame does not depend on the order of the input.
  *
- * A plane of constant x, y or z has the other two coordinates as they are. Based on: Pearson. On lines and planes of closest
- * fit to systems of points in space. Philosophical Magazine 1901. */
+ * A plane of constant x, y or z has the other two coordinates as they are. Based on: Pearson. On lines and planes of
+ * closest fit to systems of points in space. Philosophical Magazine 1901. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rotate.h"

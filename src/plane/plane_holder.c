@@ -1,5 +1,5 @@
-/* Point location in a finished triangulation of the plane: a walk from a triangle near the query. It ends in some triangle
- * that holds the query; the edges whose lines hold the query lead to the others.
+/* Point location in a finished triangulation of the plane: a walk from a triangle near the query. It ends in some
+ * triangle that holds the query; the edges whose lines hold the query lead to the others.
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
 #include "plane/plane_holder.h"
@@ -77,8 +77,8 @@ static unsigned zero_sides(brio_plane_querent *q, uint32_t t, const double *x) {
     return zeros;
 }
 
-/* Walks to a finite triangle whose closure holds x, or returns BRIO_INFINITE. Keeps which lines of its edges hold x: not
- * that of the edge by which the walk came in, because x was strictly beyond it. */
+/* Walks to a finite triangle whose closure holds x, or returns BRIO_INFINITE. Keeps which lines of its edges hold x:
+ * not that of the edge by which the walk came in, because x was strictly beyond it. */
 static uint32_t walk(brio_plane_querent *q, const double *x, unsigned *zeros) {
     const brio_locator2 *l = q->l;
     uint32_t t = *brio_locator2_square(l, x), entered = 3;

@@ -31,8 +31,8 @@ typedef struct {
 /** Returns the number of threads for this many queries: brio_plane_answer_all uses thread numbers below it. */
 int brio_plane_query_threads(brio_context *ctx, size_t count);
 
-/** Calls `answer` once for each query, in any order and from several threads. Each number of a query is read once after the
- *  check that all are finite, and what is read is checked again: the caller's array may change meanwhile.
+/** Calls `answer` once for each query, in any order and from several threads. Each number of a query is read once after
+ *  the check that all are finite, and what is read is checked again: the caller's array may change meanwhile.
  *  threads  what brio_plane_query_threads returned.
  *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE, BRIO_ERR_CANCELLED, and what `answer` returns. */
 brio_status brio_plane_answer_all(brio_context *ctx, int threads, const brio_plane_batch *batch);

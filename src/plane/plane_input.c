@@ -146,8 +146,8 @@ static void choose_axes(brio_plane_input *in, const double (*corner)[4]) {
         set_axes(in, (along + 2) % 3, (along + 1) % 3);
 }
 
-/* Sets the axes for points on a line: u is the axis along which the line is longest. Different numbers have a difference
- * that is not 0, though half of it may be; of lengths that overflow the first one is taken. */
+/* Sets the axes for points on a line: u is the axis along which the line is longest. Different numbers have a
+ * difference that is not 0, though half of it may be; of lengths that overflow the first one is taken. */
 static void choose_line_axes(brio_plane_input *in, const double (*corner)[4]) {
     int u = 0;
     for (int k = 1; k < 3; k++)

@@ -20,8 +20,8 @@ typedef struct {
     brio_plane_record *own; /* of points in space: coordinates and weight; NULL for points of the plane */
 } brio_plane_input;
 
-/** Sets *input. Three coordinates: copies the points and chooses the axes such that (u, v) names a point of the plane, and
- *  such that triangles that are counterclockwise by the rule of brio_delaunay2_flat are counterclockwise in (u, v).
+/** Sets *input. Three coordinates: copies the points and chooses the axes such that (u, v) names a point of the plane,
+ *  and such that triangles that are counterclockwise by the rule of brio_delaunay2_flat are counterclockwise in (u, v).
  *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE (the message names the first bad point), BRIO_ERR_NO_ANSWER (points off the
  *  plane; the message names one), BRIO_ERR_NO_MEMORY. The caller frees the input in either case. */
 brio_status brio_plane_input_set(brio_context *ctx, const double *points, const double *weights, size_t num_points,

@@ -1,8 +1,8 @@
 /* Incremental insertion: locate, dig the cavity, fill the cavity.
  *
  * The triangles in conflict with the point are a disk. A depth-first search that crosses the edges of each triangle
- * counterclockwise meets the edges of the disk's boundary counterclockwise. So the new triangles are made in their cyclic
- * order, and each new triangle is the mate of the next one.
+ * counterclockwise meets the edges of the disk's boundary counterclockwise. So the new triangles are made in their
+ * cyclic order, and each new triangle is the mate of the next one.
  *
  * Two versions are compiled: plain records, and records with weights or a third coordinate.
  *
@@ -24,8 +24,8 @@ ALWAYS_INLINE brio_status reserve(brio_context *ctx, brio_plane_list *list, size
     return list->count + more <= list->capacity ? BRIO_OK : grow(ctx, list, more);
 }
 
-/* Returns whether triangle t conflicts with x. On the line of a hull edge, the conflict of the infinite triangle is that
- * of the triangle behind the edge: its circle meets the line where the edge's own circle does. */
+/* Returns whether triangle t conflicts with x. On the line of a hull edge, the conflict of the infinite triangle is
+ * that of the triangle behind the edge: its circle meets the line where the edge's own circle does. */
 ALWAYS_INLINE bool in_conflict(brio_plane_store *s, uint32_t t, const double *x, const bool general) {
     assert(t < s->count);
     const brio_plane_record *r = s->record;
@@ -82,7 +82,8 @@ static inline void push(brio_plane_list *list, uint32_t item) {
     list->item[list->count++] = item;
 }
 
-/* Adds triangle t to the cavity, entered by its edge in slot i; the edges after it will be looked at counterclockwise. */
+/* Adds triangle t to the cavity, entered by its edge in slot i; the edges after it will be looked at
+ * counterclockwise. */
 ALWAYS_INLINE void dig_triangle(brio_plane_store *s, uint32_t t, uint32_t i, const bool general) {
     assert(t < s->count && i < 3 && !(general && s->dug && s->dug[t])); /* each triangle is dug once */
     const uint32_t *mate = s->triangle[t].mate;

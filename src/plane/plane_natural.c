@@ -1,9 +1,9 @@
 /* Sibson's coordinates of a query in the plane, from its cavity.
  *
  * The cavity is the set of triangles whose circles hold the query x (Bowyer, Watson). Inserted, x would take from the
- * Voronoi cell of each vertex a of the cavity a convex polygon R(a). Its corners are the centres of the cavity's triangles
- * at a, and the centres of x with the two border edges at a. The coordinate of a is the area of R(a), divided by the sum of
- * all these areas.
+ * Voronoi cell of each vertex a of the cavity a convex polygon R(a). Its corners are the centres of the cavity's
+ * triangles at a, and the centres of x with the two border edges at a. The coordinate of a is the area of R(a), divided
+ * by the sum of all these areas.
  *
  * The cavity is a disk without vertices inside, so its triangles are the nodes of a tree whose branches are the edges
  * inside it. A depth-first search that crosses the edges of each triangle counterclockwise goes round this tree, meets
@@ -24,8 +24,8 @@
 
 /* --- barycentric coordinates --- */
 
-/* Coordinates of a query in the triangle that holds it: areas divided by their sum, and refined while they do not reproduce
- * the query, as in locate/natural.c, where the reasons stand. */
+/* Coordinates of a query in the triangle that holds it: areas divided by their sum, and refined while they do not
+ * reproduce the query, as in locate/natural.c, where the reasons stand. */
 
 enum { REFINEMENTS = 2 };
 
@@ -228,8 +228,8 @@ static brio_status add_areas(brio_plane_natural *n, double *sum) {
 
 /* --- the last step --- */
 
-/* Makes the shares reproduce x: multiplies each by 1 + g . (offset - r), r being their mean. Returns false if that takes a
- * change that is no rounding error. */
+/* Makes the shares reproduce x: multiplies each by 1 + g . (offset - r), r being their mean. Returns false if that
+ * takes a change that is no rounding error. */
 static bool correct(brio_plane_natural *n) {
     static const double MOST = 1e-4; /* chosen, as in locate/natural.c */
     double r[2] = {0, 0}, m[2][2] = {{0, 0}, {0, 0}};

@@ -9,8 +9,8 @@
 
 /* Coordinates of a query in the triangle that holds it. */
 
-/** Sets share[i] to the barycentric coordinate of x at vertex i of the triangle. The shares are at least 0 and sum to 1. They
- *  are exactly 0 for vertices opposite to an edge whose line holds x.   h  not outside. */
+/** Sets share[i] to the barycentric coordinate of x at vertex i of the triangle. The shares are at least 0 and sum to
+ *  1. They are exactly 0 for vertices opposite to an edge whose line holds x.   h  not outside. */
 void brio_plane_barycentric(const brio_locator2 *l, const brio_plane_holder *h, const double *x, double share[3]);
 
 /** Sets row to scale (point - x). */
@@ -23,7 +23,8 @@ static inline double brio_plane_cross(const double *a, const double *b) {
     return a[0] * b[1] - a[1] * b[0];
 }
 
-/** A step that the search will take: across `edge` of the triangle beyond it or, with BRIO_INFINITE, back to `centre`. */
+/** A step that the search will take: across `edge` of the triangle beyond it or, with BRIO_INFINITE, back to
+ *  `centre`. */
 typedef struct {
     uint32_t edge, centre;
 } brio_plane_step;
@@ -47,8 +48,8 @@ typedef struct {
 
 void brio_plane_natural_free(brio_plane_natural *n);
 
-/** Computes the coordinates of x: share[0 .. num_points) of the points point[0 .. num_points). They are at least 0 and sum
- *  to 1. Sets *found to false where doubles do not suffice, very near the hull.
+/** Computes the coordinates of x: share[0 .. num_points) of the points point[0 .. num_points). They are at least 0 and
+ *  sum to 1. Sets *found to false where doubles do not suffice, very near the hull.
  *  h  what brio_plane_find_holder found: inside, not on the hull, not at a vertex. The locator has no weights.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_plane_natural_coordinates(brio_plane_natural *n, brio_plane_querent *q, const brio_plane_holder *h,

@@ -13,8 +13,8 @@
  *
  * Between insertions:
  * I1  A finite triangle is counterclockwise.
- * I2  The infinite vertex is only ever in slot 2, and (a, b, x) is counterclockwise for x strictly outside the hull edge
- *     ab of the infinite triangle (a, b, infinite).
+ * I2  The infinite vertex is only ever in slot 2, and (a, b, x) is counterclockwise for x strictly outside the hull
+ *     edge ab of the infinite triangle (a, b, infinite).
  * I3  mate is an involution, and mates have the same two vertices.
  * I4  The triangles are those of the perturbed regular triangulation of the points inserted so far.
  * I5  A slot that is handed out and holds no triangle is listed in `unused`. Only hidden vertices leave such slots.

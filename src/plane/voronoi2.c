@@ -1,8 +1,8 @@
 /* The Voronoi or power diagram of points in the plane, as the dual of their triangulation.
  *
- * A triangle is dual to the centre of its circle. Triangles with one circle, decided exactly, are one vertex: neighbours
- * are joined where the in-circle test is 0, and a class has the number of its first triangle. The region of a point is
- * the sequence of the classes of the triangles at it, counterclockwise.
+ * A triangle is dual to the centre of its circle. Triangles with one circle, decided exactly, are one vertex:
+ * neighbours are joined where the in-circle test is 0, and a class has the number of its first triangle. The region of
+ * a point is the sequence of the classes of the triangles at it, counterclockwise.
  *
  * Based on: Aurenhammer. Power diagrams: properties, algorithms and applications. SIAM J. Computing 1987. */
 #include "base/float_state.h"
@@ -95,7 +95,8 @@ static uint32_t beside(const dual *d, uint32_t t, uint32_t vertex, bool after) {
     return brio_triangle_of(d->triangle[t].mate[after ? brio_slot_after(i) : brio_slot_before(i)]);
 }
 
-/* Returns the triangle where the region of a vertex begins: the first one counterclockwise from the hull, or t inside. */
+/* Returns the triangle where the region of a vertex begins: the first one counterclockwise from the hull, or t
+ * inside. */
 static uint32_t first_round(const dual *d, uint32_t t, uint32_t vertex) {
     for (uint32_t at = t;;) {
         uint32_t before = beside(d, at, vertex, false);

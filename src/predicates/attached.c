@@ -2,15 +2,15 @@
  *
  * Let a, b (and c) be the weighted vertices, d the point, U = b - a, V = c - a, A = a - d. The centre of the smallest
  * orthosphere is z = a + y with y in the span of U and V and 2 U y = U^2 - (wb - wa) = beta, 2 V y = V^2 - (wc - wa) =
- * gamma. The power distance of d from z less the squared radius is kappa + 2 A y with kappa = A^2 + wa - wd. Cramer's rule
- * gives, times the positive Gram determinant,
+ * gamma. The power distance of d from z less the squared radius is kappa + 2 A y with kappa = A^2 + wa - wd. Cramer's
+ * rule gives, times the positive Gram determinant,
  *   edge    kappa U^2 + beta (A U)
  *   facet   kappa (U^2 V^2 - (U V)^2) + beta ((A U) V^2 - (A V)(U V)) + gamma ((A V) U^2 - (A U)(U V)).
  * d is inside when this is negative.
  *
- * Stages: doubles against a bound from the call's own terms; integers for points on a grid; dyadic numbers. With u = 2^-53
- * a scalar product of differences is wrong by at most 6 u times its magnitude, kappa, beta and gamma by 8 u, and a sum of
- * products of three of them by less than 40 u; BOUND is 64 u.
+ * Stages: doubles against a bound from the call's own terms; integers for points on a grid; dyadic numbers. With u =
+ * 2^-53 a scalar product of differences is wrong by at most 6 u times its magnitude, kappa, beta and gamma by 8 u, and
+ * a sum of products of three of them by less than 40 u; BOUND is 64 u.
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
 #include "predicates/dyadic.h"

@@ -1,8 +1,8 @@
 /* Signs of polynomials in the values of g: doubles with bounds of their errors first, then dyadic numbers, then the
  * translation (bisectors.h).
  *
- * A value is a multiple of 2^-2148 below 2^2053, as the scalar products of dyadic.h are, so that products of three of them, and
- * their sums, fit.
+ * A value is a multiple of 2^-2148 below 2^2053, as the scalar products of dyadic.h are, so that products of three of
+ * them, and their sums, fit.
  *
  * Based on: Edelsbrunner, Shah. Triangulating topological spaces. IJCGA 1997, for what is asked.
  *           Edelsbrunner, Muecke. Simulation of simplicity. ACM TOG 1990, for ties.
@@ -104,7 +104,8 @@ int brio_nearer_sample(brio_bisector_counts *n, const double *a, const double *b
     return a[2] > b[2] ? 1 : -1;
 }
 
-/* Returns the sign of the translation's share along the first axis k where it is not 0: (a - b) (g_c(q) - g_c(p)) + (a - c) (g_b(p) - g_b(q)). */
+/* Returns the sign of the translation's share along the first axis k where it is not 0: (a - b) (g_c(q) - g_c(p)) + (a
+ * - c) (g_b(p) - g_b(q)). */
 static int order_of_translated(const double *a, const double *b, const double *c, const brio_dyadic gb[2],
                                const brio_dyadic gc[2]) {
     brio_dyadic db, dc, r;
@@ -143,7 +144,8 @@ static OUT_OF_LINE void exact_area(brio_dyadic *r, const brio_dyadic x[3], const
     brio_dyadic_add(r, r, &m, 1);
 }
 
-/* Returns the sign of the translation's share along the first axis where it is not 0: each row of the determinant in turn replaced by its (a - s). */
+/* Returns the sign of the translation's share along the first axis where it is not 0: each row of the determinant in
+ * turn replaced by its (a - s). */
 static OUT_OF_LINE int side_of_translated(const double *const samples[4], const brio_dyadic g[3][3]) {
     brio_dyadic area[3], r;
     for (int i = 0; i < 3; i++) exact_area(&area[i], g[(i + 1) % 3], g[(i + 2) % 3]);

@@ -4,11 +4,12 @@
  * value = sign * (limb[0] + limb[1] B + ... + limb[size-1] B^(size-1)) * B^low,   B = 2^64
  * I1: sign is 0 exactly when size is 0.   I2: the first and the last limb are not 0.
  *
- * BRIO_DYADIC_CAPACITY is derived from the longest of two polynomials. The in-sphere determinant: A difference of doubles spans 2098 bits or 34 limbs.
- * A sum of three squares takes 69 limbs, and 70 with a weight. A 3 by 3 minor of differences takes 103 limbs. The sum
- * of four products of a lift and a minor takes 175 limbs. The test of brio_attached for a facet: a scalar product of
- * differences, also less a weight, is a multiple of 2^-2148 below 2^2053 and so takes 67 limbs once its leading zeros are
- * dropped; products of three of these take 201 limbs, their sum two more. */
+ * BRIO_DYADIC_CAPACITY is derived from the longest of two polynomials. The in-sphere determinant: A difference of
+ * doubles spans 2098 bits or 34 limbs. A sum of three squares takes 69 limbs, and 70 with a weight. A 3 by 3 minor of
+ * differences takes 103 limbs. The sum of four products of a lift and a minor takes 175 limbs. The test of
+ * brio_attached for a facet: a scalar product of differences, also less a weight, is a multiple of 2^-2148 below 2^2053
+ * and so takes 67 limbs once its leading zeros are dropped; products of three of these take 201 limbs, their sum two
+ * more. */
 #ifndef BRIO_PREDICATES_DYADIC_H
 #define BRIO_PREDICATES_DYADIC_H
 

@@ -10,8 +10,8 @@
 #include <assert.h>
 #include <stdbool.h>
 
-/* Without integers of 128 bits brio_grid_rows declines all points, and the stage of dyadic numbers decides: the same signs,
- * later. */
+/* Without integers of 128 bits brio_grid_rows declines all points, and the stage of dyadic numbers decides: the same
+ * signs, later. */
 #if BRIO_HAS_INT128
 typedef __int128 brio_wide;
 typedef unsigned __int128 brio_unsigned_wide;

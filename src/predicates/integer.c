@@ -2,9 +2,9 @@
  * precision.
  *
  * Where the differences of a call are exact doubles, they are integers times one power of two (grid_rows.h). With
- * integers of at most 20 bits, all products except the last fit 64 bits and the sum fits 128 bits. With at most 41 bits,
- * every 3 by 3 minor fits 128 bits and the sum fits 256 bits. Integers decide a zero in tens of nanoseconds; dyadic
- * numbers take a microsecond. The functions return DECLINED for other calls. */
+ * integers of at most 20 bits, all products except the last fit 64 bits and the sum fits 128 bits. With at most 41
+ * bits, every 3 by 3 minor fits 128 bits and the sum fits 256 bits. Integers decide a zero in tens of nanoseconds;
+ * dyadic numbers take a microsecond. The functions return DECLINED for other calls. */
 #include "predicates/predicates.h"
 #include "predicates/grid_rows.h"
 

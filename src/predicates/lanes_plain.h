@@ -1,5 +1,5 @@
-/* Two doubles side by side: the vector operations of conflict_lanes.h and centre_lanes.h with what every processor of the
- * target has: SSE2, or NEON with its fused operations. */
+/* Two doubles side by side: the vector operations of conflict_lanes.h and centre_lanes.h with what every processor of
+ * the target has: SSE2, or NEON with its fused operations. */
 #ifndef BRIO_PREDICATES_LANES_PLAIN_H
 #define BRIO_PREDICATES_LANES_PLAIN_H
 

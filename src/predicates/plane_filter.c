@@ -1,4 +1,5 @@
-/* Floating-point stages 1 and 2 of the plane's predicates: error bounds, and the permanents from which they are derived.
+/* Floating-point stages 1 and 2 of the plane's predicates: error bounds, and the permanents from which they are
+ * derived.
  *
  * The permanent of an expression is the expression with every term replaced by its magnitude. With u = 2^-53, the error
  * of an estimate is, in the first order,

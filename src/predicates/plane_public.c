@@ -1,5 +1,5 @@
-/* The predicates of the plane in the public header. Points are rows of two doubles, and each call sets bounds for its own
- * points. */
+/* The predicates of the plane in the public header. Points are rows of two doubles, and each call sets bounds for its
+ * own points. */
 #include "base/float_state.h"
 #include "brio/brio.h"
 #include "predicates/plane.h"

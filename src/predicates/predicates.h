@@ -84,9 +84,9 @@ int brio_power_compare(const double *x, const double *p, const double *q);
 int brio_power_compare_double_double(const double *x, const double *p, const double *q, double magnitude);
 int brio_power_compare_exact(const double *x, const double *p, const double *q);
 
-/** Returns whether a record d is strictly inside the smallest orthosphere of an edge (count 2) or a facet (count 3) that
- *  is not degenerate: whether its power distance to the centre is less than the squared radius. Exact. The edge or facet
- *  is then attached to the simplex that d spans with it; where no d is inside, it is Gabriel.
+/** Returns whether a record d is strictly inside the smallest orthosphere of an edge (count 2) or a facet (count 3)
+ *  that is not degenerate: whether its power distance to the centre is less than the squared radius. Exact. The edge or
+ *  facet is then attached to the simplex that d spans with it; where no d is inside, it is Gabriel.
  *  p  count + 1 records, d the last of them. */
 bool brio_attached(const double *const *p, int count, bool weighted);
 int brio_attached_dyadic(const double *const *p, int count, bool weighted);

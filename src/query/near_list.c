@@ -73,8 +73,8 @@ static void take_squares(const brio_near_list *l, numbers *n) {
     assert(n->count <= ROOM);
 }
 
-/* Finds the least bound that holds `wanted` points of the list. Returns false if it did not find one: there is none where
- * several points are at one distance. */
+/* Finds the least bound that holds `wanted` points of the list. Returns false if it did not find one: there is none
+ * where several points are at one distance. */
 static bool find_bound(const brio_near_list *l, double *bound) {
     numbers n;
     take_squares(l, &n);

@@ -24,8 +24,8 @@ brio_status brio_point_tree_fits(brio_context *ctx, size_t count);
  *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t count, brio_point_tree *out);
 
-/** Builds a tree as brio_point_tree_new does, of the points times 2^exponent. Squares of distances must be neither infinite nor 0, so points
- *  far from 1 are scaled. */
+/** Builds a tree as brio_point_tree_new does, of the points times 2^exponent. Squares of distances must be neither
+ *  infinite nor 0, so points far from 1 are scaled. */
 brio_status brio_point_tree_scaled(brio_context *ctx, const double *points, size_t count, int exponent,
                                    brio_point_tree *out);
 void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree);

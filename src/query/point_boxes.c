@@ -1,7 +1,7 @@
 /* Boxes about runs of points, for some queries of nearest points.
  *
- * A query looks at the runs about its point first: the last of the nearest points there bounds the search. It then enters
- * the boxes that are within the bound. */
+ * A query looks at the runs about its point first: the last of the nearest points there bounds the search. It then
+ * enters the boxes that are within the bound. */
 #include "query/point_boxes.h"
 #include "base/memory.h"
 #include "base/team.h"
@@ -63,8 +63,8 @@ void brio_point_boxes_free(brio_context *ctx, brio_point_boxes *boxes) {
     *boxes = (brio_point_boxes){0};
 }
 
-/* Returns the square of the distance of a box; not more than the computed square of any of its points, because each step
- * rounds in the same direction. */
+/* Returns the square of the distance of a box; not more than the computed square of any of its points, because each
+ * step rounds in the same direction. */
 static double square_of_box(const brio_box *b, const double *p) {
     double d[3];
     for (int k = 0; k < 3; k++) d[k] = p[k] < b->low[k] ? b->low[k] - p[k] : p[k] > b->high[k] ? p[k] - b->high[k] : 0;

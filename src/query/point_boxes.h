@@ -10,9 +10,9 @@ typedef struct {
 
 enum { BRIO_BOX_LEVELS = 12 };
 
-/** Boxes about RUN consecutive points, then about FAN consecutive boxes of the level below, up to a single box. Built in
- *  one pass over the points: a thirtieth of the time of a tree (nearest_points.h). Queries are fast where points that are
- *  neighbours in memory are neighbours in space. */
+/** Boxes about RUN consecutive points, then about FAN consecutive boxes of the level below, up to a single box. Built
+ *  in one pass over the points: a thirtieth of the time of a tree (nearest_points.h). Queries are fast where points
+ *  that are neighbours in memory are neighbours in space. */
 typedef struct {
     size_t count;
     const double (*point)[3];

@@ -1,10 +1,10 @@
 /* The closed-ball property, by counting.
  *
- * An edge of the Voronoi diagram meets the surface in as many points as there are crossings. A facet meets it in curves made
- * of segments, one for each face; segments are joined where an edge of the surface meets the facet, and end at crossings. The
- * curves are one arc when they hang together and have two ends. A cell meets the surface in a region of polygons, joined
- * across edges of the surface; it is a disk when it hangs together and its Euler characteristic is 1: no closed surface, and
- * none with another boundary than one circle, has that.
+ * An edge of the Voronoi diagram meets the surface in as many points as there are crossings. A facet meets it in curves
+ * made of segments, one for each face; segments are joined where an edge of the surface meets the facet, and end at
+ * crossings. The curves are one arc when they hang together and have two ends. A cell meets the surface in a region of
+ * polygons, joined across edges of the surface; it is a disk when it hangs together and its Euler characteristic is 1:
+ * no closed surface, and none with another boundary than one circle, has that.
  *
  * Based on: Edelsbrunner, Shah. Triangulating topological spaces. IJCGA 1997. */
 #include "base/memory.h"
@@ -93,7 +93,7 @@ typedef struct {
     size_t count, joint_capacity, segment_capacity;
 } facet_work;
 
-/* Whether the segments whose ends are [begin, end) of the order make one arc. */
+/* Returns whether the segments whose ends are [begin, end) of the order make one arc. */
 static brio_status is_arc(brio_context *ctx, facet_work *w, size_t begin, size_t end, bool *arc) {
     size_t segments = (end - begin) / 2, joints = 0, ends = 0, sets = 0;
     BRIO_FORWARD(BRIO_RESERVE(ctx, w->joint, w->joint_capacity, end - begin));
@@ -114,7 +114,7 @@ static brio_status is_arc(brio_context *ctx, facet_work *w, size_t begin, size_t
     return BRIO_OK;
 }
 
-/* Every segment has two ends: the lists are of one complex. */
+/* Checks the segments. Every segment has two ends: the lists are of one complex. */
 static brio_status check_segments(const brio_restriction *r, const facet_work *w) {
     bool paired = w->count % 2 == 0;
     for (size_t i = 0; i + 1 < w->count && paired; i += 2)
@@ -147,7 +147,7 @@ static brio_status count_facets(const brio_restriction *r, facet_work *w, brio_b
 
 /* --- cells --- */
 
-/* The Euler characteristic of each region: polygons, less their sides, plus their corners. */
+/* Adds up the Euler characteristic of each region: polygons, less their sides, plus their corners. */
 static void add_up_cells(const brio_restriction *r, const facet_work *w, int64_t *chi) {
     for (size_t i = 0; i < r->num_pieces; i++) chi[r->piece[i] >> 32]++;
     for (size_t v = 0; v < r->surface->num_vertices; v++)
@@ -163,7 +163,7 @@ static void add_up_cells(const brio_restriction *r, const facet_work *w, int64_t
         for (int k = 0; k < 2; k++) chi[w->end[w->order[i]].sample[k]]--;
 }
 
-/* The place of a piece in the list. */
+/* Returns the place of a piece in the list. */
 static uint32_t place_of(const brio_restriction *r, const uint64_t *first, uint32_t face, uint32_t sample) {
     uint64_t low = first[face], high = first[face + 1];
     while (low + 1 < high) {

@@ -1,15 +1,15 @@
 /* Cuts a surface along the Voronoi cells of samples.
  *
- * Vertices: from a sample near the last one, along Delaunay edges to a nearer sample, until none is nearer. Edges: from the
- * cell of one end through the bisector that is met first, and so on to the cell of the other end. Faces: from the cells that
- * the border meets to all that the face meets. A polygon is convex, so the lines between polygons hang together with the
- * border; and the Voronoi edges round each cell that the face meets lead to all the others.
+ * Vertices: from a sample near the last one, along Delaunay edges to a nearer sample, until none is nearer. Edges: from
+ * the cell of one end through the bisector that is met first, and so on to the cell of the other end. Faces: from the
+ * cells that the border meets to all that the face meets. A polygon is convex, so the lines between polygons hang
+ * together with the border; and the Voronoi edges round each cell that the face meets lead to all the others.
  * A Voronoi edge is where a line of points with three nearest samples is on the near sides of the bisectors of the two
  * tetrahedra at the Delaunay triangle. On the hull there is one.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.7.
- *           Yan, Levy, Liu, Sun, Wang. Isotropic remeshing with fast and exact computation of restricted Voronoi diagram.
- *           SGP 2009, for going from cell to cell.
+ *           Yan, Levy, Liu, Sun, Wang. Isotropic remeshing with fast and exact computation of restricted Voronoi
+ *           diagram. SGP 2009, for going from cell to cell.
  * Differs from the paper: polygons are not clipped; only signs say what is there. */
 #include "base/memory.h"
 #include "base/sort.h"
@@ -93,7 +93,7 @@ static brio_status locate_vertices(brio_restriction *r) {
 
 /* --- along edges --- */
 
-/* The cell that the line from p to q enters when it leaves that of sample a; BRIO_INFINITE when q is in it. */
+/* Returns the cell that the line from p to q enters when it leaves that of sample a; BRIO_INFINITE when q is in it. */
 static uint32_t next_cell(brio_restriction *r, uint32_t a, const double *p, const double *q) {
     const brio_incidences *near = &r->neighbours;
     uint32_t next = BRIO_INFINITE;
@@ -143,8 +143,8 @@ static brio_status meet(brio_restriction *r, face_cells *c, uint32_t f, uint32_t
     return BRIO_OK;
 }
 
-/* Whether a face meets the Voronoi edge of the facet of tetrahedron t opposite to slot i; its samples ascend. The sign is
- * that of brio_crossing, 0 for no. */
+/* Returns whether a face meets the Voronoi edge of the facet of tetrahedron t opposite to slot i; its samples ascend.
+ * The sign is that of brio_crossing, 0 for no. */
 static int crosses(brio_restriction *r, uint32_t f, uint32_t t, int i, uint32_t s[3]) {
     const uint32_t *v = face(r, f);
     const double *p[3] = {corner(r, v[0]), corner(r, v[1]), corner(r, v[2])};

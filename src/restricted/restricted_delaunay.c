@@ -1,12 +1,12 @@
 /* The restricted Delaunay triangulation of samples on a known surface, and the closed-ball property.
  *
- *   samples -> Delaunay triangulation -> surface cut by the Voronoi cells (cut.c) -> triangles, one for each Voronoi edge
- *   that meets the surface -> which cells, facets and edges meet it in closed balls (closed_ball.c)
+ *   samples -> Delaunay triangulation -> surface cut by the Voronoi cells (cut.c) -> triangles, one for each Voronoi
+ *   edge that meets the surface -> which cells, facets and edges meet it in closed balls (closed_ball.c)
  *
- * If all do, the triangles are homeomorphic to the surface. Everything is decided by exact signs. Ties are broken in two
- * stages: the surface is translated by an infinitely small vector, and the samples' triangulation is the perturbed one of
- * brio_delaunay, whose perturbation counts as smaller still. The surface may cross itself: the cells cut it as it is
- * connected, and the triangles are then homeomorphic to it as a mesh.
+ * If all do, the triangles are homeomorphic to the surface. Everything is decided by exact signs. Ties are broken in
+ * two stages: the surface is translated by an infinitely small vector, and the samples' triangulation is the perturbed
+ * one of brio_delaunay, whose perturbation counts as smaller still. The surface may cross itself: the cells cut it as
+ * it is connected, and the triangles are then homeomorphic to it as a mesh.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 2.7.
  *           Edelsbrunner, Shah. Triangulating topological spaces. IJCGA 1997. */
@@ -62,7 +62,8 @@ static void end(brio_restriction *r) {
     brio_release(r->ctx, r->piece);
 }
 
-/* The triangles of the crossings, which are sorted, each once, seen from the side of the face that is met first. */
+/* Makes the triangles of the crossings, which are sorted, each once, seen from the side of the face that is met
+ * first. */
 static brio_status make_mesh(const brio_restriction *r, size_t num_points, const uint8_t *bad, brio_mesh **out) {
     brio_context *ctx = r->ctx;
     brio_status status = BRIO_OK;

@@ -1,9 +1,9 @@
 /* The pieces of a surface that the Voronoi cells of samples cut out of it, by incidences alone.
  *
- * A face is cut into convex polygons, one for each cell that it meets. Their corners are corners of the face, points where
- * an edge of the face meets the bisector of two samples, and points where the face meets the Voronoi edge of three. Each is
- * decided exactly (predicates/bisectors.h), so the lists below are those of one cell complex, whose counts and joints tell
- * the topology of every piece. No point is constructed. */
+ * A face is cut into convex polygons, one for each cell that it meets. Their corners are corners of the face, points
+ * where an edge of the face meets the bisector of two samples, and points where the face meets the Voronoi edge of
+ * three. Each is decided exactly (predicates/bisectors.h), so the lists below are those of one cell complex, whose
+ * counts and joints tell the topology of every piece. No point is constructed. */
 #ifndef BRIO_RESTRICTED_WORK_H
 #define BRIO_RESTRICTED_WORK_H
 

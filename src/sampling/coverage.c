@@ -1,11 +1,12 @@
 /* How well points cover a surface, and the surface the points.
  *
- * The spacing at a point is what it would be on a square grid that has as many points within the distance of the sixth nearest
- * one. Faces are cut into fans, and these into parts of about two spacings, at most GRID to a side. The distance of a
- * part is that of its middle from the nearest point, in spacings at that point. Faces that are over SUSPECT somewhere and
- * meet across edges are a bridge if one of them is over FAR.
+ * The spacing at a point is what it would be on a square grid that has as many points within the distance of the sixth
+ * nearest one. Faces are cut into fans, and these into parts of about two spacings, at most GRID to a side. The
+ * distance of a part is that of its middle from the nearest point, in spacings at that point. Faces that are over
+ * SUSPECT somewhere and meet across edges are a bridge if one of them is over FAR.
  *
- * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure the
+ * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure
+ * the
  *           sampling). */
 #include "base/finite.h"
 #include "base/float_state.h"
@@ -161,8 +162,8 @@ done:
     return status;
 }
 
-/* Sums up what is known of the faces. Afterwards of[f].ratio of the first face of a bridge is that of the bridge, and its area,
- * distance and place are the bridge's. */
+/* Sums up what is known of the faces. Afterwards of[f].ratio of the first face of a bridge is that of the bridge, and
+ * its area, distance and place are the bridge's. */
 static brio_status sum_up(const coverage *c, uint8_t *bridge, brio_coverage *out) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = c->mesh;

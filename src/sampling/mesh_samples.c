@@ -1,9 +1,9 @@
 /* Samples of the faces of a mesh: its vertices, and points between them where these are farther apart than the spacing.
  *
  * Each triangle gets rows of points parallel to its longest side, the rows and the points of a row at most SHARE of the
- * spacing apart. A place of the triangle is less than 1.12 SHARE spacings from one of them: half a step along the row below
- * it, and a step up. Of all these points those that are half a spacing from each vertex are thinned to half a spacing. So each
- * place is within (1.12 SHARE + 0.5) spacings of a sample.
+ * spacing apart. A place of the triangle is less than 1.12 SHARE spacings from one of them: half a step along the row
+ * below it, and a step up. Of all these points those that are half a spacing from each vertex are thinned to half a
+ * spacing. So each place is within (1.12 SHARE + 0.5) spacings of a sample.
  *
  * Based on: Cook. Stochastic sampling in computer graphics. ACM Transactions on Graphics 1986 (brio_thin). */
 #include "base/finite.h"

@@ -1,17 +1,17 @@
 /* Finds outliers: points that are much farther from their neighbours than these are from theirs.
  *
- * The spacing of a point is its mean distance to its k nearest points. A point is an outlier if its spacing is more than
- * `factor` times the lower quartile of the spacings of its k nearest points. The comparison is with the surroundings
- * and not with all points, so where a scan becomes sparse by and by nothing is dropped. In space far from the scan the
- * neighbours of an outlier are outliers, too. So a point is also an outlier if the logarithm of its spacing is DEVIATIONS
- * robust standard deviations above the median of these logarithms (the median absolute deviation times 1.4826).
- * A spacing up to factor^2 times the median is always allowed by this rule. Nothing here depends on the unit, so points
- * far from 1 are taken times a power of two: the squares of their distances would be infinite or 0.
+ * The spacing of a point is its mean distance to its k nearest points. A point is an outlier if its spacing is more
+ * than `factor` times the lower quartile of the spacings of its k nearest points. The comparison is with the
+ * surroundings and not with all points, so where a scan becomes sparse by and by nothing is dropped. In space far from
+ * the scan the neighbours of an outlier are outliers, too. So a point is also an outlier if the logarithm of its
+ * spacing is DEVIATIONS robust standard deviations above the median of these logarithms (the median absolute deviation
+ * times 1.4826). A spacing up to factor^2 times the median is always allowed by this rule. Nothing here depends on the
+ * unit, so points far from 1 are taken times a power of two: the squares of their distances would be infinite or 0.
  *
- * Spacings are rounded, and so are the coordinates that a file gives. Spacings that differ by rounding alone must not stand
- * out from each other. So each spacing is taken as an interval (`slack_of`): a point is an outlier only if the low end of its
- * spacing is above a threshold that was made of high ends. Logarithms are those of spacings divided by their median: they
- * are the same at every scale by a power of two.
+ * Spacings are rounded, and so are the coordinates that a file gives. Spacings that differ by rounding alone must not
+ * stand out from each other. So each spacing is taken as an interval (`slack_of`): a point is an outlier only if the
+ * low end of its spacing is above a threshold that was made of high ends. Logarithms are those of spacings divided by
+ * their median: they are the same at every scale by a power of two.
  *
  * Based on: Breunig Kriegel Ng Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
  * Differs from the paper: mean distances instead of reachability distances, a quartile instead of a mean, and the
@@ -30,8 +30,8 @@
 /* POINTS_A_THREAD, GROUP (points between two reports of progress): chosen. */
 enum { POINTS_A_THREAD = 1 << 8, CHUNK = 1 << 10, GROUP = 1 << 16 };
 
-/* Derived: where usual coordinates are between 2^-ORDINARY and 2^ORDINARY, squares of their distances are finite, and those
- * of distances 2^-250 times as large are normal numbers. */
+/* Derived: where usual coordinates are between 2^-ORDINARY and 2^ORDINARY, squares of their distances are finite, and
+ * those of distances 2^-250 times as large are normal numbers. */
 enum { ORDINARY = 256 };
 
 /* Chosen on the sets of docs/algorithms.md, with the factor. */
@@ -68,9 +68,9 @@ static size_t find_near(const search *s, size_t place, brio_near_point *near) {
 }
 
 /* Returns how far the spacing of a point may be from that of the points before they were rounded to doubles. Derived: a
- * squared distance is rounded by 5 units of ROUNDING at most, a root by 4, a sum of k roots by k + 4, their mean by k + 5.
- * Both ends of a distance may be rounded by ROUNDING times their coordinates, along three axes: by 4 times that in all. The
- * neighbours' coordinates exceed those of the point by k spacings at most. */
+ * squared distance is rounded by 5 units of ROUNDING at most, a root by 4, a sum of k roots by k + 4, their mean by k +
+ * 5. Both ends of a distance may be rounded by ROUNDING times their coordinates, along three axes: by 4 times that in
+ * all. The neighbours' coordinates exceed those of the point by k spacings at most. */
 static double slack_of(const search *s, size_t place) {
     const double *p = s->tree.point[place];
     double greatest = fmax(fabs(p[0]), fmax(fabs(p[1]), fabs(p[2])));

@@ -8,7 +8,8 @@
  * points.
  *
  * Points are sorted by the number of their cell. A slab keeps its chosen points in front of its part of the sorted
- * arrays, so they are sorted too: while the slab goes from cell to cell, nine cursors run along the rows of cells around.
+ * arrays, so they are sorted too: while the slab goes from cell to cell, nine cursors run along the rows of cells
+ * around.
  *
  * Based on: Cook. Stochastic sampling in computer graphics. ACM Transactions on Graphics 5, 1986 (Poisson disks: points
  * with a least distance). Differs from the paper: chosen from given points, in an order that only their positions
@@ -93,8 +94,8 @@ static bool count_bits(thinning *t, const double high[3]) {
     return sum <= KEY_BITS;
 }
 
-/* Makes the cells as wide as the spacing asks, or wider if their numbers would have too many bits. The points were finite
- * when the call began, but another thread of the caller may have written to them since. */
+/* Makes the cells as wide as the spacing asks, or wider if their numbers would have too many bits. The points were
+ * finite when the call began, but another thread of the caller may have written to them since. */
 static brio_status find_cells(thinning *t, double spacing) {
     double high[3];
     for (int k = 0; k < 3; k++) t->low[k] = high[k] = t->points[k];

@@ -1,5 +1,5 @@
-/* The values of a tree of solids on a grid, by blocks of cells: far from the surface a block has one value, near it only
- * the nodes count that the block needs. */
+/* The values of a tree of solids on a grid, by blocks of cells: far from the surface a block has one value, near it
+ * only the nodes count that the block needs. */
 #ifndef BRIO_TESTDATA_CSG_BLOCKS_H
 #define BRIO_TESTDATA_CSG_BLOCKS_H
 
@@ -31,8 +31,8 @@ brio_status brio_csg_blocks_find(brio_context *ctx, const brio_csg *tree, const 
 brio_status brio_csg_blocks_make(brio_context *ctx, const brio_csg *tree, const brio_implicit_grid *grid,
                                  brio_csg_blocks *out);
 
-/** A brio_implicit_fn whose user data is a brio_csg_blocks. Within a block's distance of the surface the value is that of
- *  the tree; elsewhere it has the right sign. */
+/** Returns the value: a brio_implicit_fn whose user data is a brio_csg_blocks. Within a block's distance of the surface
+ *  the value is that of the tree; elsewhere it has the right sign. */
 double brio_csg_blocks_value(const double *p, const void *blocks);
 
 void brio_csg_blocks_free(brio_context *ctx, brio_csg_blocks *blocks);

@@ -172,7 +172,7 @@ static double blend_min(brio_csg_blend blend, double a, double b, double reach) 
     return least;
 }
 
-/* Whether child c of n counts with its value negated: the tree then is a minimum throughout. */
+/* Returns whether child c of n counts with its value negated: the tree then is a minimum throughout. */
 static bool counts_negated(const brio_csg_node *n, uint32_t c) {
     return n->kind == BRIO_CSG_COMMON || (n->kind == BRIO_CSG_CUT && c == n->first);
 }
@@ -196,8 +196,8 @@ static void mark_children(const visit *w, const brio_csg_node *n, const double *
     }
 }
 
-/* Whether the bounding ball of a strand shows that its value is not below `least`, so that the minimum is known without
- * the value. */
+/* Returns whether the bounding ball of a strand shows that its value is not below `least`, so that the minimum is known
+ * without the value. */
 static bool is_beyond(const brio_csg_node *n, const brio_csg_node *child, const double *p, double least) {
     if (child->kind != BRIO_CSG_STRAND || n->kind != BRIO_CSG_UNION || n->blend != BRIO_BLEND_SHARP) return false;
     double reach = fmax(least, 0) + child->v[3];
@@ -231,7 +231,7 @@ static double placed(const visit *w, const brio_csg_node *n, const double *p) {
     return below(w, n, q);
 }
 
-/* Of the copies, the two that are nearest by angle decide. */
+/* Returns the value of copies round an axis. Of the copies, the two that are nearest by angle decide. */
 static double ring(const visit *w, const brio_csg_node *n, const double *p) {
     double sector = FULL_TURN / n->v[0], turn = atan2(p[1], p[0]) / sector, near = rint(turn);
     double other = turn < near ? near - 1 : near + 1, least = INFINITY;
@@ -242,7 +242,8 @@ static double ring(const visit *w, const brio_csg_node *n, const double *p) {
     return least;
 }
 
-/* Of the copies along an axis, the nearest one decides: the child is symmetric in x and in y. */
+/* Returns the value of copies on a grid. Of the copies along an axis, the nearest one decides: the child is symmetric
+ * in x and in y. */
 static double grid(const visit *w, const brio_csg_node *n, const double *p) {
     double q[3] = {p[0], p[1], p[2]};
     for (int k = 0; k < 2; k++) {
@@ -257,7 +258,7 @@ static double twisted(const visit *w, const brio_csg_node *n, const double *p) {
     return below(w, n, (const double[3]){c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]}) / n->v[1];
 }
 
-/* Three crossed waves; the division keeps the slope at most 1. */
+/* Returns the value with three crossed waves; the division keeps the slope at most 1. */
 static double waved(const visit *w, const brio_csg_node *n, const double *p) {
     double a = n->v[0], f = n->v[1], wave = 1;
     for (int k = 0; k < 3; k++) wave *= sin(f * p[k] + n->v[2 + k]);

@@ -1,12 +1,12 @@
 /* A simulated depth camera: a frame of a room with spheres, whose depths are rounded.
  *
- * The camera looks along z. Each pixel sees the nearest of the wall, the floor and the spheres, with noise that grows with
- * the square of the depth, as triangulation with a projector has it. The depth is rounded to whole millimetres, and the
- * other coordinates follow from the pixel. So neighbouring pixels lie on planes of equal depth, many of them at the
- * corners of squares: thousands of points on common circles, and rays that share a centre.
+ * The camera looks along z. Each pixel sees the nearest of the wall, the floor and the spheres, with noise that grows
+ * with the square of the depth, as triangulation with a projector has it. The depth is rounded to whole millimetres,
+ * and the other coordinates follow from the pixel. So neighbouring pixels lie on planes of equal depth, many of them at
+ * the corners of squares: thousands of points on common circles, and rays that share a centre.
  *
- * Based on: Khoshelham, Oude Elberink. Accuracy and resolution of Kinect depth data for indoor mapping applications. Sensors
- * 2012 (noise and quantisation). */
+ * Based on: Khoshelham, Oude Elberink. Accuracy and resolution of Kinect depth data for indoor mapping applications.
+ * Sensors 2012 (noise and quantisation). */
 #include "testdata/depth.h"
 #include "base/rng.h"
 #include <math.h>
@@ -33,7 +33,7 @@ brio_depth_frame brio_depth_frame_of(size_t n, uint64_t seed) {
     return frame;
 }
 
-/* Depth at which the ray (x, y, 1) meets a sphere first, or the wall's. */
+/* Returns the depth at which the ray (x, y, 1) meets a sphere first, or the wall's. */
 static double depth_of_sphere(const double *s, double x, double y) {
     double a = x * x + y * y + 1, b = x * s[0] + y * s[1] + s[2];
     double c = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] - s[3] * s[3], inside = b * b - a * c;

@@ -14,10 +14,10 @@ typedef struct {
     double sphere[BRIO_DEPTH_SPHERES][4]; /* centre, radius */
 } brio_depth_frame;
 
-/** A frame of n pixels, four to three, the last row perhaps not full. */
+/** Returns a frame of n pixels, four to three, the last row perhaps not full. */
 brio_depth_frame brio_depth_frame_of(size_t n, uint64_t seed);
 
-/** The point of pixel i, row by row, in millimetres. */
+/** Writes the point of pixel i, row by row, in millimetres. */
 void brio_depth_point(const brio_depth_frame *frame, size_t i, double *p);
 
 #endif

@@ -1,7 +1,8 @@
 /* Points of well-known kinds, for tests, examples and measurements.
  *
- * The seed and i alone determine point i, for every number of threads and, but for grids and frames, for every n. The round kinds use rejection and
- * square roots and no other function of the mathematical library, so their numbers are equal on every machine.
+ * The seed and i alone determine point i, for every number of threads and, but for grids and frames, for every n. The
+ * round kinds use rejection and square roots and no other function of the mathematical library, so their numbers are
+ * equal on every machine.
  *
  * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
 #include "base/float_state.h"

@@ -6,8 +6,8 @@
  * inside must have the surface's Euler characteristic, so that no gap is nearly closed and no bar nearly cut. A solid
  * that fails is dropped, and the next one is drawn, of the same family, so that families that often fail are not rare.
  *
- * The good solid is meshed finely, its crumbs are dropped, its sharp edges are recovered, and it is scaled. The checks do
- * not depend on the resolution that is asked for, so the seed alone determines the solid. */
+ * The good solid is meshed finely, its crumbs are dropped, its sharp edges are recovered, and it is scaled. The checks
+ * do not depend on the resolution that is asked for, so the seed alone determines the solid. */
 #include "base/float_state.h"
 #include "base/vector.h"
 #include "iso/dual_optimize.h"

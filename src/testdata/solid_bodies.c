@@ -2,7 +2,7 @@
 #include "testdata/solid_families.h"
 #include <math.h>
 
-/* A smooth union that the parts of a body are joined to. */
+/* Returns a smooth union that the parts of a body are joined to. */
 static uint32_t body_new(brio_solid_maker *m) {
     double reach = brio_solid_spacings(m, 2, 8);
     return brio_solid_combine(m, BRIO_CSG_UNION, BRIO_BLEND_SMOOTH, reach);
@@ -16,7 +16,7 @@ static void ball_at(brio_solid_maker *m, uint32_t body, double r, double x, doub
     brio_solid_join(m, body, brio_solid_move(m, brio_solid_ball(m, r), x, y, z));
 }
 
-/* A curl that starts at p in direction d, bends evenly and tapers from r to s. */
+/* Makes a curl that starts at p in direction d, bends evenly and tapers from r to s. */
 static void curl(brio_solid_maker *m, uint32_t body, const double *p, const double *d, double r, double s) {
     enum { POINTS = 19 };
     double points[POINTS][4], at[3] = {p[0], p[1], p[2]}, to[3] = {d[0], d[1], d[2]}, bend[3];
@@ -34,7 +34,7 @@ static void curl(brio_solid_maker *m, uint32_t body, const double *p, const doub
 
 /* --- creatures --- */
 
-/* A flat ellipsoid that stands out from p along d: an ear, a fin or a wing. */
+/* Makes a flat ellipsoid that stands out from p along d: an ear, a fin or a wing. */
 static void fin(brio_solid_maker *m, uint32_t body, const double *p, const double *d) {
     double thick = 0.5 * brio_solid_size(m), long_half = brio_solid_uniform(m, 0.05, 0.16);
     double wide = brio_solid_uniform(m, 0.03, 0.09);

@@ -1,10 +1,10 @@
 /* Euler characteristics of level sets, without their meshes.
  *
  * Marching tetrahedra make a vertex on each edge of Kuhn's subdivision whose ends are on different sides. A tetrahedron
- * adds one triangle where one of its corners is alone on its side, two where two are. A closed surface of F triangles has
- * 3 F / 2 edges, so its Euler characteristic is V - F / 2. A cell counts its own triangles, and the vertices on the seven
- * edges from its least corner; edges from nodes without a cell are on the border, where all is outside. So the sides of a
- * cell's eight corners give its share, by a table. */
+ * adds one triangle where one of its corners is alone on its side, two where two are. A closed surface of F triangles
+ * has 3 F / 2 edges, so its Euler characteristic is V - F / 2. A cell counts its own triangles, and the vertices on the
+ * seven edges from its least corner; edges from nodes without a cell are on the border, where all is outside. So the
+ * sides of a cell's eight corners give its share, by a table. */
 #include "testdata/solid_levels.h"
 
 enum { CORNERS = 8, SIDES = 1 << CORNERS };

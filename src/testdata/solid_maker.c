@@ -148,7 +148,7 @@ uint32_t brio_solid_spin(brio_solid_maker *m, uint32_t child, double angle) {
     return place(m, child, (const double[3][3]){{c, s, 0}, {-s, c, 0}, {0, 0, 1}}, NULL);
 }
 
-/* The rotation of a uniform unit quaternion is uniform. */
+/* Turns a child at random. The rotation of a uniform unit quaternion is uniform. */
 uint32_t brio_solid_tumble(brio_solid_maker *m, uint32_t child) {
     double q[4];
     direction(m, q, 4);

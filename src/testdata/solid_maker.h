@@ -1,7 +1,7 @@
 /* What the makers of random solids share: random numbers, sizes of features, and shapes put in place.
  *
- * Solids are made about 1 in diagonal round the origin. Draw random numbers one a statement: C does not fix the order in
- * which the arguments of a call are evaluated. */
+ * Solids are made about 1 in diagonal round the origin. Draw random numbers one a statement: C does not fix the order
+ * in which the arguments of a call are evaluated. */
 #ifndef BRIO_TESTDATA_SOLID_MAKER_H
 #define BRIO_TESTDATA_SOLID_MAKER_H
 
@@ -65,7 +65,7 @@ uint32_t brio_solid_combine(brio_solid_maker *m, brio_csg_kind kind, brio_csg_bl
 
 void brio_solid_join(brio_solid_maker *m, uint32_t parent, uint32_t child);
 
-/** The child with a parameter: BRIO_CSG_SHELL, SHEET, GROW, RING, MIRROR. */
+/** Returns the child with a parameter: BRIO_CSG_SHELL, SHEET, GROW, RING, MIRROR. */
 uint32_t brio_solid_over(brio_solid_maker *m, brio_csg_kind kind, uint32_t child, double parameter);
 
 uint32_t brio_solid_move(brio_solid_maker *m, uint32_t child, double x, double y, double z);
@@ -82,7 +82,7 @@ uint32_t brio_solid_spin(brio_solid_maker *m, uint32_t child, double angle);
 /** Turns the child by a random rotation. */
 uint32_t brio_solid_tumble(brio_solid_maker *m, uint32_t child);
 
-/** The points of the child with d.x <= level, d being a unit vector; the edge is blended. */
+/** Returns the points of the child with d.x <= level, d being a unit vector; the edge is blended. */
 uint32_t brio_solid_trim(brio_solid_maker *m, uint32_t child, const double *d, double level, double reach);
 
 #endif

@@ -146,7 +146,7 @@ static void normal_at(const brio_implicit_grid *grid, const double *p, double *n
     for (int k = 0; k < 3; k++) n[k] = length > 0 ? n[k] / length : 0;
 }
 
-/* Whether the line from p along side * n leaves that side of the surface soon. */
+/* Returns whether the line from p along side * n leaves that side of the surface soon. */
 static bool is_thin(const probe *w, const double *p, const double *n, double side) {
     for (int i = 0; i < PROBES; i++) {
         double t = w->thickness * (FIRST_PROBE + (1 - FIRST_PROBE) * i / (PROBES - 1)), q[3], other[3];

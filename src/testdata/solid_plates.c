@@ -3,7 +3,7 @@
 #include "testdata/solid_families.h"
 #include <math.h>
 
-/* A wall's thickness, at most `most`. */
+/* Returns a wall's thickness, at most `most`. */
 static double wall(brio_solid_maker *m, double most) {
     double t = brio_solid_size(m);
     return fmin(t, most);
@@ -11,7 +11,7 @@ static double wall(brio_solid_maker *m, double most) {
 
 /* --- brackets --- */
 
-/* A right triangle in the plane of x and z, with legs along both, extruded along y. */
+/* Returns a right triangle in the plane of x and z, with legs along both, extruded along y. */
 static uint32_t gusset(brio_solid_maker *m, double leg, double half) {
     uint32_t prism = brio_csg_add(m->tree, BRIO_CSG_PRISM, &half, 1);
     double v[12] = {1, 0, 0, 0, 0, -1, 0, 1, 0, 0, 0, 0};
@@ -21,7 +21,7 @@ static uint32_t gusset(brio_solid_maker *m, double leg, double half) {
     return brio_csg_over(m->tree, BRIO_CSG_PLACE, prism, v, 12);
 }
 
-/* L, U and T brackets: a foot, one or two walls on it, gussets between, holes in each. */
+/* Makes L, U and T brackets: a foot, one or two walls on it, gussets between, holes in each. */
 uint32_t brio_solid_bracket(brio_solid_maker *m) {
     brio_solid_part part = brio_solid_part_new(m);
     double x = brio_solid_uniform(m, 0.2, 0.4), y = brio_solid_uniform(m, 0.1, 0.3),
@@ -61,7 +61,7 @@ static void boss(brio_solid_maker *m, const brio_solid_part *part, uint32_t hole
     brio_solid_join(m, holes, brio_solid_move(m, brio_solid_cylinder(m, hole, 0.5), at[0], at[1], at[2] + 0.5));
 }
 
-/* An open box with ribs, bosses and ports. */
+/* Returns an open box with ribs, bosses and ports. */
 uint32_t brio_solid_housing(brio_solid_maker *m) {
     double x = brio_solid_uniform(m, 0.2, 0.4), y = brio_solid_uniform(m, 0.15, 0.35),
            z = brio_solid_uniform(m, 0.06, 0.25);
@@ -125,7 +125,7 @@ static void bore(brio_solid_maker *m, const brio_solid_part *part, const double 
     brio_solid_join(m, part->root, brio_solid_move(m, brio_solid_axis(m, hole, axis), at[0], at[1], at[2]));
 }
 
-/* A block with steps, pockets, slots and crossing bores. */
+/* Returns a block with steps, pockets, slots and crossing bores. */
 uint32_t brio_solid_block(brio_solid_maker *m) {
     brio_solid_part part = brio_solid_part_new(m);
     double half[3];

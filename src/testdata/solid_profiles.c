@@ -7,7 +7,7 @@ static const double FULL_TURN = 6.28318530717958648;
 
 /* --- extruded profiles --- */
 
-/* A polygon round the origin with `corners` corners, between 0.1 and 0.3 away. */
+/* Returns a polygon round the origin with `corners` corners, between 0.1 and 0.3 away. */
 static uint32_t random_polygon(brio_solid_maker *m, double half) {
     uint32_t prism = brio_csg_add(m->tree, BRIO_CSG_PRISM, &half, 1);
     int corners = brio_solid_pick(m, 3, 9);
@@ -21,7 +21,7 @@ static uint32_t random_polygon(brio_solid_maker *m, double half) {
     return prism;
 }
 
-/* An I, T, U or Z section. */
+/* Returns an I, T, U or Z section. */
 static uint32_t beam(brio_solid_maker *m, double half) {
     uint32_t section = brio_solid_edged(m, BRIO_CSG_UNION);
     double x = brio_solid_uniform(m, 0.1, 0.25), y = brio_solid_uniform(m, 0.1, 0.25),
@@ -93,7 +93,7 @@ uint32_t brio_solid_frame(brio_solid_maker *m) {
 
 /* --- heat sinks --- */
 
-/* A plate with fins or pins in rows, or a plate with rows of holes. */
+/* Returns a plate with fins or pins in rows, or a plate with rows of holes. */
 uint32_t brio_solid_sink(brio_solid_maker *m) {
     brio_solid_part part = brio_solid_part_new(m);
     double x = brio_solid_uniform(m, 0.2, 0.4), y = brio_solid_uniform(m, 0.15, 0.4), base = 0.5 * brio_solid_size(m);
@@ -117,7 +117,7 @@ uint32_t brio_solid_sink(brio_solid_maker *m) {
 
 /* --- impellers --- */
 
-/* Slanted or twisted blades round a hub, by chance on a disc and under a ring. */
+/* Makes slanted or twisted blades round a hub, by chance on a disc and under a ring. */
 uint32_t brio_solid_impeller(brio_solid_maker *m) {
     brio_solid_part part = brio_solid_part_new(m);
     double r = brio_solid_uniform(m, 0.25, 0.42), half = brio_solid_uniform(m, 0.05, 0.15),
@@ -152,7 +152,7 @@ uint32_t brio_solid_impeller(brio_solid_maker *m) {
 
 /* --- bent sheets --- */
 
-/* A strip of sheet metal along a polyline with round bends, with holes in it. */
+/* Returns a strip of sheet metal along a polyline with round bends, with holes in it. */
 uint32_t brio_solid_bent_sheet(brio_solid_maker *m) {
     brio_solid_part part = brio_solid_part_new(m);
     double points[8][4], turn = 0, x = -0.2, y = 0, half = brio_solid_uniform(m, 0.06, 0.25),

@@ -76,7 +76,7 @@ uint32_t brio_solid_vase(brio_solid_maker *m) {
 
 /* --- sponges --- */
 
-/* One side of a periodic sheet, or the sheet with a thickness, within a round body. */
+/* Makes one side of a periodic sheet, or the sheet with a thickness, within a round body. */
 uint32_t brio_solid_sponge(brio_solid_maker *m) {
     double frequency = brio_solid_uniform(m, 7, 22), half = 0.5 * brio_solid_size(m), x = brio_solid_uniform(m, 0.6, 1);
     double y = brio_solid_uniform(m, 0.6, 1), reach = brio_solid_spacings(m, 0.5, 3);
@@ -130,7 +130,7 @@ uint32_t brio_solid_perforated(brio_solid_maker *m) {
 
 /* --- masks --- */
 
-/* An open sheet: a shell of which a plane leaves a part. */
+/* Returns an open sheet: a shell of which a plane leaves a part. */
 uint32_t brio_solid_mask(brio_solid_maker *m) {
     double wall = brio_solid_size(m), level = brio_solid_uniform(m, -0.05, 0.2),
            reach = brio_solid_spacings(m, 0.5, 1.5);
@@ -154,7 +154,7 @@ uint32_t brio_solid_mask(brio_solid_maker *m) {
 
 /* --- ribbons --- */
 
-/* A sheet that stands upright on a plane curve: a scroll, or a meander whose turns nearly touch. */
+/* Returns a sheet that stands upright on a plane curve: a scroll, or a meander whose turns nearly touch. */
 uint32_t brio_solid_ribbon(brio_solid_maker *m) {
     enum { POINTS = 121 };
     double points[POINTS][4], wall = 0.5 * brio_solid_size(m), gap = brio_solid_size(m),

@@ -5,7 +5,7 @@
 
 static const double FULL_TURN = 6.28318530717958648;
 
-/* Half the thickness of a tube: at least `least`, from thin to fat. */
+/* Returns half the thickness of a tube: at least `least`, from thin to fat. */
 static double tube_radius(brio_solid_maker *m, double least) {
     double half = 0.5 * brio_solid_size(m);
     return fmax(half, least);
@@ -65,7 +65,7 @@ uint32_t brio_solid_coral(brio_solid_maker *m) {
 
 /* --- knots --- */
 
-/* A closed curve: torus knot (p, q), or random waves. */
+/* Returns a closed curve: torus knot (p, q), or random waves. */
 uint32_t brio_solid_knot(brio_solid_maker *m) {
     enum { POINTS = 180, WAVES = 3 };
     double points[POINTS][4], a[WAVES][3], phase[WAVES][3], r = tube_radius(m, 0.012);

@@ -67,7 +67,7 @@ uint32_t brio_solid_shaft(brio_solid_maker *m) {
 
 /* --- gears --- */
 
-/* A tooth that points along x, as a trapezoid from radius `root` to `tip`. */
+/* Returns a tooth that points along x, as a trapezoid from radius `root` to `tip`. */
 static uint32_t tooth(brio_solid_maker *m, double root, double tip, double foot, double head, double half) {
     uint32_t prism = brio_csg_add(m->tree, BRIO_CSG_PRISM, &half, 1);
     double inner = 0.9 * root;
@@ -130,7 +130,7 @@ uint32_t brio_solid_gear(brio_solid_maker *m) {
 
 /* --- screws --- */
 
-/* A bolt with a head, or a nut. */
+/* Returns a bolt with a head, or a nut. */
 uint32_t brio_solid_screw(brio_solid_maker *m) {
     double radius = brio_solid_uniform(m, 0.07, 0.18), pitch = brio_solid_spacings(m, 4, 12),
            half = brio_solid_uniform(m, 0.1, 0.3);

@@ -7,7 +7,7 @@ static const double FULL_TURN = 6.28318530717958648;
 
 /* --- pipes --- */
 
-/* Two to six arms that meet, hollow, with flanges. */
+/* Makes two to six arms that meet, hollow, with flanges. */
 uint32_t brio_solid_pipe(brio_solid_maker *m) {
     static const double way[6][3] = {{1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 1, 0}, {0, 0, -1}, {0, -1, 0}};
     brio_solid_part part = brio_solid_part_new(m);
@@ -44,7 +44,7 @@ uint32_t brio_solid_pipe(brio_solid_maker *m) {
 
 /* --- wheels --- */
 
-/* A rim, a hub and spokes. */
+/* Returns a rim, a hub and spokes. */
 uint32_t brio_solid_wheel(brio_solid_maker *m) {
     brio_solid_part part = brio_solid_part_new(m);
     double r = brio_solid_uniform(m, 0.3, 0.42), half = brio_solid_uniform(m, 0.02, 0.1),
@@ -72,7 +72,7 @@ uint32_t brio_solid_wheel(brio_solid_maker *m) {
 
 /* --- drums --- */
 
-/* A hoop or a pot with rows of holes or slots through its wall: sieves, cages of bearings, slotted rotors. */
+/* Returns a hoop or a pot with rows of holes or slots through its wall: sieves, cages of bearings, slotted rotors. */
 uint32_t brio_solid_drum(brio_solid_maker *m) {
     brio_solid_part part = brio_solid_part_new(m);
     double r = brio_solid_uniform(m, 0.2, 0.35), half = brio_solid_uniform(m, 0.06, 0.3),

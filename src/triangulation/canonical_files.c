@@ -1,14 +1,14 @@
 /* The canonical order of the tetrahedra in scratch files: by partitions, reading and writing in sequence.
  *
  * The order is that of canonical_order.c, by one thread, for arrays that do not fit in memory. The tetrahedra are read
- * once and appended, already turned, to partitions by their latest vertex; a partition fits in memory. Each is then read
- * and sorted, which tells the places; and once all places are known it is read again, its facets are renamed, and it is
- * written where it belongs. Only the places and turns, 5 bytes a tetrahedron, are met in another order: that of the
- * neighbours of a partition, which are near in space and so near in the file.
+ * once and appended, already turned, to partitions by their latest vertex; a partition fits in memory. Each is then
+ * read and sorted, which tells the places; and once all places are known it is read again, its facets are renamed, and
+ * it is written where it belongs. Only the places and turns, 5 bytes a tetrahedron, are met in another order: that of
+ * the neighbours of a partition, which are near in space and so near in the file.
  *
  * A partition is a list of chunks, which lie in one file in the order in which they were filled: nothing has to be
- * counted beforehand, and a partition of any size has room. There are as many partitions as a quarter of the memory asks
- * for, and no more, since the fewer there are the longer are the chunks, which are read one by one.
+ * counted beforehand, and a partition of any size has room. There are as many partitions as a quarter of the memory
+ * asks for, and no more, since the fewer there are the longer are the chunks, which are read one by one.
  *
  * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988 (the distribution
  * sort). */
@@ -176,7 +176,8 @@ static brio_status reserve_entries(distribution *d) {
     return room(ctx, &d->end, d->range, sizeof *d->end);
 }
 
-/* Finds the next run of chunks of a partition from *begin on. Sets *begin to its beginning. Returns its length, or 0. */
+/* Finds the next run of chunks of a partition from *begin on. Sets *begin to its beginning. Returns its length, or
+ * 0. */
 static size_t next_run(const distribution *d, size_t p, size_t *begin) {
     size_t c = *begin;
     while (c < d->num_chunks && d->owner[c] != p) c++;

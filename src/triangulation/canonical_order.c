@@ -69,8 +69,8 @@ static inline void find_bucket(sorter *s, size_t slot) {
     __builtin_prefetch(&s->end[s->place[slot]], 1);
 }
 
-/* Counts the tetrahedra of each bucket, those in the slots from `from` to `to`; the counters are fetched ahead, since an
- * atomic addition waits for its own. */
+/* Counts the tetrahedra of each bucket, those in the slots from `from` to `to`; the counters are fetched ahead, since
+ * an atomic addition waits for its own. */
 static void count_buckets(void *user, size_t from, size_t to, int thread) {
     sorter *s = user;
     (void)thread;
@@ -199,8 +199,8 @@ static inline void rename_one(const sorter *s, uint32_t slot, brio_tetrahedron *
     }
 }
 
-/* Turns a tetrahedron and moves it to another slot. There vertex[0] holds the place of the tetrahedron: the place determines
- * the bucket, and the bucket the vertex. */
+/* Turns a tetrahedron and moves it to another slot. There vertex[0] holds the place of the tetrahedron: the place
+ * determines the bucket, and the bucket the vertex. */
 static inline void move_one(sorter *s, uint32_t slot, uint32_t to) {
     const brio_tetrahedron *old = &s->store->t.tet[slot];
     brio_tetrahedron *new = &s->store->t.tet[to];

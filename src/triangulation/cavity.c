@@ -69,8 +69,8 @@ void brio_cavity_undo(brio_inserter *ins) {
  * hold the infinite vertex, last. */
 static const uint8_t OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}};
 
-/* Lists slots for the new tetrahedra: those of the cavity, then unused ones, then fresh ones (room is there). Slots of the
- * cavity that the star does not need become unused. */
+/* Lists slots for the new tetrahedra: those of the cavity, then unused ones, then fresh ones (room is there). Slots of
+ * the cavity that the star does not need become unused. */
 static brio_status take_slots(brio_inserter *ins) {
     brio_cavity *c = &ins->cavity;
     size_t n = 0;
@@ -113,8 +113,9 @@ static inline void store_four(uint32_t *to, uint64_t a, uint64_t b, uint64_t c, 
     memcpy(to + 2, &pair[1], sizeof *pair);
 }
 
-/* Makes the tetrahedron of a border facet, with the new vertex in slot 0 and the facet's vertices v in slots 1 to 3. The tetrahedron outside need
- * not be the thread's own: no other thread writes its vertices, nor its mate at this facet (P1, P2). */
+/* Makes the tetrahedron of a border facet, with the new vertex in slot 0 and the facet's vertices v in slots 1 to 3.
+ * The tetrahedron outside need not be the thread's own: no other thread writes its vertices, nor its mate at this facet
+ * (P1, P2). */
 static inline void create(brio_tetrahedron *tets, uint32_t tet, uint32_t outer, uint32_t p, uint32_t v[3]) {
     assert(brio_tet_of(outer) != tet);
     brio_tetrahedron *outside = &tets[brio_tet_of(outer)], *inside = &tets[tet];
@@ -191,14 +192,15 @@ static brio_status report_between(brio_inserter *ins, size_t b) {
     return (b + 1) % HASHED_BETWEEN == 0 ? brio_inserter_report(ins, ins->done) : BRIO_OK;
 }
 
-/* Returns the hash of an edge, the same from either side: multilinear hashing, whose upper bits are good. [Lemire Kaser 2014] */
+/* Returns the hash of an edge, the same from either side: multilinear hashing, whose upper bits are good. [Lemire Kaser
+ * 2014] */
 static inline uint64_t edge_hash(uint32_t u, uint32_t v) {
     uint32_t low = u < v ? u : v, high = u ^ v ^ low;
     return low * UINT64_C(0x9e3779b97f4a7c15) + high * UINT64_C(0xd1b54a32d192ed03);
 }
 
-/* Joins facet i > 0 of a new tetrahedron, whose edge on the border leads from u to v, with the facet that was entered for this
- * edge. Enters it if there is none. */
+/* Joins facet i > 0 of a new tetrahedron, whose edge on the border leads from u to v, with the facet that was entered
+ * for this edge. Enters it if there is none. */
 static inline void meet(brio_cavity *c, int bits, brio_tetrahedron *tets, uint32_t facet, uint32_t u, uint32_t v) {
     uint64_t hash = edge_hash(u, v);
     size_t at = hash >> (64 - bits), mask = ((size_t)1 << bits) - 1;
@@ -248,8 +250,8 @@ static brio_status list_vertices(brio_inserter *ins) {
     return BRIO_OK;
 }
 
-/* Returns whether some vertex of the cavity is not on its border: a sphere of b triangles has b / 2 + 2 vertices. A vertex of the
- * cavity counts where its last number stands, so the count is that of the vertices. */
+/* Returns whether some vertex of the cavity is not on its border: a sphere of b triangles has b / 2 + 2 vertices. A
+ * vertex of the cavity counts where its last number stands, so the count is that of the vertices. */
 static bool has_interior(brio_inserter *ins) {
     const brio_cavity *c = &ins->cavity;
     const numbers number = numbers_of(ins);
@@ -273,8 +275,8 @@ static void hide_interior(brio_inserter *ins, uint32_t p) {
 }
 
 #ifndef NDEBUG
-/* Returns whether slot i keeps I2, a finite vertex in each slot except the last, and facet i keeps I3: its mate leads back,
- * and has the facet's vertices. */
+/* Returns whether slot i keeps I2, a finite vertex in each slot except the last, and facet i keeps I3: its mate leads
+ * back, and has the facet's vertices. */
 static bool facet_is_mated(const brio_tetrahedra *t, uint32_t tet, int i) {
     const uint32_t *v = t->tet[tet].vertex;
     uint32_t facet = brio_facet_of(tet, i), mate = *brio_mate(t, facet);

@@ -23,8 +23,10 @@
  *      At a facet that is no hull facet the ray leaves a tetrahedron and enters its mate (3): c stays. At a hull facet
  *      the ray leaves a finite tetrahedron: c drops by 1. (Two infinite tetrahedra cannot be mates there, or o would be
  *      on both inner sides, against 4.) Far away c = 0, and c(o) = 1 (4), so the ray meets exactly one hull facet; c is
- *      1 before it and 0 behind it. So no two tetrahedra overlap, and the union P of all of them is star-shaped about o.
- *   B. Convexity. Cut with a plane E through o that meets no vertex. Every hull facet that E meets gives a segment, with
+ *      1 before it and 0 behind it. So no two tetrahedra overlap, and the union P of all of them is star-shaped about
+ *      o.
+ *   B. Convexity. Cut with a plane E through o that meets no vertex. Every hull facet that E meets gives a segment,
+ *   with
  *      o strictly on its inner side. Mates join segments at hull edges, and the angle about o keeps growing from each
  *      segment to the next (3). So the segments form cycles round o; by A every direction is met once, so there is one
  *      cycle, and it goes round once. By 5 no corner is reflex: the polygon, and so the cut of P with E, is convex. Any
@@ -33,7 +35,8 @@
  *      without its edges and vertices is connected there, and by A only the mate lies behind a facet. Mates share the
  *      vertices of that facet, so the smallest face that holds x has the same vertices in all of these tetrahedra. So
  *      two tetrahedra meet in a common face, one position is one vertex, and Euler's relation holds.
- *   D. The spheres. Lift every vertex p to |p|^2 - w and interpolate over each tetrahedron: a function f on P. By 6 f is
+ *   D. The spheres. Lift every vertex p to |p|^2 - w and interpolate over each tetrahedron: a function f on P. By 6 f
+ *   is
  *      convex across every facet, so f is convex along every segment that meets no edge, so f is convex. So the linear
  *      function of any tetrahedron is at most f everywhere, and no vertex is inside the sphere of any tetrahedron.
  *      Another point x has a lift of at least f(x), by 7 for the tetrahedron that holds x, so x is inside no sphere
@@ -184,7 +187,8 @@ static void close_hull(brio_tetrahedra *t, size_t first, const uint32_t *hull, s
     }
 }
 
-/* Builds the full structure of `tetrahedra.h` from the vertices of finite tetrahedra: makes each positive, matches facets, and closes the hull with infinite tetrahedra. record holds num_points records; tet of
+/* Builds the full structure of `tetrahedra.h` from the vertices of finite tetrahedra: makes each positive, matches
+ * facets, and closes the hull with infinite tetrahedra. record holds num_points records; tet of
  *  *out becomes owned by the caller. Returns BRIO_OK, BRIO_ERR_CHECK (an index out of range, a flat tetrahedron, a
  *  facet of three tetrahedra, an edge of the hull without exactly two hull facets; the message says where),
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */

@@ -59,8 +59,8 @@ static inline lanes minor2(lanes x, lanes y, lanes z, lanes w) {
     return multiply_subtract(x, w, z * y);
 }
 
-/* Writes the minors of all rows except one: the orientations of the tetrahedron with one vertex replaced by the query, with
- * minor[1] and minor[3] negated. */
+/* Writes the minors of all rows except one: the orientations of the tetrahedron with one vertex replaced by the query,
+ * with minor[1] and minor[3] negated. */
 static inline void minors(const rows *r, lanes minor[4]) {
     const lanes *x = r->x, *y = r->y, *z = r->z;
     lanes ab = minor2(x[0], y[0], x[1], y[1]), bc = minor2(x[1], y[1], x[2], y[2]), cd = minor2(x[2], y[2], x[3], y[3]);
@@ -101,8 +101,8 @@ static inline unsigned ties(const corners *c, const rows *r) {
     return bits_of(greater(decision, all(0)));
 }
 
-/* Returns the bits of the lanes that are certainly in conflict. Adds their bits, and those of the lanes that are certainly in
- * none, to *known. */
+/* Returns the bits of the lanes that are certainly in conflict. Adds their bits, and those of the lanes that are
+ * certainly in none, to *known. */
 static inline unsigned decide(lanes det, lanes bound, unsigned *known) {
     unsigned above = bits_of(greater(det, bound)), below = bits_of(greater(all(0) - bound, det));
     unsigned fresh = above & ~*known;
@@ -191,8 +191,8 @@ static inline unsigned decide_by_lifts(const brio_filter *f, const rows *r, lane
     return fresh;
 }
 
-/* Decides by the second stage. With weights nearly every call needs it: the balls of neighbouring poles all but touch the same
- * points. */
+/* Decides by the second stage. With weights nearly every call needs it: the balls of neighbouring poles all but touch
+ * the same points. */
 static inline unsigned decide_by_permanent(const brio_filter *f, const corners *c, const rows *r, lanes det,
                                            unsigned *known, const bool weighted) {
     lanes floor = choose(r->infinite, all(f->orient_floor), all(f->insphere_floor));

@@ -123,7 +123,8 @@ static brio_status sort_result(brio_inserter *ins) {
 }
 
 #ifndef NDEBUG
-/* Returns whether mates are mates of each other, finite tetrahedra come first, and infinite ones have their vertex last: I2 and
+/* Returns whether mates are mates of each other, finite tetrahedra come first, and infinite ones have their vertex
+ * last: I2 and
  * I3 of tetrahedra.h, in the order of the result. */
 static bool result_is_valid(const brio_triangulation *t) {
     size_t finite = t->stats.tetrahedra, count = finite + t->stats.hull_facets;

@@ -6,8 +6,8 @@
 #include "triangulation/inserter.h"
 #include <assert.h>
 
-/* Lists the facets of a cavity tetrahedron that leave the cavity found so far. Returns the length of the list. Other threads
- * may hold the tetrahedra behind these facets, but may not destroy or mark them (P1, P3). */
+/* Lists the facets of a cavity tetrahedron that leave the cavity found so far. Returns the length of the list. Other
+ * threads may hold the tetrahedra behind these facets, but may not destroy or mark them (P1, P3). */
 static inline size_t leave(const brio_tetrahedron *tets, const uint8_t *state, uint32_t tet, uint32_t *facet,
                            size_t n) {
     for (int i = 0; i < 4; i++) {

@@ -54,8 +54,8 @@ brio_status brio_history_add(brio_inserter *ins, brio_history *h);
 uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, const double *p);
 
 /** Lists in h->conflict the first `most` live tetrahedra in conflict with p that a search meets which goes depth first
- *  from node `from` through nodes in conflict with p. A tetrahedron with a vertex at p's position counts as in conflict.
- *  Lists none when p is hidden. */
+ *  from node `from` through nodes in conflict with p. A tetrahedron with a vertex at p's position counts as in
+ *  conflict. Lists none when p is hidden. */
 brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t from, const double *p, size_t most);
 
 /** Does what a strategy's `locate` does, by the search that the options choose. */

@@ -1,5 +1,5 @@
-/* Neighbourhoods of the vertices of a finished triangulation, as arrays: a tetrahedron of each vertex, all tetrahedra of
- * each vertex, all neighbours of each vertex, all edges.
+/* Neighbourhoods of the vertices of a finished triangulation, as arrays: a tetrahedron of each vertex, all tetrahedra
+ * of each vertex, all neighbours of each vertex, all edges.
  *
  * The tetrahedra of the vertices are sorted by counting. The neighbours of a vertex are the vertices of its tetrahedra,
  * sorted, each once; threads divide the vertices. */

@@ -32,7 +32,8 @@ static brio_insertion judge(brio_inserter *ins, uint32_t p, uint32_t tet) {
     const double *point = s->record[p];
     if (!brio_is_infinite(&s->t, tet)) {
         uint32_t v = vertex_at(s, tet, point);
-        /* v's name may change. The thread holds v, a vertex of a tetrahedron that it holds, so it alone renames v (P4). */
+        /* v's name may change. The thread holds v, a vertex of a tetrahedron that it holds, so it alone renames v
+         * (P4). */
         assert(v == s->t.infinite || !ins->zone || brio_zone_holds(ins->zone, v)); /* P4 */
         if (v != s->t.infinite && absorbed(s, p, v)) return BRIO_ABSORBED;
         if (s->weighted && !brio_in_conflict(&s->t, &ins->filter, tet, point, true)) {
@@ -45,7 +46,8 @@ static brio_insertion judge(brio_inserter *ins, uint32_t p, uint32_t tet) {
     return brio_owns(&s->t, ins->zone, tet) ? BRIO_INSERTED : BRIO_DEFERRED;
 }
 
-/* Announces what the next insertions will read: they go to where this point is, and take fresh slots and points in sequence. */
+/* Announces what the next insertions will read: they go to where this point is, and take fresh slots and points in
+ * sequence. */
 static void expect_neighbours(brio_inserter *ins, uint32_t p) {
     enum { SOON = 512 };
     const brio_cavity *c = &ins->cavity;
@@ -61,8 +63,8 @@ static void expect_neighbours(brio_inserter *ins, uint32_t p) {
     }
 }
 
-/* Counts what the insertion of p has read and written: p, the slots of the tetrahedra in conflict, those behind the border
- * and the new ones with their vertices, which are those of the old ones. */
+/* Counts what the insertion of p has read and written: p, the slots of the tetrahedra in conflict, those behind the
+ * border and the new ones with their vertices, which are those of the old ones. */
 static brio_status count_touches(brio_inserter *ins, uint32_t p) {
     const brio_cavity *c = &ins->cavity;
     const brio_tetrahedra *t = &ins->store->t;

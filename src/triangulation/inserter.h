@@ -1,8 +1,8 @@
 /* The inserter: what one thread needs to insert points into a store.
  *
- * An inserter belongs to one thread at a time, which alone reads and writes its fields; the store (store.h) is shared. In
- * a parallel pass there is one inserter for each thread, each with a zone; outside of passes an inserter without a zone
- * works alone.
+ * An inserter belongs to one thread at a time, which alone reads and writes its fields; the store (store.h) is shared.
+ * In a parallel pass there is one inserter for each thread, each with a zone; outside of passes an inserter without a
+ * zone works alone.
  *
  *   walk -> locator -> tetrahedron in conflict -> engine digs the cavity -> cavity filled with the star -> slots
  *
@@ -11,8 +11,8 @@
  * N2  cavity.created[0 .. num_created) is the star of the last vertex that was inserted. 0 of them: it may be gone.
  * N3  Slots in [next_slot, end_slot) are fresh. Alone there are none: t.count counts just the slots that were written.
  * N4  unused[0 .. num_unused) are slots with state TET_UNUSED.
- * N5  From one insertion to the next only walk.start (N1), cavity.created (N2), the unused slots (N4) and the tables of a
- *     locator keep numbers of slots. N1 and N2 end when a thread leaves its zone. */
+ * N5  From one insertion to the next only walk.start (N1), cavity.created (N2), the unused slots (N4) and the tables of
+ *     a locator keep numbers of slots. N1 and N2 end when a thread leaves its zone. */
 #ifndef BRIO_TRIANGULATION_INSERTER_H
 #define BRIO_TRIANGULATION_INSERTER_H
 
@@ -75,7 +75,8 @@ brio_status brio_inserter_new(brio_store *store, brio_inserter **out);
 void brio_inserter_free(brio_inserter *ins);
 
 /** Reserves `more` fresh slots. In a pass the rest of the stretch may become unused first, and *deferred becomes true
- *  when the store has no further stretch. Alone, exactly `more` slots are handed out, and the caller writes all of them. */
+ *  when the store has no further stretch. Alone, exactly `more` slots are handed out, and the caller writes all of
+ *  them. */
 brio_status brio_inserter_reserve(brio_inserter *ins, size_t more, bool *deferred);
 
 /** Makes what is left of the stretch unused slots. */
@@ -84,8 +85,8 @@ brio_status brio_inserter_return_stretch(brio_inserter *ins);
 /** Reports the share of the points that are in, where this inserter reports. */
 brio_status brio_inserter_report(brio_inserter *ins, double done);
 
-/** Returns the work of an inserter so far: conflict tests, tetrahedra created, steps of walks, nodes of the history; a predicate
- *  that the floating-point filter leaves open counts as 64 of these. */
+/** Returns the work of an inserter so far: conflict tests, tetrahedra created, steps of walks, nodes of the history; a
+ *  predicate that the floating-point filter leaves open counts as 64 of these. */
 static inline uint64_t brio_inserter_work(const brio_inserter *ins) {
     const brio_delaunay_stats *s = &ins->stats;
     return s->insphere_calls + s->created + ins->walk.steps + s->history_tests + s->trace_intersections +

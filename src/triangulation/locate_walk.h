@@ -28,8 +28,8 @@ enum { BRIO_ABREAST = 8 };
 uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter *f, brio_walk *walk, const double *p,
                           uint64_t most_steps);
 
-/** Sets found[i] to what brio_locate_walk finds for points[i], without zone and bound, from walks[i].start, for the bits
- *  i of `which`. */
+/** Sets found[i] to what brio_locate_walk finds for points[i], without zone and bound, from walks[i].start, for the
+ *  bits i of `which`. */
 void brio_locate_abreast(const brio_tetrahedra *t, brio_filter *f, brio_walk walks[BRIO_ABREAST],
                          const double (*points)[4], unsigned which, uint32_t *found);
 

@@ -3,8 +3,8 @@
 #include "triangulation/locate_descent.h"
 #include <assert.h>
 
-/* Walks, which is best nearly always. Where walks are long again and again it descends, and tries a walk after every DESCENTS
- * descents. */
+/* Walks, which is best nearly always. Where walks are long again and again it descends, and tries a walk after every
+ * DESCENTS descents. */
 static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     const double *point = ins->store->record[p];
     enum { DESCENTS = 64 };

@@ -8,8 +8,8 @@
 typedef struct {
     /** Once the first tetrahedron stands. After a failure `release` is called, too. */
     brio_status (*start)(brio_inserter *ins, const brio_delaunay_options *options);
-    /** *tet = a tetrahedron whose closure holds record p, or that conflicts with it; at the position of a vertex that is not
-     *  lighter, one of that vertex; BRIO_NO_TET when the search leads out of the zone. In a
+    /** *tet = a tetrahedron whose closure holds record p, or that conflicts with it; at the position of a vertex that
+     *  is not lighter, one of that vertex; BRIO_NO_TET when the search leads out of the zone. In a
      *  pass the thread holds *tet. Records come in their order. */
     brio_status (*locate)(brio_inserter *ins, uint32_t p, uint32_t *tet);
     /** Record p has become a vertex: ins->cavity has the slots of what was destroyed, and of what was created. */

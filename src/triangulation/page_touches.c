@@ -1,12 +1,13 @@
 /* Counts page touches with their distances in the stack of least recently used pages.
  *
- * The distance of a touch is the number of other pages that were touched since the same page was touched before. A cache of
- * C pages that drops the least recently used one misses exactly the first touches and those of distance C and more. So one
- * run tells the faults of all caches. Each page keeps the time of its last touch; a tree of partial sums over the times, in
- * which the last touches count 1 and all others 0, tells a distance in O(log #pages). When the times are used up, the last
- * touches are numbered anew, from 1 on.
+ * The distance of a touch is the number of other pages that were touched since the same page was touched before. A
+ * cache of C pages that drops the least recently used one misses exactly the first touches and those of distance C and
+ * more. So one run tells the faults of all caches. Each page keeps the time of its last touch; a tree of partial sums
+ * over the times, in which the last touches count 1 and all others 0, tells a distance in O(log #pages). When the times
+ * are used up, the last touches are numbered anew, from 1 on.
  *
- * What is counted depends on the sequence of insertions alone, not on the machine: an address is an offset into an array.
+ * What is counted depends on the sequence of insertions alone, not on the machine: an address is an offset into an
+ * array.
  *
  * Based on: Mattson, Gecsei, Slutz, Traiger. Evaluation techniques for storage hierarchies. IBM Systems Journal 1970.
  *           Olken. Efficient methods for calculating the success function of fixed-space replacement policies. 1981. */

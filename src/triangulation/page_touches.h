@@ -1,5 +1,5 @@
-/* Page touches: which pages of the records, the tetrahedra and the history an insertion reads and writes, and how many other
- * pages were touched since each was touched before. */
+/* Page touches: which pages of the records, the tetrahedra and the history an insertion reads and writes, and how many
+ * other pages were touched since each was touched before. */
 #ifndef BRIO_TRIANGULATION_PAGE_TOUCHES_H
 #define BRIO_TRIANGULATION_PAGE_TOUCHES_H
 
@@ -34,7 +34,8 @@ brio_status brio_page_touches_status(const brio_page_touches *t);
 /** Writes the totals into the statistics. */
 void brio_page_touches_total(const brio_page_touches *t, brio_delaunay_stats *stats);
 
-/** Sets faults[k] to the faults in a cache of 2^k pages, up to the first that holds all pages. Returns the number of caches. */
+/** Sets faults[k] to the faults in a cache of 2^k pages, up to the first that holds all pages. Returns the number of
+ *  caches. */
 size_t brio_page_touches_faults(const brio_page_touches *t, uint64_t faults[BRIO_TOUCH_CACHES]);
 
 static inline void brio_touch_record(const brio_touch_view *view, uint32_t record) {

@@ -1,14 +1,14 @@
 /* Parallel insertion: each thread holds the part of the points where it works.
  *
  * A curve through the points is divided into segments, many more than threads. Each thread inserts a part of the points
- * that follow the curve. It walks through and destroys only tetrahedra all of whose finite vertices are in segments that
- * it holds, its zone: it takes a segment when it first meets a vertex there, and gives it back when it has moved on. A
- * point whose walk or cavity meets a segment of another thread is deferred, since that thread is at work there now;
- * later it will not be. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy them,
- * and what is read of them does not change: their mates are written only through the facet that both share (P1 to P4 in
- * store.h, proved in docs/decisions/006-segments-held-by-threads.md). So threads never wait for each other, and share
- * nothing but the segments' marks and the count of slots, taken in large stretches. What is left when a thread has tried
- * all its points again goes into another pass, and at the end to one thread.
+ * that follow the curve. It walks through and destroys only tetrahedra all of whose finite vertices are in segments
+ * that it holds, its zone: it takes a segment when it first meets a vertex there, and gives it back when it has moved
+ * on. A point whose walk or cavity meets a segment of another thread is deferred, since that thread is at work there
+ * now; later it will not be. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy
+ * them, and what is read of them does not change: their mates are written only through the facet that both share (P1 to
+ * P4 in store.h, proved in docs/decisions/006-segments-held-by-threads.md). So threads never wait for each other, and
+ * share nothing but the segments' marks and the count of slots, taken in large stretches. What is left when a thread
+ * has tried all its points again goes into another pass, and at the end to one thread.
  *
  * The result is the one triangulation that exact predicates and the symbolic perturbation determine, whatever was
  * deferred.
@@ -118,8 +118,8 @@ static brio_status try_again(worker *w) {
     return BRIO_OK;
 }
 
-/* Reports progress, in the calling thread, from when it is done with its part until the other threads are. It sleeps for a share
- * of the time that it has waited, so that it is late by no more than that share. */
+/* Reports progress, in the calling thread, from when it is done with its part until the other threads are. It sleeps
+ * for a share of the time that it has waited, so that it is late by no more than that share. */
 static brio_status wait_for_others(worker *w) {
     const double SHARE = 1.0 / 16, LEAST_SLEEP = 2e-5, MOST_SLEEP = 1e-2, BETWEEN = 0.05;
     double start = brio_seconds(), told = start, now = start;
@@ -134,8 +134,8 @@ static brio_status wait_for_others(worker *w) {
     return BRIO_OK;
 }
 
-/* Does a thread's part of a pass. A failed insertion may have left its cavity half filled: then the thread's segments stay
- * taken. */
+/* Does a thread's part of a pass. A failed insertion may have left its cavity half filled: then the thread's segments
+ * stay taken. */
 static brio_status work(worker *w) {
     brio_inserter *ins = w->inserter;
     pass *own = w->pass;
@@ -252,8 +252,8 @@ static brio_status reserve_slots(pass *own, size_t inserted, int threads) {
 }
 
 #ifndef NDEBUG
-/* Returns whether the inserter that works alone owns each slot without a tetrahedron (I5, I6, N4), and starts at a tetrahedron
- * (N1). The slots that are handed out after a pass all have a state. */
+/* Returns whether the inserter that works alone owns each slot without a tetrahedron (I5, I6, N4), and starts at a
+ * tetrahedron (N1). The slots that are handed out after a pass all have a state. */
 static bool slots_are_accounted_for(const brio_inserter *ins) {
     const brio_store *s = ins->store;
     size_t unused = 0;

@@ -1,5 +1,5 @@
-/* The points as records, copied in the order of insertion by all threads of the context. Each number is read once, and it
- * is the copy that must be finite: another thread of the caller may write to the caller's arrays meanwhile. */
+/* The points as records, copied in the order of insertion by all threads of the context. Each number is read once, and
+ * it is the copy that must be finite: another thread of the caller may write to the caller's arrays meanwhile. */
 #include "triangulation/records.h"
 #include "base/finite.h"
 #include "base/memory.h"

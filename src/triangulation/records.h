@@ -5,8 +5,8 @@
 #include "order/order.h"
 #include "triangulation/tetrahedra.h"
 
-/** Makes a private copy of the input as records; -0 becomes 0. Reads each number once: the input may change meanwhile, and
- *  what the call refuses or copies is what it read.
+/** Makes a private copy of the input as records; -0 becomes 0. Reads each number once: the input may change meanwhile,
+ *  and what the call refuses or copies is what it read.
  *  order  the input's index of each record; NULL for the input's own order.
  *  room   further records at the end, which are 0.
  *  hash   receives the hash of what was read (base/points_hash.h), or NULL.

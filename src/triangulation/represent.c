@@ -6,8 +6,8 @@
  * descent along edges finds its vertex of least power distance: in a regular triangulation a vertex without a nearer
  * neighbour is the nearest of all. Apexes of flat inputs are skipped: the edges of the flat triangulation suffice.
  *
- * Where hidden points are to be left without a representative, nothing is located: a table of positions tells duplicates
- * from hidden points. */
+ * Where hidden points are to be left without a representative, nothing is located: a table of positions tells
+ * duplicates from hidden points. */
 #include "triangulation/represent.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -201,8 +201,8 @@ static void rename_vertices(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Makes the first of coincident points of equal weight their vertex again. A parallel pass, or a sequence by weights, may
- * have inserted a later one first; without this step the order of the tetrahedra would depend on that. */
+/* Makes the first of coincident points of equal weight their vertex again. A parallel pass, or a sequence by weights,
+ * may have inserted a later one first; without this step the order of the tetrahedra would depend on that. */
 static brio_status restore_first(brio_store *s) {
     uint32_t *first = NULL;
     brio_status status = BRIO_ALLOC(s->ctx, first, s->num_points + 3);

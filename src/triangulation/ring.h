@@ -12,8 +12,8 @@ typedef struct {
     uint32_t tet, pivot, apex, last;
 } brio_ring;
 
-/** Returns the ring round the edge from slot i to slot j of `tet`, counterclockwise seen from the far end, at its second
- *  tetrahedron, `tet` being the first. */
+/** Returns the ring round the edge from slot i to slot j of `tet`, counterclockwise seen from the far end, at its
+ *  second tetrahedron, `tet` being the first. */
 static inline brio_ring brio_ring_second(const brio_tetrahedra *t, uint32_t tet, int i, int j) {
     assert(brio_has_tet(t, tet) && 0 <= i && i < 4 && 0 <= j && j < 4 && i != j);
     const brio_tetrahedron *first = &t->tet[tet];

@@ -15,8 +15,8 @@ typedef struct {
 brio_status brio_star_new(brio_context *ctx, size_t num_tetrahedra, brio_star *out);
 void brio_star_free(brio_context *ctx, brio_star *star);
 
-/** Sets star->tet[0 .. size) to the tetrahedra with vertex v, infinite ones included; `first` is one of them. Stops soon after
- *  `most` tetrahedra, and at tetrahedra that the thread does not own. */
+/** Sets star->tet[0 .. size) to the tetrahedra with vertex v, infinite ones included; `first` is one of them. Stops
+ *  soon after `most` tetrahedra, and at tetrahedra that the thread does not own. */
 brio_status brio_star_collect(brio_context *ctx, const brio_tetrahedra *t, uint32_t v, uint32_t first, size_t most,
                               brio_star *star);
 

@@ -30,7 +30,8 @@ typedef struct {
     const brio_record *record;
 } brio_tetrahedra;
 
-/* Makes a facet handle. bits 0 and 1: the slot opposite to the facet; bits 2 to 31: the tetrahedron, at most 2^30 of them. */
+/* Makes a facet handle. bits 0 and 1: the slot opposite to the facet; bits 2 to 31: the tetrahedron, at most 2^30 of
+ * them. */
 static inline uint32_t brio_facet_of(uint32_t tet, int i) {
     assert(tet >> 30 == 0 && 0 <= i && i < 4);
     return 4 * tet + (uint32_t)i;
@@ -42,8 +43,8 @@ static inline int brio_slot_of(uint32_t facet) {
     return (int)(facet & 3);
 }
 
-/* Returns whether there is a tetrahedron, or a slot for one, of that number. In a parallel pass other threads hand out slots
- * meanwhile. */
+/* Returns whether there is a tetrahedron, or a slot for one, of that number. In a parallel pass other threads hand out
+ * slots meanwhile. */
 static inline bool brio_has_tet(const brio_tetrahedra *t, uint32_t tet) {
     return tet < __atomic_load_n(&t->count, __ATOMIC_RELAXED);
 }
@@ -79,8 +80,8 @@ static inline int brio_slot_of_vertex(const uint32_t v4[4], uint32_t v) {
     return v4[0] == v ? 0 : v4[1] == v ? 1 : v4[2] == v ? 2 : v4[3] == v ? 3 : 4;
 }
 
-/* Returns whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the plane of
- * a hull facet the finite neighbour decides. Ties are broken, so that the answer is never on the border. */
+/* Returns whether a point conflicts with a tetrahedron: inside its sphere, or strictly outside its hull facet; in the
+ * plane of a hull facet the finite neighbour decides. Ties are broken, so that the answer is never on the border. */
 static inline bool brio_in_conflict(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p,
                                     const bool weighted) {
     assert(brio_has_tet(t, tet) && t->record);

@@ -5,7 +5,8 @@
 #include "base/vector.h"
 #include "triangulation/inserter.h"
 
-/** Sets vertex_tet[v] to a tetrahedron of v, for all vertices, the infinite one included. Leaves the other entries unchanged. */
+/** Sets vertex_tet[v] to a tetrahedron of v, for all vertices, the infinite one included. Leaves the other entries
+ *  unchanged. */
 static inline void brio_vertex_tets_fill(const brio_store *s, uint32_t *vertex_tet) {
     for (size_t t = 0; t < s->t.count; t++)
         if (s->state[t] == TET_PLAIN)

@@ -1,8 +1,9 @@
 /* What a thread may change while others work on the same store: its zone.
  *
- * A space-filling curve through the points is divided into segments. A thread holds segments, each held by one thread at
- * most; it takes one when it meets a vertex there and gives it back some insertions later. A segment that another
- * thread holds is never waited for. docs/decisions/006-segments-held-by-threads.md proves that nothing else needs a lock. */
+ * A space-filling curve through the points is divided into segments. A thread holds segments, each held by one thread
+ * at most; it takes one when it meets a vertex there and gives it back some insertions later. A segment that another
+ * thread holds is never waited for. docs/decisions/006-segments-held-by-threads.md proves that nothing else needs a
+ * lock. */
 #ifndef BRIO_TRIANGULATION_ZONE_H
 #define BRIO_TRIANGULATION_ZONE_H
 
@@ -28,8 +29,8 @@ void brio_zone_free(brio_context *ctx, brio_zone *zone);
 /** Takes a segment that this thread does not hold. Returns false when another thread holds it. */
 bool brio_zone_take(brio_zone *zone, uint32_t segment);
 
-/** Ends an insertion. Where many segments are held, gives back those that the insertion did not meet. Returns whether there
- *  were any. */
+/** Ends an insertion. Where many segments are held, gives back those that the insertion did not meet. Returns whether
+ *  there were any. */
 bool brio_zone_tidy(brio_zone *zone);
 
 /** Gives back all segments. */
@@ -49,17 +50,17 @@ static inline bool brio_zone_holds(const brio_zone *zone, uint32_t vertex) {
     return zone->held[zone->rank[vertex] >> zone->shift] != 0;
 }
 
-/** Returns whether this thread holds all finite vertices of a tetrahedron (P1 of store.h); always without a zone. Changes
- *  nothing. */
+/** Returns whether this thread holds all finite vertices of a tetrahedron (P1 of store.h); always without a zone.
+ *  Changes nothing. */
 static inline bool brio_zone_holds_tet(const brio_tetrahedra *t, const brio_zone *zone, uint32_t tet) {
     const uint32_t *v = t->tet[tet].vertex;
     return !zone || (brio_zone_holds(zone, v[0]) && brio_zone_holds(zone, v[1]) && brio_zone_holds(zone, v[2]) &&
                      (v[3] == t->infinite || brio_zone_holds(zone, v[3])));
 }
 
-/** Returns whether this thread may destroy a tetrahedron: all its finite vertices are in the zone, which grows where it can. No
- *  other thread then destroys the tetrahedron or one that shares a facet with it (decision 006). Without a zone, which
- *  is NULL, always. */
+/** Returns whether this thread may destroy a tetrahedron: all its finite vertices are in the zone, which grows where it
+ *  can. No other thread then destroys the tetrahedron or one that shares a facet with it (decision 006). Without a
+ *  zone, which is NULL, always. */
 static inline bool brio_owns(const brio_tetrahedra *t, brio_zone *zone, uint32_t tet) {
     const uint32_t *v = t->tet[tet].vertex;
     if (!zone) return true;
@@ -67,7 +68,8 @@ static inline bool brio_owns(const brio_tetrahedra *t, brio_zone *zone, uint32_t
            (v[3] == t->infinite || brio_zone_has(zone, v[3]));
 }
 
-/** Returns what brio_owns returns for the tetrahedron of a facet whose mate's tetrahedron the thread owns: one vertex is new. */
+/** Returns what brio_owns returns for the tetrahedron of a facet whose mate's tetrahedron the thread owns: one vertex
+ *  is new. */
 static inline bool brio_owns_beyond(const brio_tetrahedra *t, brio_zone *zone, uint32_t facet) {
     uint32_t apex;
     if (!zone) return true;

@@ -3,7 +3,10 @@ docs/architecture.md shows. Programs see the public headers alone, and the libra
 for the two files of src/base that do so for all.
 
 A line of arrows.txt: a room of src or of cli, and the rooms that its files may include, besides their own; a header stands for
-itself alone. The rooms that a line names stand above it, so that no arrows run in a circle."""
+itself alone. The rooms that a line names stand above it, so that no arrows run in a circle.
+
+Nor do the modules of a room include each other in a circle, a module being a .c file and the header of its name; CIRCLES are the
+rooms in which some do."""
 
 import pathlib
 import re
@@ -12,7 +15,8 @@ import sys
 ARROWS = pathlib.Path(__file__).with_name("arrows.txt")
 PICTURE = "docs/architecture.md"
 PROGRAMS = ["cli", "examples", "bench"]
-SYSTEM_FILES = {"src/base/memory.c", "src/base/context.c"}
+CIRCLES = {"io", "io/compressed", "io/las", "mesh", "query", "reconstruct/labels", "reconstruct/noise", "triangulation"}
+SYSTEM_FILES = {"src/base/memory.c", "src/base/context_new.c"}
 FORBIDDEN = re.compile(r"(?<![\w.>])(malloc|calloc|realloc|reallocarray|aligned_alloc|posix_memalign|strn?dup|free"
                        r"|v?[fda]?printf|f?puts|f?putc|putchar|perror|_?exit|_Exit|quick_exit|abort)\s*\(")
 COMMENT_OR_TEXT = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', re.S)
@@ -54,6 +58,30 @@ def may_include(arrows, path_parts, included_parts):
     return room_of(included_parts) in seen or "/".join(included_parts[included_parts[0] == "src":]) in seen
 
 
+def circles(root, files):
+    """The rooms whose modules include each other in a circle, each with one."""
+    rooms = {}
+    for path in files:
+        name = path.relative_to(root)
+        if name.parts[0] not in ("src", "cli"):
+            continue
+        modules = rooms.setdefault(room_of(name.parts), {})
+        for included in INCLUDE.findall(path.read_text(encoding="utf-8")):
+            parts = find_included(root, path, included)
+            if parts and parts[:-1] == name.parts[:-1] and pathlib.Path(parts[-1]).stem != name.stem:
+                modules.setdefault(name.stem, set()).add(pathlib.Path(parts[-1]).stem)
+    for room, modules in rooms.items():
+        left = dict(modules)
+        while True:  # modules that include none of those that are left are in no circle
+            free = [m for m, others in left.items() if not any(o in left for o in others)]
+            if not free:
+                break
+            for module in free:
+                del left[module]
+        if left:
+            yield room, sorted(left)
+
+
 def complaints(root, arrows, path):
     text, name = path.read_text(encoding="utf-8"), path.relative_to(root)
     for match in INCLUDE.finditer(text):
@@ -75,6 +103,8 @@ def main():
     if "```\n" + table + "```\n" not in (root / PICTURE).read_text(encoding="utf-8"):
         wrong.append("%s does not show the arrows of %s" % (PICTURE, ARROWS.name))
     wrong += [line for path in files for line in complaints(root, arrows, path)]
+    wrong += ["%s: modules include each other in a circle, among %s: part what all need from what needs all" % (room, " ".join(some))
+              for room, some in circles(root, files) if room not in CIRCLES]
     print("\n".join([*wrong, "%d files, %d complaints" % (len(files), len(wrong))]))
     return 1 if wrong or not files else 0
 

@@ -318,12 +318,14 @@ def instructions(program, words, folder):
     return None
 
 
-def compare_instructions(programs, folder, points):
+def compare_instructions(programs, folder, points, only):
     wrong = 0
     for output, line in [("big.ply", "generate torus -n %d" % points)] + [
             ("big." + name, "convert big.ply") for name in ("laz", "e57", "vtu", "csv", "pcd", "glb")]:
         subprocess.run([programs[0], *line.split(), "-o", output], cwd=folder, check=True, capture_output=True)
     for output, line in MEASURED:
+        if only not in line:
+            continue
         words = line.split() + ["-o", "x" + output, "--quiet", "--threads", "1"]
         counts = [[instructions(program, words, folder) for _ in range(RUNS)] for program in programs]
         if None in counts[0] + counts[1]:
@@ -345,7 +347,7 @@ def main():
     parser.add_argument("--long", action="store_true")
     parser.add_argument("--instructions", action="store_true")
     parser.add_argument("--points", type=int, default=20000, help="of the inputs of --instructions")
-    parser.add_argument("--only", default="", help="help, commands, formats, broken, corpus, shared: separated by commas")
+    parser.add_argument("--only", default="", help="parts: help, commands, formats, broken, corpus, shared, with commas; or a word of the lines of --instructions")
     parser.add_argument("--shared", type=pathlib.Path, default=ROOT.parent / "shared")
     asked = parser.parse_args()
     programs = [os.path.abspath(asked.old), os.path.abspath(asked.new)]
@@ -353,7 +355,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="brio-same-") as top:
         folder = pathlib.Path(top)
         if asked.instructions:
-            return 1 if compare_instructions(programs, folder, asked.points) else 0
+            return 1 if compare_instructions(programs, folder, asked.points, asked.only) else 0
         write_inputs(folder)
         for name, line in INPUTS:
             subprocess.run([programs[0], *line.split(), "-o", name], cwd=folder, check=True, capture_output=True)

@@ -1,5 +1,5 @@
-/* What the decoders share: members one after the other, places of errors, and the sentences for libraries that this build
- * lacks. */
+/* What the decoders share: members one after the other, places of errors, and the sentences for libraries that this
+ * build lacks. */
 #include "io/compressed/coders.h"
 #include "base/memory.h"
 #include <inttypes.h>

@@ -32,8 +32,8 @@ typedef struct brio_decoder_io {
     size_t room;
 } brio_decoder_io;
 
-/** Decodes until the input is used up or the room is full. May be called again without input, for bytes that had no room
- *  before.
+/** Decodes until the input is used up or the room is full. May be called again without input, for bytes that had no
+ *  room before.
  *  Returns BRIO_OK, BRIO_ERR_FORMAT (damaged: with the file and the byte), BRIO_ERR_NO_MEMORY. */
 brio_status brio_decode(brio_decoder *d, brio_decoder_io *io);
 

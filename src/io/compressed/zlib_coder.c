@@ -1,4 +1,5 @@
-/* Deflate by zlib, with or without the header of gzip. CMake leaves this file out where there is no zlib. zlib checks the length and the checksum of a member. */
+/* Deflate by zlib, with or without the header of gzip. CMake leaves this file out where there is no zlib. zlib checks
+ * the length and the checksum of a member. */
 #include "base/memory.h"
 #include "io/compressed/coders.h"
 #include <limits.h>

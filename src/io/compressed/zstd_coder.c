@@ -1,4 +1,5 @@
-/* Zstandard by libzstd; CMake leaves this file out where there is none. The window of a frame may be as long as the memory limit lets it. */
+/* Zstandard by libzstd; CMake leaves this file out where there is none. The window of a frame may be as long as the
+ * memory limit lets it. */
 #define ZSTD_STATIC_LINKING_ONLY /* for memory functions of the caller's */
 #include "base/memory.h"
 #include "io/compressed/coders.h"

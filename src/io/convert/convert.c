@@ -1,8 +1,8 @@
 /* Converts a file to another format.
  *
  * The points go through the steps as a stream of blocks: source.c reads and chooses, a row writer (row_format.h) takes
- * them. Formats that are not written row by row, and files with polygons, take the way through memory: the source is then
- * one mesh. */
+ * them. Formats that are not written row by row, and files with polygons, take the way through memory: the source is
+ * then one mesh. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
@@ -42,7 +42,8 @@ static bool holds(const conversion *c, unsigned what) {
     return brio_format_holds(c->format, what);
 }
 
-/* STL and GLB have triangles only: other polygons are cut into them, and those of fewer corners are left out. */
+/* Returns whether polygons are cut. STL and GLB have triangles only: other polygons are cut into them, and those of
+ * fewer corners are left out. */
 static bool cuts_polygons(const conversion *c, const brio_mesh *m) {
     bool triangles = c->format == BRIO_FORMAT_STL || c->format == BRIO_FORMAT_GLB;
     for (size_t f = 0; triangles && f < m->num_faces; f++)
@@ -78,7 +79,7 @@ static brio_status write_crs(conversion *c, const brio_mesh *m) {
     return brio_output_finish(&c->crs);
 }
 
-/* Whether the writer knows best which properties have a place. */
+/* Returns whether the writer knows best which properties have a place. */
 static bool asks_writer(const conversion *c) {
     return c->writer.format && c->writer.format->lacks;
 }
@@ -118,7 +119,7 @@ static void name_left_out(const conversion *c) {
     for (size_t i = 0; i < c->source.job.num_left_out; i++) lose(c, c->source.job.left_out[i]);
 }
 
-/* GLB has no doubles and no signed integers of 32 bits. */
+/* Returns whether a property is rounded. GLB has no doubles and no signed integers of 32 bits. */
 static bool rounds_property(const conversion *c, const brio_mesh *m, const brio_property *p) {
     bool wide = p->type == BRIO_SCALAR_FLOAT64 || p->type == BRIO_SCALAR_INT32 || p->type == BRIO_SCALAR_UINT32;
     for (size_t v = 0; c->format == BRIO_FORMAT_GLB && wide && v < m->num_vertices; v++) {
@@ -197,19 +198,20 @@ static brio_status write_block(void *user, const brio_mesh *block) {
     return BRIO_OK;
 }
 
-/* Whether the output is a new file, of which the beginning can be written last. */
+/* Returns whether the output is a new file, of which the beginning can be written last. */
 static bool can_patch(brio_context *ctx, const char *path) {
     struct stat facts;
     return brio_open_descriptor(ctx, path) < 0 && (stat(path, &facts) != 0 || S_ISREG(facts.st_mode));
 }
 
-/* Whether a pass comes first because the output begins with the number of points, and its beginning cannot be written last. */
+/* Returns whether a pass comes first because the output begins with the number of points, and its beginning cannot be
+ * written last. */
 static bool must_count(const conversion *c) {
     return !can_patch(c->ctx, c->to) && c->writer.format->counts;
 }
 
-/* Goes through the points. A pass that ends at its first block because the depth of colours is open is followed by one that
- * looks at them all, and does not count. */
+/* Goes through the points. A pass that ends at its first block because the depth of colours is open is followed by one
+ * that looks at them all, and does not count. */
 static brio_status go_through(conversion *c, const brio_sink *sink) {
     brio_status status = brio_source_pass(&c->source, sink);
     const brio_sink looks = {look, c};
@@ -296,7 +298,8 @@ done:
 
 /* --- the whole --- */
 
-/* Whether input and output are one file, or one FIFO, from which the conversion would wait for what it writes. */
+/* Returns whether input and output are one file, or one FIFO, from which the conversion would wait for what it
+ * writes. */
 static bool is_one_file(const conversion *c) {
     struct stat a, b;
     int from = strcmp(c->source.path, "-") ? stat(c->source.path, &a) : fstat(STDIN_FILENO, &a);

@@ -1,8 +1,8 @@
 /* The points of a conversion, see source.h.
  *
  * A file of points that can be read again is read anew in every pass, so that it is never in memory; each block is
- * filtered where it lies. Any other file is in memory after the first pass, filtered once. A text whose later rows lack a
- * column is read again without the column. */
+ * filtered where it lies. Any other file is in memory after the first pass, filtered once. A text whose later rows lack
+ * a column is read again without the column. */
 #include "io/convert/source.h"
 #include "base/memory.h"
 #include "io/filter.h"
@@ -27,7 +27,8 @@ brio_status brio_source_changed(const brio_source *s) {
     return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: the file changed while it was read", s->path);
 }
 
-/* Whether the file is the one that the first pass found: another one may have other properties and more points. */
+/* Returns whether the file is the one that the first pass found: another one may have other properties and more
+ * points. */
 static bool is_unchanged(brio_source *s) {
     struct stat facts, *first = &s->facts;
     if (!brio_source_rereadable(s->path) || stat(s->path, &facts) != 0) return true; /* reading it tells */

@@ -22,7 +22,7 @@ static uint64_t mask_of(unsigned bits) {
     return bits < 64 ? (UINT64_C(1) << bits) - 1 : UINT64_MAX;
 }
 
-/* The number of `bits` bits that begins at a bit of the bytes. Reads 9 bytes. */
+/* Returns the number of `bits` bits that begins at a bit of the bytes. Reads 9 bytes. */
 static inline uint64_t number_at(const uint8_t *bytes, uint64_t bit, unsigned bits) {
     const uint8_t *at = bytes + bit / 8;
     unsigned shift = bit % 8;

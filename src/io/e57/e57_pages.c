@@ -1,7 +1,7 @@
 /* Reads the pages of an E57 file through a window that moves over the file.
  *
- * Each page ends with the CRC-32C of its content, most significant byte first. The checksum is computed eight bytes at a
- * time with eight tables.
+ * Each page ends with the CRC-32C of its content, most significant byte first. The checksum is computed eight bytes at
+ * a time with eight tables.
  *
  * Based on: ASTM E2807-11. Standard specification for 3D imaging data exchange, version 1.0. Huber. The ASTM E57 file
  * format for 3D imaging data exchange. SPIE 7864, 2011. Kounavis Berry. Novel table lookup-based algorithms for
@@ -12,8 +12,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-/* In pages, both chosen. WINDOW: four of the largest packets, so that a quarter of the window moves at most. BATCH: pages
- * that are read together. */
+/* In pages, both chosen. WINDOW: four of the largest packets, so that a quarter of the window moves at most. BATCH:
+ * pages that are read together. */
 enum { WINDOW = 4 * (BRIO_E57_MOST_READ / BRIO_E57_CONTENT + 2), BATCH = 64 };
 
 enum { HEADER = 48 /* bytes */, TABLES = 8 };
@@ -36,7 +36,7 @@ brio_status brio_e57_checksum_table(brio_context *ctx, uint32_t (**out)[256]) {
     return BRIO_OK;
 }
 
-/* The content's size is no multiple of eight. */
+/* Returns the checksum of a page, byte by byte: the content's size is no multiple of eight. */
 uint32_t brio_e57_checksum(uint32_t (*const table)[256], const char *page) {
     const uint8_t *bytes = (const uint8_t *)page;
     uint32_t rest = UINT32_MAX;
@@ -94,8 +94,8 @@ static brio_status fill_window(brio_e57_pages *p, size_t size) {
     return BRIO_OK;
 }
 
-/* Moves the window so that it begins with the page of an offset. Where the window goes on it is filled; behind a jump it
- * has only what is needed. */
+/* Moves the window so that it begins with the page of an offset. Where the window goes on it is filled; behind a jump
+ * it has only what is needed. */
 static brio_status move_window(brio_e57_pages *p, uint64_t logical, size_t need) {
     brio_status status = BRIO_OK;
     uint64_t start = logical - logical % BRIO_E57_CONTENT, end = brio_e57_size(p);

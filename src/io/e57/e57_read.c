@@ -1,7 +1,7 @@
 /* Reads E57 files: the points of all scans, each in the pose of its scan.
  *
- * The XML section, at the end, says where the points are. All sections are checked against the file's size before memory
- * is taken for their points. The bytes of a field are decoded to their places in the mesh at once.
+ * The XML section, at the end, says where the points are. All sections are checked against the file's size before
+ * memory is taken for their points. The bytes of a field are decoded to their places in the mesh at once.
  *
  * Based on: ASTM E2807-11. Standard specification for 3D imaging data exchange, version 1.0. Huber. The ASTM E57 file
  * format for 3D imaging data exchange. SPIE 7864, 2011. */
@@ -183,14 +183,14 @@ static bool is_integer(const brio_e57_code *code) {
     return code->kind == BRIO_E57_INTEGER || (code->kind == BRIO_E57_SCALED && code->scale == 1 && code->offset == 0);
 }
 
-/* The greatest integer that the bits of a field can make. */
+/* Returns the greatest integer that the bits of a field can make. */
 static int64_t most_of(const brio_e57_code *code) {
     uint64_t range = code->bits < 64 ? (UINT64_C(1) << code->bits) - 1 : UINT64_MAX;
     uint64_t room = (uint64_t)INT64_MAX - (uint64_t)code->least;
     return range < room ? (int64_t)((uint64_t)code->least + range) : INT64_MAX;
 }
 
-/* Normals are never integers, since the pose may turn them. */
+/* Widens the range of a column by a field. Normals are never integers, since the pose may turn them. */
 static void widen(column *c, const brio_e57_code *code) {
     if (is_integer(code) && strncmp(c->source, "nor:", 4) != 0) {
         int64_t most = most_of(code);
@@ -202,7 +202,7 @@ static void widen(column *c, const brio_e57_code *code) {
     }
 }
 
-/* The smallest type that holds all values. Integers that 32 bits do not hold become doubles. */
+/* Returns the smallest type that holds all values. Integers that 32 bits do not hold become doubles. */
 static brio_scalar type_of(const column *c, size_t scans) {
     if (c->singles && !c->integers && !c->doubles) return BRIO_SCALAR_FLOAT32;
     if (c->singles || c->doubles || c->scans < scans) return BRIO_SCALAR_FLOAT64;
@@ -337,7 +337,8 @@ static int compare_places(const void *a, const void *b) {
     return (i > j) - (i < j);
 }
 
-/* Ends the sections whose length is not known at the next section behind them, or at the XML section, or at the file's end. */
+/* Ends the sections whose length is not known at the next section behind them, or at the XML section, or at the file's
+ * end. */
 static brio_status end_sections(e57_reader *r) {
     brio_status status = BRIO_OK;
     size_t count = 0, num_scans = r->scans.num_scans;

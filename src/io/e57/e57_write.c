@@ -1,9 +1,9 @@
 /* Writes E57 files: the points of each scanner's place as a scan with its pose.
  *
- * All points are seen before the first one is written, for the scans (scans.h). A scan is a section of packets; each packet
- * has as many points as fit. Coordinates are doubles, and every property has its own type, so that no bit is lost; only
- * coordinates of a scanner that stands elsewhere than at 0 are differences, which may round: they are measured. A pose
- * moves and does not turn. The XML section, with the bounds of all scans, and the headers come last.
+ * All points are seen before the first one is written, for the scans (scans.h). A scan is a section of packets; each
+ * packet has as many points as fit. Coordinates are doubles, and every property has its own type, so that no bit is
+ * lost; only coordinates of a scanner that stands elsewhere than at 0 are differences, which may round: they are
+ * measured. A pose moves and does not turn. The XML section, with the bounds of all scans, and the headers come last.
  *
  * Based on: ASTM E2807-11. Standard specification for 3D imaging data exchange, version 1.0. */
 #include "base/memory.h"
@@ -135,8 +135,8 @@ enum { SECTION_HEADER = 32, DATA_HEADER = 6, PACKET = 65536, FILE_HEADER = 48, A
 #define NORMAL_NAMES "http://www.libe57.org/E57_NOR_surface_normals.txt"
 #define OWN_NAMES    "urn:brio:e57:properties" /* of all properties that the format has no field for */
 
-/* A field of the prototype: a coordinate, a property, or `valid`: cartesianInvalidState, which is 0 of all points, has no
- * bits, and is there because pye57 reads no scan without it. */
+/* A field of the prototype: a coordinate, a property, or `valid`: cartesianInvalidState, which is 0 of all points, has
+ * no bits, and is there because pye57 reads no scan without it. */
 typedef struct {
     char element[BRIO_E57_NAME];
     bool axis, valid, renamed;
@@ -371,8 +371,8 @@ static brio_status put_number(brio_e57_pen *p, const char *name, bool real, doub
     return e57_put_text(p, "<%s type=\"%s\">%s</%s>\n", name, real ? "Float" : "Integer", digits, name);
 }
 
-/* Writes a character of n bytes, or what stands for it: XML has no control characters but white space, and not the last two
- * of the first plane. */
+/* Writes a character of n bytes, or what stands for it: XML has no control characters but white space, and not the last
+ * two of the first plane. */
 static brio_status put_character(brio_e57_pen *p, const char *c, size_t n) {
     const char *escaped = *c == '<' ? "&lt;" : *c == '>' ? "&gt;" : *c == '&' ? "&amp;" : NULL;
     bool control = (unsigned char)*c < ' ' && !strchr("\t\n\r", *c),
@@ -392,7 +392,7 @@ static brio_status put_escaped(brio_e57_pen *p, const char *text) {
     return BRIO_OK;
 }
 
-/* A name for the content: the same bytes have the same one. */
+/* Writes a name for the content: the same bytes have the same one. */
 static brio_status put_guid(brio_e57_pen *p, uint64_t sum, uint64_t number) {
     uint64_t other = (sum ^ (number + 1)) * UINT64_C(0x9e3779b97f4a7c15);
     return e57_put_text(p, "<guid type=\"String\">{%08X-%04X-5%03X-8%03X-%012" PRIX64 "}</guid>\n",

@@ -30,7 +30,7 @@ static const char *find(const char *const *attributes, const char *name) {
     return NULL;
 }
 
-/* Some programs write 0.0 for 0. */
+/* Takes an attribute that is an integer. Some programs write 0.0 for 0. */
 static bool take_integer(const char *const *attributes, const char *name, int64_t *value, char *reason) {
     const char *text = find(attributes, name), *at = text;
     uint64_t size;
@@ -113,9 +113,9 @@ static bool e57_field_read(brio_e57_field *field, const char *const *attributes,
 
 #include <expat.h>
 
-/* PART: bytes given to expat at a time. LONGEST: bytes of a section. TAG: bytes of a tag or a comment, which expat goes through again
- * with each part. NESTED: elements that are open below those that matter; expat keeps all. TEXT: bytes of a number. All
- * chosen. */
+/* PART: bytes given to expat at a time. LONGEST: bytes of a section. TAG: bytes of a tag or a comment, which expat goes
+ * through again with each part. NESTED: elements that are open below those that matter; expat keeps all. TEXT: bytes of
+ * a number. All chosen. */
 enum { PART = 1 << 15, LONGEST = 1 << 26, TAG = 1 << 20, NESTED = 1000, TEXT = 128 };
 
 #define E57_NAMES "http://www.astm.org/COMMIT/E57/2010-e57-v1.0"
@@ -165,8 +165,8 @@ static const struct {
             {ROOT, "coordinateMetadata", SYSTEM}};
 enum { DEEPEST = 8 };
 
-/* Elements that the mesh has no place for, and what they are called. Those that follow from the points are not among them,
- * nor are marks such as guid. */
+/* Elements that the mesh has no place for, and what they are called. Those that follow from the points are not among
+ * them, nor are marks such as guid. */
 static const struct {
     place inside;
     const char *name, *what;
@@ -368,7 +368,7 @@ static void XMLCALL on_start(void *user, const XML_Char *full, const XML_Char **
     if (is == NUMBER) begin_number(r, inside, name[0]);
 }
 
-/* An empty element is the number 0. */
+/* Ends a number. An empty element is the number 0. */
 static void end_number(xml_reader *r) {
     const char *text = r->text;
     r->text[r->length] = 0;
@@ -442,7 +442,7 @@ static brio_status start(xml_reader *r) {
     return BRIO_OK;
 }
 
-/* The status of a parse that stopped. */
+/* Returns the status of a parse that stopped. */
 static brio_status stopped(const xml_reader *r) {
     enum XML_Error error = XML_GetErrorCode(r->parser);
     if (r->status != BRIO_OK) return r->status;
@@ -453,7 +453,7 @@ static brio_status stopped(const xml_reader *r) {
                      (unsigned long)XML_GetCurrentColumnNumber(r->parser), XML_ErrorString(error));
 }
 
-/* Some programs fill the section with zero bytes, which are no XML: finds its length without them. */
+/* Measures the section without zero bytes at its end, which are no XML, and which some programs write. */
 static brio_status measure(brio_e57_pages *p, uint64_t *length) {
     *length = p->xml_length;
     while (*length) {

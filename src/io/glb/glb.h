@@ -6,8 +6,8 @@
 
 /* --- the JSON --- */
 
-/* What the JSON of a glTF file says about geometry: buffers, views of them, accessors, the primitives of the meshes, and
- * the nodes that place the meshes. */
+/* What the JSON of a glTF file says about geometry: buffers, views of them, accessors, the primitives of the meshes,
+ * and the nodes that place the meshes. */
 
 #define BRIO_GLB_NONE UINT32_MAX /* no index */
 

@@ -1,8 +1,8 @@
 /* The geometry of a glTF file as a mesh: the vertices of all primitives at their places, and properties from their
  * attributes.
  *
- * NORMAL becomes nx, ny, nz; COLOR_0 red, green, blue, alpha; _NAME becomes NAME. First all primitives are looked at, to
- * know the properties and their types: a property that has different types in two primitives is a float if it is a
+ * NORMAL becomes nx, ny, nz; COLOR_0 red, green, blue, alpha; _NAME becomes NAME. First all primitives are looked at,
+ * to know the properties and their types: a property that has different types in two primitives is a float if it is a
  * colour, and a double otherwise; a primitive that lacks it has 0, or white. Then the vertices are added. A primitive
  * whose attributes are those of the one before it has that one's vertices.
  *
@@ -18,9 +18,7 @@
 
 /* --- the numbers of an accessor --- */
 
-/* The numbers of an accessor of a glTF file.
- *
- * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+/* The numbers of an accessor of a glTF file. */
 
 /* Rows of numbers, all of which lie in a buffer. */
 typedef struct brio_glb_column {
@@ -141,9 +139,7 @@ static double glb_scaled(const brio_glb_column *c, uint64_t row, int component) 
 
 /* --- faces and edges --- */
 
-/* The primitives of a glTF file as triangles and edges.
- *
- * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+/* The primitives of a glTF file as triangles and edges. */
 
 typedef struct {
     const brio_glb_file *file;
@@ -220,9 +216,7 @@ static brio_status glb_add_cells(const brio_glb_file *file, brio_builder *b, con
 
 /* --- places of meshes --- */
 
-/* The meshes of a glTF file at their places: the matrices of the nodes multiplied from the roots down.
- *
- * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
+/* The meshes of a glTF file at their places: the matrices of the nodes multiplied from the roots down. */
 
 /* A mesh of the file at its place. */
 typedef struct brio_glb_instance {
@@ -242,7 +236,7 @@ typedef struct {
     bool *visited;
 } walk;
 
-/* c = a b, of matrices whose last row is 0 0 0 1. Products with 0 and 1 leave numbers as they are. */
+/* Computes c = a b, of matrices whose last row is 0 0 0 1. Products with 0 and 1 leave numbers as they are. */
 static void multiply(const double *a, const double *b, double *c) {
     for (int j = 0; j < 4; j++) {
         for (int i = 0; i < 3; i++) {
@@ -389,7 +383,7 @@ static brio_status note_column(builder *b, const char *name, const brio_glb_colu
     return BRIO_OK;
 }
 
-/* What an attribute that becomes no property is called. */
+/* Returns what an attribute that becomes no property is called. */
 static const char *name_of_other(const char *attribute) {
     static const char *const names[][2] = {{"TEXCOORD_", "texture coordinates"},
                                            {"COLOR_", "further colours"},
@@ -461,7 +455,7 @@ static void set_place(builder *b, const brio_glb_instance *instance) {
     for (int i = 0; i < 9 && b->flip; i++) b->normal_matrix[i] = -b->normal_matrix[i];
 }
 
-/* A coordinate that is not moved keeps its bits: -0 + 0 would be 0. */
+/* Moves positions to their places. A coordinate that is not moved keeps its bits: -0 + 0 would be 0. */
 static void place_positions(const builder *b, const brio_glb_column *c, uint64_t first) {
     const double *m = b->instance->matrix;
     for (uint64_t v = 0; v < c->count; v++) {
@@ -563,8 +557,8 @@ static brio_status note_mesh(builder *b, uint32_t number, made *m) {
     return BRIO_OK;
 }
 
-/* Refuses a scene that shows meshes, or accessors, so often that a small file becomes a huge mesh. Counts of accessors are
- * at most the bytes of the file, so that the sums are far from an overflow until the limit ends them. */
+/* Refuses a scene that shows meshes, or accessors, so often that a small file becomes a huge mesh. Counts of accessors
+ * are at most the bytes of the file, so that the sums are far from an overflow until the limit ends them. */
 static brio_status check_expansion(const builder *b, const brio_glb_instance *instances, size_t count,
                                    const made *meshes) {
     const brio_glb_file *file = b->file;

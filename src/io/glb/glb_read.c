@@ -1,4 +1,5 @@
-/* Reads glTF 2.0: GLB, a container of JSON and binary data, and .gltf, whose data are in the JSON or in files beside it.
+/* Reads glTF 2.0: GLB, a container of JSON and binary data, and .gltf, whose data are in the JSON or in files beside
+ * it.
  *
  * The chunks are read into memory; what they hold is looked at afterwards.
  *

@@ -16,8 +16,8 @@
 
 /* Reads buffers of a glTF file that are in other files.
  *
- * A file that is read must not be able to name any file of the machine, so a URI has no scheme, begins with no slash, and
- * never goes up to the parent folder. What is behind the name must be a regular file.
+ * A file that is read must not be able to name any file of the machine, so a URI has no scheme, begins with no slash,
+ * and never goes up to the parent folder. What is behind the name must be a regular file.
  *
  * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. Berners-Lee, Fielding, Masinter. Uniform
  * Resource Identifier (URI): generic syntax. RFC 3986, 2005. */
@@ -84,7 +84,8 @@ static brio_status read_all(brio_context *ctx, int file, const char *name, char 
     return BRIO_OK;
 }
 
-/* Reads the file that a buffer names, whole. The name is a relative URI: it may be in a folder below that of the glTF file,
+/* Reads the file that a buffer names, whole. The name is a relative URI: it may be in a folder below that of the glTF
+ * file,
  *  and nowhere else.
  *  path     of the glTF file, for messages, too.   on_disk  whether it is a file with a folder.
  *  number   of the buffer, for messages.
@@ -405,7 +406,8 @@ static brio_status check_extensions(const reader *r) {
     return BRIO_OK;
 }
 
-/* Reads a list of the root.   items, count, size  the array that receives them, the number and the size of its items. */
+/* Reads a list of the root.   items, count, size  the array that receives them, the number and the size of its
+ * items. */
 static brio_status read_list(reader *r, const char *key, void *items, size_t *count,
                              brio_status (*read)(reader *r, const brio_json *item), size_t size) {
     const brio_json *list = brio_json_get(r->root, key), *item = brio_json_first(list);
@@ -440,7 +442,7 @@ static brio_status note_left_out(const reader *r) {
     return BRIO_OK;
 }
 
-/* Room in the lists that others point into by a first item and a count, so that none of them is NULL. */
+/* Makes room in the lists that others point into by a first item and a count, so that none of them is NULL. */
 static brio_status begin_lists(reader *r) {
     BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->scene->attributes, r->attribute_capacity, 1));
     BRIO_FORWARD(BRIO_RESERVE(r->ctx, r->scene->primitives, r->primitive_capacity, 1));

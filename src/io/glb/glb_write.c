@@ -200,11 +200,11 @@ enum { HEADERS = 12 + 8 + 8, STEPS = 4 };
 /* --- coordinates --- */
 
 /* Single precision has 24 bits. If these hold every coordinate, the origin is 0. Otherwise coordinates are stored
- * relative to the middle of their box, rounded to a sixteenth of its longest side, if that moves vertices less. The node
- * that holds the mesh is translated by the origin, in double precision. */
+ * relative to the middle of their box, rounded to a sixteenth of its longest side, if that moves vertices less. The
+ * node that holds the mesh is translated by the origin, in double precision. */
 
-/* The greatest distance that a vertex moves if coordinates are stored relative to an origin; infinite if they are too
- * large. */
+/* Returns the greatest distance that a vertex moves if coordinates are stored relative to an origin; infinite if they
+ * are too large. */
 static double moved_by(const brio_mesh *m, const double *origin) {
     double most = 0;
     for (size_t v = 0; v < m->num_vertices; v++) {
@@ -335,7 +335,8 @@ static void plan_indices(brio_glb_layout *l) {
 }
 
 /* Plans the file.   layout  call glb_layout_free, on failure too.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (coordinates beyond single precision, or a file of over 4 GiB), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (coordinates beyond single precision, or a file of over 4 GiB),
+ *  BRIO_ERR_NO_MEMORY. */
 static brio_status glb_layout_make(brio_context *ctx, const char *name, const brio_write_job *job, brio_glb_layout *l) {
     *l = (brio_glb_layout){.mesh = job->mesh};
     if (l->mesh->num_vertices) {

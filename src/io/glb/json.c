@@ -1,8 +1,8 @@
 /* JSON as a tree, by cJSON.
  *
- * cJSON takes its memory from malloc, and calls itself for every level. Therefore a text is first looked over: its values
- * are counted, and a block that is as large as their tree at most is taken from the counted memory and kept beside the
- * tree; and a text of more than MOST_LEVELS levels is refused, so that a small stack suffices.
+ * cJSON takes its memory from malloc, and calls itself for every level. Therefore a text is first looked over: its
+ * values are counted, and a block that is as large as their tree at most is taken from the counted memory and kept
+ * beside the tree; and a text of more than MOST_LEVELS levels is refused, so that a small stack suffices.
  *
  * Based on: Bray. The JavaScript object notation (JSON) data interchange format. RFC 8259, 2017. */
 #ifdef BRIO_HAS_CJSON

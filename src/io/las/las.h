@@ -13,8 +13,8 @@
 
 enum { BRIO_LAS_FORMATS = 11 };
 
-/** Bytes of the header of a record of variable length before the points (behind them they are BRIO_RECORD_HEADER), and of a
- *  description of extra bytes; and the places of a description's parts. */
+/** Bytes of the header of a record of variable length before the points (behind them they are BRIO_RECORD_HEADER), and
+ *  of a description of extra bytes; and the places of a description's parts. */
 enum { BRIO_LAS_RECORD_HEADER = 54, BRIO_LAS_EXTRA = 192, BRIO_LAS_NAME = 32 };
 enum {
     BRIO_EXTRA_TYPE = 2,
@@ -74,8 +74,8 @@ size_t brio_las_extra_bytes(unsigned type);
 
 /* The functions that read return BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 
-/** Reads the header and all bytes before the points, and from a file that is not a pipe the records behind the points. What
- *  they say goes to the header and to the metadata of b->mesh. Call brio_las_header_free even if this fails. */
+/** Reads the header and all bytes before the points, and from a file that is not a pipe the records behind the points.
+ *  What they say goes to the header and to the metadata of b->mesh. Call brio_las_header_free even if this fails. */
 brio_status brio_las_header_read(brio_stream *s, brio_builder *b, brio_las_header *h);
 void brio_las_header_free(brio_context *ctx, brio_las_header *h);
 
@@ -144,8 +144,8 @@ void brio_las_store(const brio_las_plan *plan, const brio_mesh *mesh, const char
 
 /* The points of a LAS file. */
 
-/* Both return BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and what
- * the builder's sink returns. */
+/* Both return BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and
+ * what the builder's sink returns. */
 
 /** Reads the points behind a header; the stream is where they begin. With b->salvage a file may end early. */
 brio_status brio_las_read_points(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan);

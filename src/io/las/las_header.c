@@ -17,9 +17,9 @@
 
 /* Descriptions of extra bytes: the numbers of a record behind the fields of its format.
  *
- * Descriptions come in records of variable length, of which there may be several, before the points or behind them: all of
- * them are one list, and the numbers lie in its order. What a description does not give, or the record has no room for, is
- * left out and named.
+ * Descriptions come in records of variable length, of which there may be several, before the points or behind them: all
+ * of them are one list, and the numbers lie in its order. What a description does not give, or the record has no room
+ * for, is left out and named.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
 
@@ -93,9 +93,9 @@ static brio_status las_end_extras(brio_builder *b, const brio_las_header *h) {
 
 /* Records of variable length of LAS files, before the points or behind them: what each is for.
  *
- * Two say how to read the points: LASzip's, and the descriptions of extra bytes. Coordinate systems and all that is true of
- * the file without its points become metadata of the mesh. Indices of the points and descriptions of waveforms are left out
- * and named: they are wrong for a file that brio writes.
+ * Two say how to read the points: LASzip's, and the descriptions of extra bytes. Coordinate systems and all that is
+ * true of the file without its points become metadata of the mesh. Indices of the points and descriptions of waveforms
+ * are left out and named: they are wrong for a file that brio writes.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. Hobu. COPC specification 1.0. 2021. */
 
@@ -201,7 +201,7 @@ static brio_status fetch(brio_stream *s, const brio_las_header *h, uint64_t at, 
     return BRIO_OK;
 }
 
-/* Whether a file has the bytes. A pipe is taken to have them. */
+/* Returns whether a file has the bytes. A pipe is taken to have them. */
 static bool has(const brio_stream *s, uint64_t at, uint64_t size) {
     return s->size == BRIO_SIZE_UNKNOWN ? at <= UINT64_MAX - size : at <= s->size && size <= s->size - at;
 }

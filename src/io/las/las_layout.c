@@ -1,9 +1,10 @@
 /* Chooses the format of a LAS file that is written, and the places of the properties in its records.
  *
- * The format is the first one whose fields take the most properties. A field takes the property of its name, capitals not
- * counted, if all values fit. Every other property becomes an extra number, with its type and its name: cut to 32 bytes, and
- * with _2, _3 and so on behind it where a reader of LAS has a field of that name, or another extra number has it. Numbers
- * that were scaled, or had 64 bits, in the LAS file they come from are so again if that gives back all their values.
+ * The format is the first one whose fields take the most properties. A field takes the property of its name, capitals
+ * not counted, if all values fit. Every other property becomes an extra number, with its type and its name: cut to 32
+ * bytes, and with _2, _3 and so on behind it where a reader of LAS has a field of that name, or another extra number
+ * has it. Numbers that were scaled, or had 64 bits, in the LAS file they come from are so again if that gives back all
+ * their values.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
 #include "io/las/las_layout.h"
@@ -78,8 +79,8 @@ static bool set_candidate(brio_las_grid *g, int axis) {
     return set_origin(g, axis, which - 2 * HALVES);
 }
 
-/* Returns the least power of ten by which half the width of an axis is a whole number of 32 bits. Below the powers of ten
- * that doubles hold well it is the least double, or that times a power of two. */
+/* Returns the least power of ten by which half the width of an axis is a whole number of 32 bits. Below the powers of
+ * ten that doubles hold well it is the least double, or that times a power of two. */
 static double rounding_step(double half) {
     double step = pow(10, ceil(log10(half / (INT32_MAX - 1))));
     if (!(step > 0)) step = DBL_TRUE_MIN;
@@ -126,7 +127,7 @@ static void take_witnesses(brio_las_grid *g, const brio_mesh *block) {
         memcpy(g->witnesses[g->num_witnesses++], block->vertices + 3 * v, sizeof *g->witnesses);
 }
 
-/* The first pass: `failed` says whether the source's grid failed anywhere. */
+/* Tries the grid of the source, in the first pass: `failed` says whether the source's grid failed anywhere. */
 static void try_source(brio_las_grid *g, int axis, const brio_mesh *block) {
     if (!g->begun) {
         g->step[axis] = block->coordinate_step[axis];
@@ -175,7 +176,8 @@ void brio_las_grid_free(brio_context *ctx, brio_las_grid *g) {
     g->witnesses = NULL;
 }
 
-/* A whole step beside the largest double can lead to infinity: then the number nearer to the origin is taken. */
+/* Returns the number of steps. A whole step beside the largest double can lead to infinity: then the number nearer to
+ * the origin is taken. */
 int32_t brio_las_grid_number(const brio_las_grid *g, int axis, double x) {
     double step = g->step[axis], origin = g->origin[axis], n = number_of(x, step, origin);
     if (!isfinite(n * step + origin)) n -= copysign(1, n);
@@ -271,7 +273,7 @@ static double raw_number(const number_form *f, double x) {
     return f->type > SINGLE ? n : f->type == SINGLE ? (double)(float)n : rint(n);
 }
 
-/* Whether a reader finds the value. */
+/* Returns whether a reader finds the value. */
 static bool form_gives_back(const number_form *f, double x) {
     static const double least[] = {0, 0, -128, 0, -32768, 0, -0x1p31, 0, -0x1p63, -INFINITY, -INFINITY};
     static const double above[] = {0, 256, 128, 65536, 32768, 0x1p32, 0x1p31, 0x1p64, 0x1p63, INFINITY, INFINITY};
@@ -316,7 +318,8 @@ static bool fits(const brio_las_field *f, const brio_las_range *r) {
     return r->whole && r->low >= (is_signed ? -most - 1 : 0) && r->high <= most;
 }
 
-/* Whether a property is the first one that a field's name stands for: that of the very name, or else of its letters. */
+/* Returns whether a property is the first one that a field's name stands for: that of the very name, or else of its
+ * letters. */
 static bool is_owner(const brio_mesh *m, size_t property, const char *field) {
     const brio_property *exact = brio_mesh_property(m, field);
     if (exact) return exact == &m->properties[property];
@@ -405,7 +408,7 @@ void brio_las_layout_free(brio_context *ctx, brio_las_layout *l) {
     l->ranges = NULL;
 }
 
-/* A description of other values keeps its text alone. */
+/* Makes a description. A description of other values keeps its text alone. */
 void brio_las_describe(const brio_las_layout *l, const brio_mesh *m, size_t property, char bytes[BRIO_LAS_EXTRA]) {
     static const uint8_t types[BRIO_SCALAR_END] = {2, 1, 4, 3, 6, 5, 9, 10};
     const brio_las_place *place = &l->places[property];

@@ -13,9 +13,9 @@ enum { BRIO_LAS_WITNESSES = 4096 /* chosen */ };
 
 /** The search for a grid. A pass looks at all blocks of points, in the same order in every pass. The first pass finds
  *  the box of the points and tries the grid of the source. Later passes try the candidates: powers of 1/10 and of 1/2
- *  with origins that the box suggests. A candidate is taken that gives back all points of a whole pass. If there is none,
- *  the finest power of 10 is taken for which the whole numbers have 32 bits: coordinates are then rounded to the nearest
- *  multiple. All bytes 0 is the state before the first pass.
+ *  with origins that the box suggests. A candidate is taken that gives back all points of a whole pass. If there is
+ *  none, the finest power of 10 is taken for which the whole numbers have 32 bits: coordinates are then rounded to the
+ *  nearest multiple. All bytes 0 is the state before the first pass.
  *  All coordinates are finite: brio_write and the readers refuse others. */
 typedef struct brio_las_grid {
     double step[3], origin[3]; /* the candidates of the axes that are being tried, in the end the result */

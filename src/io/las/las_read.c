@@ -17,9 +17,7 @@
 /* --- fields --- */
 
 /* The fields of LAS records. Coordinates are whole numbers times a scale plus an offset, computed as every reader of
- * LAS does, so that the doubles are the same.
- *
- * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
+ * LAS does, so that the doubles are the same. */
 
 #define U8  BRIO_SCALAR_UINT8
 #define I8  BRIO_SCALAR_INT8
@@ -119,7 +117,8 @@ static brio_status begin_plan(brio_las_plan *plan, const brio_builder *b, const 
     return BRIO_ALLOC(b->ctx, plan->columns, BRIO_LAS_FIELDS + h->num_extras);
 }
 
-/* Adds the properties of a file to the mesh under construction, and the metadata "las.extras" if descriptions say more than
+/* Adds the properties of a file to the mesh under construction, and the metadata "las.extras" if descriptions say more
+ * than
  *  name and type. Call brio_las_plan_free even if this fails.
  *  Returns BRIO_OK, BRIO_ERR_FORMAT, BRIO_ERR_NO_MEMORY. */
 static brio_status las_plan_make(brio_las_plan *plan, brio_builder *b, const brio_las_header *h) {
@@ -181,7 +180,7 @@ static double extra_value(const char *bytes, unsigned type) {
     return brio_scalar_load(bytes, types[type], !brio_host_is_little());
 }
 
-/* Whether an integer of 64 bits is no double. */
+/* Returns whether an integer of 64 bits is no double. */
 static bool is_rounded(const char *bytes, unsigned type) {
     uint64_t size = brio_le64(bytes);
     if (type == INT64 && size >> 63) size = -size;
@@ -342,12 +341,13 @@ brio_status brio_las_read_points(brio_stream *s, brio_builder *b, const brio_las
     return h->compressed ? brio_laz_read(s, b, h, plan) : read_records(s, b, h, plan);
 }
 
-/* Whether a file can be read a second time while it is read. */
+/* Returns whether a file can be read a second time while it is read. */
 static bool can_look_ahead(const brio_stream *s) {
     return s->size != BRIO_SIZE_UNKNOWN && !s->unpacker;
 }
 
-/* What is known only when all points of a pipe have been read: the depth of colours, and records behind the points. */
+/* Takes what is known only when all points of a pipe have been read: the depth of colours, and records behind the
+ * points. */
 static brio_status end_pipe(brio_stream *s, brio_builder *b, brio_las_header *h, bool has_depth) {
     brio_las_depth depth = {.deep = false};
     if (!has_depth) {
@@ -360,7 +360,7 @@ static brio_status end_pipe(brio_stream *s, brio_builder *b, brio_las_header *h,
     return brio_las_records_give(b, h);
 }
 
-/* A pipe with colours is not handed on in blocks: what the colours are is known at its end. */
+/* Reads a file. A pipe with colours is not handed on in blocks: what the colours are is known at its end. */
 brio_status brio_las_read(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_las_header h;

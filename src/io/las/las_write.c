@@ -1,7 +1,7 @@
 /* Writes LAS and LAZ files: version 1.2 with formats 0 to 3, version 1.4 with formats 6 to 8.
  *
- * All points are seen before the first one is written: for the grid of their coordinates, and for what is in which field
- * (las_layout.c). Polygons are left out.
+ * All points are seen before the first one is written: for the grid of their coordinates, and for what is in which
+ * field (las_layout.c). Polygons are left out.
  *
  * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
 #include "base/memory.h"
@@ -19,11 +19,9 @@
 
 /* Writes the header of a LAS file and its records of variable length.
  *
- * Version 1.2 has formats 0 to 3, version 1.4 formats 6 to 8. A file with a coordinate system as text, or with a record of
- * more than 65535 bytes, has version 1.4 in any case. Formats 6 to 8 are to have coordinate systems as text; one that is
- * known by its keys alone is written so, and the header says it.
- *
- * Based on: ASPRS. LAS specification 1.4 R15. 2019. */
+ * Version 1.2 has formats 0 to 3, version 1.4 formats 6 to 8. A file with a coordinate system as text, or with a record
+ * of more than 65535 bytes, has version 1.4 in any case. Formats 6 to 8 are to have coordinate systems as text; one
+ * that is known by its keys alone is written so, and the header says it. */
 
 enum { BRIO_LAS_RETURNS = 15 };
 

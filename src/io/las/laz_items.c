@@ -174,7 +174,8 @@ static bool next_with_step(brio_laz_time *t, brio_laz_coder *c, brio_laz_arena *
     return symbol > 0;
 }
 
-/* The loop ends in damaged data, too: behind the bytes every symbol becomes 0, which is none of another sequence. */
+/* Decodes a time. The loop ends in damaged data, too: behind the bytes every symbol becomes 0, which is none of another
+ * sequence. */
 uint64_t brio_laz_time_next(brio_laz_time *t, brio_laz_coder *c, brio_laz_arena *arena, uint32_t may_stay) {
     while (t->steps[t->last] ? next_with_step(t, c, arena, may_stay) : next_without_step(t, c, arena, may_stay))
         if (c->past) break;
@@ -229,8 +230,8 @@ void brio_laz_infrared_next(brio_laz_infrared_models *m, brio_laz_coder *c, brio
 
 /* --- the same, encoded --- */
 
-/* Encodes the items of records of formats 0 to 3, and times, colours and near infrared of all formats. Each function is the
- * counterpart of the one above that decodes. */
+/* Encodes the items of records of formats 0 to 3, and times, colours and near infrared of all formats. Each function is
+ * the counterpart of the one above that decodes. */
 
 /* --- points of formats 0 to 5 --- */
 

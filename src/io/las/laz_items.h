@@ -78,8 +78,8 @@ typedef struct brio_laz_time {
 
 void brio_laz_time_begin(brio_laz_time *t, uint64_t first);
 
-/* Symbols of a multiple: 0 something else than a multiple, 1 to MOST_STEPS the multiple, above MOST_STEPS negative ones down
- * to LEAST_STEPS. Behind these come the symbols of a new time and of the other sequences. */
+/* Symbols of a multiple: 0 something else than a multiple, 1 to MOST_STEPS the multiple, above MOST_STEPS negative ones
+ * down to LEAST_STEPS. Behind these come the symbols of a new time and of the other sequences. */
 enum {
     BRIO_LAZ_MOST_STEPS = 500,
     BRIO_LAZ_LEAST_STEPS = -10,
@@ -180,8 +180,8 @@ bool brio_laz_point14_next(brio_laz_point14 *p, brio_laz_coder *layers, brio_laz
 
 /* --- a chunk --- */
 
-/* What decoder and encoder of a chunk of compressed records share: what is in a record, and the models of its items, which
- * both must change in the same way. */
+/* What decoder and encoder of a chunk of compressed records share: what is in a record, and the models of its items,
+ * which both must change in the same way. */
 
 enum { BRIO_LAZ_CHANNELS = 4 };
 /** The layers behind those of a point. Those of the extra bytes follow. */
@@ -232,7 +232,8 @@ static inline size_t brio_laz_num_layers(const brio_laz_form *form) {
 
 /** Returns the bytes of the memory that a state needs behind itself. */
 size_t brio_laz_state_bytes(const brio_laz_form *form);
-/** Makes a state.   memory  brio_laz_state_bytes(form) bytes, owned by the caller; models first, so aligned for them. */
+/** Makes a state.   memory  brio_laz_state_bytes(form) bytes, owned by the caller; models first, so aligned for
+ *  them. */
 void brio_laz_state_make(brio_laz_chunk_state *state, void *memory, const brio_laz_form *form);
 /** Begins a chunk with its first record. */
 void brio_laz_state_begin(brio_laz_chunk_state *state, const uint8_t *record);

@@ -40,7 +40,8 @@ static void halve(brio_laz_model *m) {
     }
 }
 
-/* Entry i + 1 is the last symbol that begins before i + 1 steps of the table; entry 0 is 0. */
+/* Fills the table of symbols. Entry i + 1 is the last symbol that begins before i + 1 steps of the table; entry 0 is
+ * 0. */
 static void fill_table(brio_laz_model *m) {
     uint32_t filled = 0, size = 1u << (BRIO_LAZ_SYMBOL_BITS - m->shift);
     for (uint32_t i = 0; i < m->symbols; i++)

@@ -1,7 +1,7 @@
 /* The entropy encoder of LAZ files: the counterpart of the decoder in laz_model.h, with the same models.
  *
- * A pen writes into memory that its owner has made large enough: a symbol takes at most BRIO_LAZ_SYMBOL_BITS bits and what
- * rounding adds, so 2 bytes; an integer two symbols and its raw bits, so 8.
+ * A pen writes into memory that its owner has made large enough: a symbol takes at most BRIO_LAZ_SYMBOL_BITS bits and
+ * what rounding adds, so 2 bytes; an integer two symbols and its raw bits, so 8.
  *
  * Based on: Isenburg. LASzip: lossless compression of LiDAR data. Photogrammetric Engineering and Remote Sensing 79,
  * 2013. Said. Introduction to arithmetic coding: theory and practice. HP Labs 2004. */
@@ -112,7 +112,8 @@ static inline void brio_laz_put_int16(brio_laz_pen *p, brio_laz_arena *arena, br
     brio_laz_put_difference(p, arena, n, 16, context, (int16_t)(uint16_t)(x - predicted));
 }
 
-/** Ends the bytes: any number of the last interval, and the zeros that the decoder reads ahead. Returns how many they are. */
+/** Ends the bytes: any number of the last interval, and the zeros that the decoder reads ahead. Returns how many they
+ *  are. */
 static inline size_t brio_laz_pen_end(brio_laz_pen *p) {
     bool longer = p->length > 2u << 24;
     brio_laz_pen_add(p, longer ? 1u << 24 : 1u << 23);

@@ -211,8 +211,8 @@ static void put_position(brio_laz_channel *h, brio_laz_pen *layers, brio_laz_are
     h->heights[level] = z;
 }
 
-/* The edge of the flight line, the direction of the scan and the flags of the classification, without the channel that lies
- * between them in the byte. */
+/* Returns the edge of the flight line, the direction of the scan and the flags of the classification, without the
+ * channel that lies between them in the byte. */
 static uint32_t flags_of(uint8_t byte) {
     return (byte & 15) | (byte >> 2 & 0x30);
 }

@@ -1,7 +1,7 @@
 /* Writes the chunks of a LAZ file and their table.
  *
- * Records are collected until there is a chunk for each thread; the threads encode their chunks side by side, and the chunks
- * are written in the order of the points. So the file does not depend on the number of threads.
+ * Records are collected until there is a chunk for each thread; the threads encode their chunks side by side, and the
+ * chunks are written in the order of the points. So the file does not depend on the number of threads.
  *
  * Based on: Isenburg. LASzip: lossless compression of LiDAR data. Photogrammetric Engineering and Remote Sensing 79,
  * 2013. */
@@ -13,7 +13,8 @@
 
 /* --- one chunk --- */
 
-/* Encodes a chunk of a LAZ file: the counterpart of laz_decoder.c, so that both change the same models in the same way. */
+/* Encodes a chunk of a LAZ file: the counterpart of laz_decoder.c, so that both change the same models in the same
+ * way. */
 
 enum { USUAL_POINTS = 50000 /* as in LASzip */, MOST_BYTES = 1 << 26 /* of a chunk's memory; chosen */ };
 
@@ -26,8 +27,8 @@ struct brio_laz_packer {
 
 /* --- memory --- */
 
-/* Bytes of a point in layer i of the fixed ones, at most: symbols, then integers. A time is a symbol for each change of the
- * sequence, another one, an integer and 32 bits. */
+/* Bytes of a point in layer i of the fixed ones, at most: symbols, then integers. A time is a symbol for each change of
+ * the sequence, another one, an integer and 32 bits. */
 static size_t layer_bytes(int i) {
     static const uint8_t symbols[BRIO_LAZ_FIXED_LAYERS] = {4, 0, 1, 1, 0, 0, 1, 0, 4, 7, 3};
     static const uint8_t integers[BRIO_LAZ_FIXED_LAYERS] = {2, 1, 0, 0, 1, 1, 0, 1, 2, 0, 0};

@@ -24,7 +24,7 @@ size_t brio_laz_packer_bytes(const brio_laz_form *form);
  *  Returns its bytes. */
 size_t brio_laz_pack(brio_laz_packer *packer, const uint8_t *rows, size_t count, const uint8_t **bytes);
 
-/* The items: each the counterpart of its _next function, which makes the same changes to the models. */
+/* Encode items: each function is the counterpart of its _next function, and makes the same changes to the models. */
 void brio_laz_point10_put(brio_laz_point10 *p, brio_laz_pen *pen, brio_laz_arena *arena, const uint8_t *row);
 void brio_laz_time_put(brio_laz_time *t, brio_laz_pen *pen, brio_laz_arena *arena, uint32_t may_stay, uint64_t time);
 void brio_laz_colour_put(brio_laz_colour_models *m, brio_laz_pen *pen, brio_laz_arena *arena, uint16_t last[3],
@@ -57,7 +57,8 @@ typedef struct brio_laz_writer {
 brio_status brio_laz_write_begin(brio_laz_writer *w, brio_output *out, const brio_laz_form *form);
 /** Takes records, and writes the chunks that are full. */
 brio_status brio_laz_write_rows(brio_laz_writer *w, brio_output *out, const uint8_t *rows, size_t count);
-/** Writes the last chunk and the table. The table's place is put in front of the chunks or, in a pipe, behind the table. */
+/** Writes the last chunk and the table. The table's place is put in front of the chunks or, in a pipe, behind the
+ *  table. */
 brio_status brio_laz_write_end(brio_laz_writer *w, brio_output *out);
 void brio_laz_write_free(brio_laz_writer *w, brio_context *ctx);
 

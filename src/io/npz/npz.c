@@ -1,9 +1,9 @@
 /* Reads NPZ files: zip archives of NumPy's arrays, stored or compressed by deflate.
  *
  * The points are read first, as from an NPY file. Arrays with as many rows become properties; arrays of indices become
- * polygons or tetrahedra. All other arrays are left out. What belongs to a point is in several arrays, so the file is one
- * block. A pipe, and a file that is compressed as a whole, is read into memory first, since the table of a zip archive is
- * at its end.
+ * polygons or tetrahedra. All other arrays are left out. What belongs to a point is in several arrays, so the file is
+ * one block. A pipe, and a file that is compressed as a whole, is read into memory first, since the table of a zip
+ * archive is at its end.
  *
  * Based on: NumPy enhancement proposal 1: a simple file format for NumPy arrays. 2007. */
 #include "base/memory.h"

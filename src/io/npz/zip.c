@@ -78,7 +78,8 @@ static brio_status find_table(brio_zip *z, uint64_t *bytes, uint64_t *count) {
     return BRIO_OK;
 }
 
-/* Takes the numbers of 64 bits from the extra field, for those that are all ones. Returns false if they are not there. */
+/* Takes the numbers of 64 bits from the extra field, for those that are all ones. Returns false if they are not
+ * there. */
 static bool take_wide(brio_zip_entry *e, const uint8_t *extra, size_t size) {
     uint64_t *const numbers[] = {&e->size, &e->packed, &e->header};
     bool needed = e->size == UINT32_MAX || e->packed == UINT32_MAX || e->header == UINT32_MAX;

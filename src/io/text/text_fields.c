@@ -192,7 +192,7 @@ static bool ends_field(const char *p) {
     return brio_is_blank(*p) || *p == ',' || !*p || *p == ';' || brio_starts_comment(p);
 }
 
-/* In a word, as in z#1, a comment's mark is none. */
+/* Returns whether a text ends here. In a word, as in z#1, a comment's mark is none. */
 static bool ends_text(const char *p) {
     return brio_is_blank(*p) || *p == ',' || !*p || *p == ';';
 }
@@ -298,13 +298,14 @@ static void join_words(brio_fields *f) {
     f->count = kept;
 }
 
-/* Whether a % is the end of a name with blanks, as in "Humidity %". */
+/* Returns whether a % is the end of a name with blanks, as in "Humidity %". */
 static bool is_unit(const brio_fields *f, const char *p) {
     bool word = f->count && f->at[f->count - 1].kind == BRIO_FIELD_WORD;
     return word && *p == '%' && (p[1] == ',' || p[1] == ';' || (!p[1] && strpbrk(f->at[0].word, ",;")));
 }
 
-/* prose  whether words after BRIO_MOST_NUMBERS are left out, as in a long comment; otherwise they are an error. */
+/* Splits a row.   prose  whether words after BRIO_MOST_NUMBERS are left out, as in a long comment; otherwise they are
+ * an error. */
 static brio_status split(brio_fields *f, const char *p, size_t columns, bool prose, gaps *g) {
     bool comma = false;
     f->count = 0;
@@ -376,7 +377,7 @@ static brio_status split_decimal(brio_fields *f, const char *p, size_t columns) 
 
 /* --- which of both --- */
 
-/* Whether the word up to `end` is a number whose commas mark thousands, as 1,234,567.8 is. */
+/* Returns whether the word up to `end` is a number whose commas mark thousands, as 1,234,567.8 is. */
 static bool marks_thousands(const char *p, const char *end) {
     p += *p == '-' || *p == '+';
     const char *first = p;

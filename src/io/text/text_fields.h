@@ -6,11 +6,12 @@
  *
  * A comma between two digits may be a decimal comma. What it is shows in the first row of numbers that has one:
  *   - Nothing but commas separates its numbers (1,5,2): commas separate.
- *   - Its numbers are three or more words between blanks, tabs or semicolons, each of which is a number with at most one
- *     comma and no point (1,5;2,5;3): commas are decimal, and separate nothing from then on.
+ *   - Its numbers are three or more words between blanks, tabs or semicolons, each of which is a number with at most
+ *     one comma and no point (1,5;2,5;3): commas are decimal, and separate nothing from then on.
  *   - A word has commas and cannot be one number (1.5,2.5,3.5 255): commas separate.
  *   - Anything else (1,5 2; 1,234.5 6 7; 1,5 2.5 3) is an error.
- * A point in the first row of numbers decides that commas separate, too. A later row that says the opposite is an error. */
+ * A point in the first row of numbers decides that commas separate, too. A later row that says the opposite is an
+ * error. */
 #ifndef BRIO_IO_TEXT_FIELDS_H
 #define BRIO_IO_TEXT_FIELDS_H
 
@@ -74,8 +75,8 @@ brio_status brio_fields_of_words(brio_fields *f, const char *line);
  *  BRIO_MOST_NUMBERS), BRIO_ERR_NO_MEMORY. */
 brio_status brio_fields_of_line(brio_fields *f, const char *line, size_t columns);
 
-/** Whether a field is a word that stands for a number that is not there, as programs of statistics write it: NA, N/A, null,
- *  None. Its value is NaN. */
+/** Returns whether a field is a word that stands for a number that is not there, as programs of statistics write it:
+ *  NA, N/A, null, None. Its value is NaN. */
 bool brio_field_is_missing(const brio_field *f);
 
 #endif

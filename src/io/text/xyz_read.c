@@ -1,15 +1,16 @@
 /* Reads points as rows of numbers: .xyz .pts .txt .csv .asc .xyzrgb .xyzn .tsv .dat.
  *
  * A line of names before the first row, plain or as a comment, names the columns and gives the places of x, y and z;
- * names that the caller gives stand in its place. Without names the first three columns are x, y, z. Plain names that do
- * not say which are x, y and z are an error: the first column may be a number of the point. A column becomes a property
- * if the first row has no word in it, or one for a missing number. A single number before the first row is the number of
- * rows; another one behind these rows is that of a further block. A ; at the start of a line begins a comment, too.
+ * names that the caller gives stand in its place. Without names the first three columns are x, y, z. Plain names that
+ * do not say which are x, y and z are an error: the first column may be a number of the point. A column becomes a
+ * property if the first row has no word in it, or one for a missing number. A single number before the first row is the
+ * number of rows; another one behind these rows is that of a further block. A ; at the start of a line begins a
+ * comment, too.
  *
  * Columns without names have those that the extension gives them: .pts has an intensity, a colour, or both, .xyzrgb a
- * colour, .xyzn a normal. A line "sep=;" comes first where Excel is told the separator. Where single tabs separate the names,
- * two tabs in a row have an empty field between them. The points3D.txt of COLMAP has columns behind those that its comment
- * names, which are left out. */
+ * colour, .xyzn a normal. A line "sep=;" comes first where Excel is told the separator. Where single tabs separate the
+ * names, two tabs in a row have an empty field between them. The points3D.txt of COLMAP has columns behind those that
+ * its comment names, which are left out. */
 #include "base/memory.h"
 #include "base/utf8.h"
 #include "io/formats.h"
@@ -162,8 +163,8 @@ static size_t find_tracks(const xyz_reader *r) {
     return r->fields.count;
 }
 
-/* Reads a comment before the first row as a line of names if x, y and z, or angles, are among its words. Behind x, y and z
- * a number is a name, too. */
+/* Reads a comment before the first row as a line of names if x, y and z, or angles, are among its words. Behind x, y
+ * and z a number is a name, too. */
 static brio_status try_comment(xyz_reader *r, const char *comment) {
     brio_axes_result result;
     size_t axes[3];
@@ -181,7 +182,7 @@ static brio_status try_comment(xyz_reader *r, const char *comment) {
     return BRIO_OK;
 }
 
-/* Whether the line before the first row is one of names: words alone, or words that give x, y and z. */
+/* Returns whether the line before the first row is one of names: words alone, or words that give x, y and z. */
 static brio_status try_plain_names(xyz_reader *r, bool *are_names) {
     brio_axes_result result;
     size_t words = count_words(r), count = r->fields.count, axes[3];
@@ -239,7 +240,7 @@ static brio_status place_by_names(const xyz_reader *r, brio_axes_result result) 
     return unclear_columns(r, several_columns);
 }
 
-/* The caller's names have been checked: x, y and z are there. */
+/* Places columns as the caller names them. The caller's names have been checked: x, y and z are there. */
 static brio_status place_as_given(xyz_reader *r) {
     const brio_stream *s = r->stream;
     if (r->fields.count < r->names.count)
@@ -262,7 +263,8 @@ static brio_status place_axes(xyz_reader *r) {
     return r->source == NAMES_COMMENT ? place_by_comment(r, result) : place_by_names(r, result);
 }
 
-/* Whether a column that is no axis becomes a property. Of columns that the caller names, those with a name do. */
+/* Returns whether a column that is no axis becomes a property. Of columns that the caller names, those with a name
+ * do. */
 static bool is_property(const xyz_reader *r, size_t i) {
     if (r->source == NAMES_GIVEN) return i < r->names.count && r->names.at[i][0];
     if (r->source == NAMES_PLAIN && i >= r->names.count) return false; /* empty: a row may end with separators */
@@ -279,7 +281,8 @@ static brio_status name_left_out(xyz_reader *r, size_t i) {
     return brio_builder_leave_out(r->builder, named ? r->names.at[i] : name);
 }
 
-/* More columns than names: an index that has no name, or commas that do not separate, so that x, y and z are elsewhere. */
+/* Refuses more columns than names: an index that has no name, or commas that do not separate, so that x, y and z are
+ * elsewhere. */
 static brio_status refuse_nameless(const xyz_reader *r) {
     size_t names = r->names.count, found = r->fields.count;
     while (found > names && r->fields.at[found - 1].kind == BRIO_FIELD_EMPTY) found--;
@@ -288,7 +291,7 @@ static brio_status refuse_nameless(const xyz_reader *r) {
                      r->stream->name, r->stream->line, found, r->name_line, names);
 }
 
-/* Whether a file's name, perhaps with .gz or .zst behind it, has an extension. */
+/* Returns whether a file's name, perhaps with .gz or .zst behind it, has an extension. */
 static bool has_extension(const char *name, const char *extension) {
     size_t length = strlen(extension);
     for (const char *at = name; (at = strchr(at, '.')); at++) {
@@ -301,7 +304,7 @@ static bool has_extension(const char *name, const char *extension) {
     return false;
 }
 
-/* Whether three fields of the first row are bytes. */
+/* Returns whether three fields of the first row are bytes. */
 static bool are_bytes(const brio_field *f) {
     for (int k = 0; k < 3; k++)
         if (f[k].kind != BRIO_FIELD_NUMBER || !(f[k].value >= 0 && f[k].value <= 255) ||
@@ -373,8 +376,8 @@ static void count_numbered(xyz_reader *r, double x) {
     }
 }
 
-/* Whether x was 0 to n - 1 or 1 to n, in any order: then the sums of their first three powers are equal. Other whole
- * numbers with such sums are possible, and rare. */
+/* Returns whether x was 0 to n - 1 or 1 to n, in any order: then the sums of their first three powers are equal. Other
+ * whole numbers with such sums are possible, and rare. */
 static bool is_numbered(const xyz_reader *r) {
     enum { FEWEST = 4 };
     uint64_t n = brio_builder_count(r->builder), power = 1;
@@ -468,7 +471,8 @@ static brio_status read_first(xyz_reader *r) {
     return read_row(r);
 }
 
-/* Whether the line is the one that tells Excel the separator; other separators than those that are known are refused. */
+/* Returns whether the line is the one that tells Excel the separator; other separators than those that are known are
+ * refused. */
 static brio_status read_separator(const xyz_reader *r, const char *line, bool *is_one) {
     line += *line == '"';
     *is_one = r->stream->line == 1 && !strncasecmp(line, "sep=", 4);
@@ -477,7 +481,7 @@ static brio_status read_separator(const xyz_reader *r, const char *line, bool *i
                      "%s: line 1: the separator %.1s, expected a comma, semicolon or tab", r->stream->name, line + 4);
 }
 
-/* Whether a line before the first row has words between single tabs. */
+/* Returns whether a line before the first row has words between single tabs. */
 static bool has_single_tabs(const char *line) {
     size_t tabs = 0, letters = 0;
     for (; *line; line++) {
@@ -515,7 +519,7 @@ static brio_status read_line(xyz_reader *r, char *line) {
     return r->num_columns ? read_row(r) : read_first(r);
 }
 
-/* Whether the last line has no end, and fewer fields than the rows before. */
+/* Returns whether the last line has no end, and fewer fields than the rows before. */
 static bool is_short(const xyz_reader *r) {
     return r->builder->salvage && r->stream->unended && r->num_columns && r->fields.count < r->num_columns;
 }

@@ -1,8 +1,8 @@
 /* Reads VTK's legacy files of polygonal data and of unstructured grids, text and binary, of the versions 1 to 5.1.
  *
- * A file is a sequence of keywords with numbers behind them. Numbers in binary have the most significant byte first. Up to
- * version 4 the cells are one list, each with the number of its corners before them; from version 5 on they are offsets and
- * corners, as in the XML files, whose cells and point data serve here, too.
+ * A file is a sequence of keywords with numbers behind them. Numbers in binary have the most significant byte first. Up
+ * to version 4 the cells are one list, each with the number of its corners before them; from version 5 on they are
+ * offsets and corners, as in the XML files, whose cells and point data serve here, too.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "base/memory.h"
@@ -16,8 +16,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* WORD: bytes of a word: a name of 63 bytes has three characters for each of them that is no letter. PART: numbers read at a
- * time; chosen. */
+/* WORD: bytes of a word: a name of 63 bytes has three characters for each of them that is no letter. PART: numbers read
+ * at a time; chosen. */
 enum { WORD = 256, PART = 1 << 13 };
 
 /* Types that are passed over. */
@@ -153,7 +153,8 @@ static brio_status take_part(legacy_reader *r, int type, size_t count, char *to)
     return BRIO_OK;
 }
 
-/* Reads `count` numbers behind the end of this line.   out  owned by the caller (brio_release of its bytes), on failure too. */
+/* Reads `count` numbers behind the end of this line.   out  owned by the caller (brio_release of its bytes), on failure
+ * too. */
 static brio_status take_values(legacy_reader *r, int type, uint64_t count, brio_vtk_values *out) {
     size_t size = brio_vtk_type_size(type), capacity = 0;
     *out = (brio_vtk_values){.type = type, .count = count};
@@ -362,7 +363,7 @@ static brio_status take_scalars(legacy_reader *r) {
     return take_array(r, name, components, r->rows, type);
 }
 
-/* Colours: bytes, or numbers from 0 to 1 in a text. */
+/* Takes colours: bytes, or numbers from 0 to 1 in a text. */
 static brio_status take_colours(legacy_reader *r) {
     char name[BRIO_XML_VALUE];
     uint64_t components;
@@ -385,7 +386,8 @@ done:
     return status;
 }
 
-/* Reads an array of a kind that has always the same number of components.   components  0: they stand before the type. */
+/* Reads an array of a kind that has always the same number of components.   components  0: they stand before the
+ * type. */
 static brio_status take_attribute(legacy_reader *r, uint64_t components) {
     bool normals = !strcasecmp(r->word, "NORMALS");
     char name[BRIO_XML_VALUE];

@@ -1,6 +1,6 @@
-/* Writes VTK's legacy file of an unstructured grid, binary or as text, of version 3.0, which all programs of VTK read: points,
- * tetrahedra, polygons and edges as cells (without any of them a vertex cell for each point), and properties as a
- * field; cells that are no faces have 0.
+/* Writes VTK's legacy file of an unstructured grid, binary or as text, of version 3.0, which all programs of VTK read:
+ * points, tetrahedra, polygons and edges as cells (without any of them a vertex cell for each point), and properties as
+ * a field; cells that are no faces have 0.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "io/formats.h"
@@ -153,7 +153,7 @@ static brio_status put_points(const legacy_writer *w) {
     return brio_output_string(w->out, "\n");
 }
 
-/* The title is one line of at most 255 characters. */
+/* Writes the header. The title is one line of at most 255 characters. */
 static brio_status put_header(const legacy_writer *w, const char *comment) {
     size_t length = comment ? strcspn(comment, "\r\n") : 0;
     BRIO_FORWARD(brio_output_string(w->out, "# vtk DataFile Version 3.0\n"));

@@ -90,7 +90,8 @@ typedef struct brio_vtk_header {
 
 /** Returns the number of cells of a piece. */
 uint64_t brio_vtk_cells_of(const brio_vtk_piece *piece);
-/** Returns the first row that a section of a piece has in cell data: points come first, then lines, polygons, strips. */
+/** Returns the first row that a section of a piece has in cell data: points come first, then lines, polygons,
+ *  strips. */
 uint64_t brio_vtk_first_row(const brio_vtk_piece *piece, brio_vtk_section section);
 
 /** Takes what a tag says, except DataArray. */

@@ -251,8 +251,8 @@ void brio_vtk_data_free(brio_context *ctx, brio_vtk_data *data) {
 
 /* Cell data of VTU, VTP and VTK files as properties of the faces.
  *
- * A face has the values of its cell's row; all triangles of a strip have those of the strip. Rows of cells that are no faces
- * become nothing, which is said unless they hold nothing but 0, as brio writes them. */
+ * A face has the values of its cell's row; all triangles of a strip have those of the strip. Rows of cells that are no
+ * faces become nothing, which is said unless they hold nothing but 0, as brio writes them. */
 
 /* Returns whether a column has a number other than 0 in a row that is no face's.   taken  of all cells. */
 static bool has_others(const brio_vtk_column *c, const uint8_t *taken) {

@@ -175,7 +175,7 @@ static brio_status take_word(brio_vtk_decoder *d, uint64_t *word) {
     return BRIO_OK;
 }
 
-/* The most bytes that the rest of the file can hold of an array. */
+/* Returns the most bytes that the rest of the file can hold of an array. */
 static uint64_t most_left(const brio_vtk_decoder *d) {
     const brio_stream *s = d->stream;
     uint64_t at = brio_stream_offset(s), left = s->size > at ? s->size - at : 0;

@@ -20,9 +20,7 @@
 /* The cells of a VTU or VTP file as polygons, tetrahedra and edges.
  *
  * A strip of n corners is n - 2 triangles, of which every second one is turned round; a line of n corners is n - 1
- * edges. Of quadratic cells the corners are kept. Other cells are passed over.
- *
- * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+ * edges. Of quadratic cells the corners are kept. Other cells are passed over. */
 
 /* Types of cells of VTK. */
 enum {
@@ -51,7 +49,7 @@ typedef struct {
     uint64_t number, from, count; /* corners from `from` on */
 } cell;
 
-/* brio_vtk_number, without a call for the types that indices have. */
+/* Returns brio_vtk_number, without a call for the types that indices have. */
 static inline double number_of(const brio_vtk_values *values, uint64_t i) {
     int32_t narrow;
     int64_t wide;

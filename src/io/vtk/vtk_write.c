@@ -95,9 +95,7 @@ done:
 /* --- polygons --- */
 
 /* Writes VTP, VTK's XML file of polygonal data: polygons, and edges as lines. Without either, writes one vertex cell
- * for each point. The rows of cell data are those of edges, then of polygons.
- *
- * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+ * for each point. The rows of cell data are those of edges, then of polygons. */
 
 typedef struct {
     brio_vtk_writer xml;
@@ -175,10 +173,8 @@ done:
 
 /* --- cells --- */
 
-/* Writes cells as polyhedra in VTU, VTK's XML file of an unstructured grid. Cells that are unbounded, that have no faces,
- * or a vertex that doubles cannot hold, are left out, and so are such vertices.
- *
- * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+/* Writes cells as polyhedra in VTU, VTK's XML file of an unstructured grid. Cells that are unbounded, that have no
+ * faces, or a vertex that doubles cannot hold, are left out, and so are such vertices. */
 
 enum { VTK_POLYHEDRON = 42 };
 

@@ -1,7 +1,7 @@
 /* Writes VTK's XML files: tags, points with their properties, and arrays.
  *
- * Raw arrays are appended: their offsets follow from their sizes, so that nothing need be kept. The size of a compressed
- * array is known when it was compressed: compressed arrays are kept in memory until all tags are written.
+ * Raw arrays are appended: their offsets follow from their sizes, so that nothing need be kept. The size of a
+ * compressed array is known when it was compressed: compressed arrays are kept in memory until all tags are written.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
 #include "base/memory.h"
@@ -18,9 +18,7 @@
 
 /* Compressed arrays of VTK's XML files: blocks of zlib, and their sizes in front of them.
  *
- * Threads compress a batch of blocks at a time. The blocks do not depend on the number of threads.
- *
- * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
+ * Threads compress a batch of blocks at a time. The blocks do not depend on the number of threads. */
 
 /* BLOCK: bytes of a block; a multiple of every scalar's size, and large enough that beginning anew costs little. BATCH:
  * blocks compressed at a time. Both chosen. */
@@ -290,7 +288,8 @@ static bool is_taken(char (*names)[64], size_t count, const char *name) {
     return false;
 }
 
-/* XML cannot represent control characters, which become blanks; a name that is taken then gets _2, _3 and so on. */
+/* Makes names. XML cannot represent control characters, which become blanks; a name that is taken then gets _2, _3 and
+ * so on. */
 static void make_names(const brio_mesh *m, char (*names)[64]) {
     for (size_t i = 0; i < m->num_properties; i++) {
         char plain[64];

@@ -29,7 +29,8 @@ typedef struct brio_vtk_appended {
     size_t packed_size, capacity;
 } brio_vtk_appended;
 
-/* Properties of points or faces that are written as one array, and the rows of the array that are theirs; all others are 0. */
+/* Properties of points or faces that are written as one array, and the rows of the array that are theirs; all others
+ * are 0. */
 typedef struct brio_vtk_property {
     brio_channels of;
     uint64_t first, rows;

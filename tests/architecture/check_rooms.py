@@ -1,0 +1,100 @@
+"""check_rooms.py ROOT: how large rooms and files are, and what they may name.
+
+  - No file of src and cli has more than LINES lines.
+  - A folder holds 3 to 30 files. FOLDERS lists the others, with the number of files that they have now: it may only fall
+    towards 30.
+  - Files under 50 lines, and headers that one file alone includes besides the .c of their name, do not become more than
+    SMALL and SINGLE. Where the number falls, the check says so: write the new number here.
+  - A format's name, BRIO_FORMAT_PLY and its like, stands in src/io alone; NAMED are the files of cli that still ask for one by
+    name, each with the names.
+  - No line is wider than COLUMNS columns; WIDE are the rooms whose comments are wider, each with the number of such lines.
+
+Each complaint names the file and the way out.
+"""
+
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from count_house import SMALL as SMALL_LINES, files_of, single_headers, without_comments
+
+LINES, COLUMNS, FEWEST, MOST = 600, 120, 3, 30
+SMALL, SINGLE = 266, 100
+FOLDERS = {"src/base": 48, "src/io": 71, "src/mesh": 51, "src/plane": 33, "src/reconstruct/cocone": 38,
+           "src/reconstruct/labeled_delaunay": 37, "src/reconstruct/surface": 1, "src/testdata": 31, "src/triangulation": 68}
+WIDE = {"include": 233, "src/reconstruct": 167}
+FORMAT = re.compile(r"\bBRIO_FORMAT_(?!AUTO\b|END\b)([A-Z0-9_]+)\b")
+NAMED = {
+    "cli/commands/convert.c": "PLY",
+    "cli/commands/delaunay.c": "NODE PLY VTK VTU",
+    "cli/commands/medial.c": "PLY VTK VTP VTU XYZ",
+    "cli/files/precision.c": "STL",
+    "cli/files/read_write.c": "GLB LAS LAZ NODE NPY OBJ OFF PCD PLY STL VTK VTP VTU XYZ",
+}
+
+
+def check_sizes(root, files):
+    folders = {}
+    for path in files:
+        name = path.relative_to(root).as_posix()
+        lines = path.read_text(encoding="utf-8").count("\n")
+        if lines > LINES and not name.startswith("include/"):
+            yield "%s has %d lines, at most %d: what would a stranger look for in it? Make that a file of its own" % (name, lines, LINES)
+        if not name.startswith("include/"):
+            folders[path.parent] = folders.get(path.parent, 0) + 1
+    for folder, count in sorted(folders.items()):
+        name = folder.relative_to(root).as_posix()
+        if name in FOLDERS and count <= FOLDERS[name]:
+            continue
+        if count > MOST:
+            yield "%s has %d files, at most %d: it is two rooms; find the arrows between its parts" % (name, count, FOLDERS.get(name, MOST))
+        if count < FEWEST and name != "cli":
+            yield "%s has %d files, %d at least: put them into the room of their user" % (name, count, FEWEST)
+
+
+def check_boxes(root, files):
+    small = [p for p in files if p.read_text(encoding="utf-8").count("\n") < SMALL_LINES]
+    single = single_headers(root, files)
+    for what, found, most, way in (("files under %d lines" % SMALL_LINES, small, SMALL, "put what is new into the file of its user"),
+                                   ("headers with one user", single, SINGLE, "put the declarations into the user, or the user's own header")):
+        if len(found) > most:
+            yield "%d %s, at most %d: %s. These are all:\n  %s" % (
+                len(found), what, most, way, "\n  ".join(sorted(p.relative_to(root).as_posix() for p in found)))
+        if len(found) < most:
+            print("%d %s, and this check allows %d: write the new number into it" % (len(found), what, most))
+
+
+def check_formats(root, files):
+    for path in files:
+        name = path.relative_to(root).as_posix()
+        found = sorted(set(FORMAT.findall(without_comments(path.read_text(encoding="utf-8")))) - set(NAMED.get(name, "").split()))
+        if found and not name.startswith(("include/", "src/io/")):
+            yield "%s names the format %s: ask brio_format_facts what a format can do" % (name, ", ".join(found))
+
+
+def check_columns(root, files):
+    wide = dict.fromkeys(WIDE, 0)
+    for path in files:
+        name = path.relative_to(root).as_posix()
+        later = next((room for room in WIDE if name.startswith(room + "/")), None)
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+            if len(line) > COLUMNS and later:
+                wide[later] += 1
+            elif len(line) > COLUMNS and not line.lstrip().startswith("#define"):
+                yield "%s:%d has %d columns, at most %d: break the line" % (name, number, len(line), COLUMNS)
+    for room, count in wide.items():
+        if count > WIDE[room]:
+            yield "%s has %d lines of more than %d columns, at most %d: break those that are new" % (room, count, COLUMNS, WIDE[room])
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    files = files_of(root)
+    wrong = [line for check in (check_sizes, check_boxes, check_formats, check_columns) for line in check(root, files)]
+    print("\n".join([*wrong, "%d files, %d complaints" % (len(files), len(wrong))]))
+    return 1 if wrong or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
