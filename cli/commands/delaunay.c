@@ -4,6 +4,7 @@
 #include "cli/run/commands.h"
 #include "cli/run/run.h"
 #include "cli/steps/estimate.h"
+#include "cli/steps/order.h"
 #include "cli/steps/plane.h"
 #include "cli/steps/properties.h"
 #include "cli/steps/weights.h"
@@ -79,23 +80,12 @@ done:
 
 typedef struct arguments {
     weights_options weights;
-    int order, locate, subgraph, plane;
-    double round_ratio;                /* NaN: not given */
-    uint64_t block_size, record_every; /* 0: not given */
-    size_t page_size, cache_size;      /* 0: not given */
+    order_options order;
+    int locate, subgraph, plane;
+    uint64_t record_every;        /* 0: not given */
+    size_t page_size, cache_size; /* 0: not given */
     bool first_conflict, all_conflicts, rounds, verify, neighbours, faces, edges;
 } arguments;
-
-enum { FITTING_ORDER = BRIO_ORDER_END }; /* random for a trace, else BRIO */
-
-static const option_choice orders[] = {{"brio", BRIO_ORDER_BRIO},
-                                       {"brio-octree", BRIO_ORDER_BRIO_OCTREE},
-                                       {"brio-kdtree", BRIO_ORDER_BRIO_KDTREE},
-                                       {"octree", BRIO_ORDER_OCTREE},
-                                       {"hilbert", BRIO_ORDER_HILBERT},
-                                       {"random", BRIO_ORDER_RANDOM},
-                                       {"input", BRIO_ORDER_INPUT},
-                                       {NULL, 0}};
 
 static const option_choice locations[] = {{"walk", BRIO_LOCATION_WALK},
                                           {"jump", BRIO_LOCATION_JUMP},
@@ -111,11 +101,7 @@ static const option options[] = {
     {"plane", 0, OPTION_CHOICE, FIELD(plane), "NAME", "triangles of two coordinates instead of tetrahedra", cli_planes},
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "how points are inserted (the result is the same)", 0},
-    {"order", 0, OPTION_CHOICE, FIELD(order), "NAME", "insertion order (default brio; for trace random)", orders},
-    {"block-size", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(block_size), "N",
-     "most points of an octree or k-d tree block (default 2000)", 0},
-    {"round-ratio", 0, OPTION_NUMBER, FIELD(round_ratio), "R",
-     "share of the points before the last round (default 1/8 for brio, else 1/2)", 0},
+    ORDER_ROWS(arguments, order, "; for trace random"),
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron (default walk)", locations},
     {"first-conflict", 0, OPTION_FLAG, FIELD(first_conflict), NULL,
      "history, trace: search depth first for a conflict, as the program hull, not along one path", 0},
@@ -140,41 +126,23 @@ static const option options[] = {
 };
 #undef FIELD
 
-static const arguments defaults = {.weights.exponent = NO_EXPONENT,
-                                   .order = FITTING_ORDER,
-                                   .subgraph = SUBGRAPH_FITTING,
-                                   .plane = NO_PLANE,
-                                   .round_ratio = NAN};
+static const arguments defaults = {
+    .weights.exponent = NO_EXPONENT, .order = NO_ORDER_OPTIONS, .subgraph = SUBGRAPH_FITTING, .plane = NO_PLANE};
 static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_VTK, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE,
                                       BRIO_FORMAT_AUTO};
 
 static brio_order insertion_order(const arguments *a) {
-    if (a->order != FITTING_ORDER) return (brio_order)a->order;
-    return a->locate == (int)BRIO_LOCATION_TRACE ? BRIO_ORDER_RANDOM : BRIO_ORDER_BRIO;
-}
-
-static brio_status check_order(run *r, const arguments *a) {
-    brio_order order = insertion_order(a);
-    bool in_blocks = order == BRIO_ORDER_BRIO_OCTREE || order == BRIO_ORDER_BRIO_KDTREE;
-    bool in_rounds = order == BRIO_ORDER_BRIO || in_blocks;
-    if (a->block_size && !in_blocks && order != BRIO_ORDER_OCTREE)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--block-size: only with --order brio-octree, brio-kdtree or octree");
-    if (!isnan(a->round_ratio) && !in_rounds)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: the insertion order has no rounds");
-    if (a->round_ratio <= 0 || a->round_ratio >= 1)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--round-ratio: %g is not between 0 and 1", a->round_ratio);
-    return BRIO_OK;
+    bool random = a->order.order == FITTING_ORDER && a->locate == (int)BRIO_LOCATION_TRACE;
+    return random ? BRIO_ORDER_RANDOM : cli_order_of(&a->order);
 }
 
 /* Refuses options of tetrahedra. */
 static brio_status check_plane(run *r, const arguments *a) {
-    bool three = a->order != FITTING_ORDER || a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds ||
-                 a->first_conflict || a->record_every || a->page_size || a->cache_size ||
-                 a->subgraph != SUBGRAPH_FITTING;
+    bool three = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
+                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING;
     if (three)
-        return cli_fail(
-            r, BRIO_ERR_ARGUMENT,
-            "--plane goes with --round-ratio, --verify and weights, not with other orders, locations or records");
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--plane goes with orders, --verify and weights, not with locations or records");
     return cli_require_output(r, cli_mesh_formats, true);
 }
 
@@ -194,7 +162,7 @@ static brio_status check_beside_node(run *r, const arguments *a) {
 
 static brio_status check_arguments(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
-    TRY(check_order(r, a));
+    TRY(cli_check_order(r, &a->order, insertion_order(a)));
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(check_beside_node(r, a));
     if (a->plane != NO_PLANE) return check_plane(r, a);
@@ -231,10 +199,10 @@ static brio_delaunay_options library_options(const run *r, const arguments *a, c
     o.edges = edges->ends;
     o.num_edges = edges->count;
     o.seed = r->common.seed;
-    o.block_size = (size_t)a->block_size;
+    o.block_size = (size_t)a->order.block_size;
     o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
     o.leave_hidden = !r->common.output && !a->verify; /* a report counts them, but names none */
-    if (!isnan(a->round_ratio)) o.round_ratio = a->round_ratio;
+    if (!isnan(a->order.round_ratio)) o.round_ratio = a->order.round_ratio;
     return o;
 }
 
@@ -373,7 +341,7 @@ static brio_status delaunay(run *r) {
     if (a->plane != NO_PLANE) {
         cli_lap(r, "read");
         TRY(cli_keep_weights(r, &a->weights, mesh, weights));
-        status = cli_plane(r, a->plane, mesh, weights, a->round_ratio, a->verify);
+        status = cli_plane(r, a->plane, mesh, weights, &a->order, a->verify);
         goto done;
     }
     if (cli_limits_memory(r)) TRY(require_memory(r, a, mesh, weights));

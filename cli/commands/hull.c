@@ -3,20 +3,25 @@
 #include "cli/steps/certificate.h"
 #include "cli/run/commands.h"
 #include "cli/steps/estimate.h"
+#include "cli/steps/order.h"
 #include "cli/steps/properties.h"
+#include <math.h>
 #include <stdlib.h>
 
 typedef struct arguments {
+    order_options order;
     bool polygons;
 } arguments;
 
 static const option options[] = {
     {"polygons", 0, OPTION_FLAG, offsetof(arguments, polygons), NULL,
      "one polygon for each facet, not cut into triangles", 0},
+    {"", 0, OPTION_TITLE, 0, NULL, "how points are inserted (the result is the same)", 0},
+    ORDER_ROWS(arguments, order, ""),
     {0},
 };
 
-static const arguments defaults = {.polygons = false};
+static const arguments defaults = {.order = NO_ORDER_OPTIONS};
 
 static void report(run *r, const brio_mesh *hull, const brio_convex_hull_stats *s) {
     facts *f = &r->facts;
@@ -30,19 +35,29 @@ static void report(run *r, const brio_mesh *hull, const brio_convex_hull_stats *
     cli_fact_count(f, "vertices", s->vertices);
     cli_fact_count(f, "faces", hull->num_faces);
     cli_fact_count(f, "facets", s->facets);
+    cli_fact_count(f, "created", s->created);
+    cli_fact_count(f, "destroyed", s->destroyed);
+    cli_fact_count(f, "walk_steps", s->walk_steps);
+    cli_fact_count(f, "beyond_calls", s->beyond_calls);
+    cli_fact_count(f, "exact_calls", s->exact_calls);
 }
 
 static brio_status hull(run *r) {
     const arguments *a = r->arguments;
-    brio_convex_hull_options o = {0};
-    brio_convex_hull_stats s = {0};
+    brio_convex_hull_options o = {.size = sizeof o};
+    brio_convex_hull_stats s = {.size = sizeof s};
     brio_mesh *input = NULL, *surface = NULL;
     uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
+    TRY(cli_check_order(r, &a->order, cli_order_of(&a->order)));
     TRY(cli_require_output(r, cli_mesh_formats, false));
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_require_memory(r, cli_hull_bytes(input)));
     o.polygons = a->polygons;
+    o.order = cli_order_of(&a->order);
+    o.seed = r->common.seed;
+    o.block_size = (size_t)a->order.block_size;
+    if (!isnan(a->order.round_ratio)) o.round_ratio = a->order.round_ratio;
     o.samples = samples = malloc((input->num_vertices + 1) * sizeof *samples);
     if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", input->num_vertices);
     TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));

@@ -5,6 +5,7 @@
 #include "cli/run/run.h"
 #include "cli/steps/certificate.h"
 #include "cli/steps/coverage.h"
+#include "cli/steps/curve.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/evidence.h"
 #include "cli/steps/hints.h"
@@ -54,14 +55,14 @@ static void report_dropped(run *r, const component_options *options, const size_
 
 /* --- the command --- */
 
-/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone
- * is given. */
-enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, NO_LABELING = -1 };
+/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is
+ * given; of points in a plane, curves. */
+enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, CURVES, NO_LABELING = -1 };
 
 typedef struct arguments {
     int method;
     power_crust_options crust;
-    bool polygons, boundaries, density, vertex_normals, self_intersections;
+    bool curves, polygons, boundaries, density, vertex_normals, self_intersections;
     double theta; /* 0: not given */
     uint64_t pieces;
     int extraction;
@@ -76,11 +77,9 @@ typedef struct {
     bool leaves_many; /* samples on no face are enough in number for those left out to be counted */
 } outcome;
 
-static const option_choice methods[] = {{"labeled-delaunay", LABELED_DELAUNAY},
-                                        {"power-crust", POWER_CRUST},
-                                        {"cocone", COCONE},
-                                        {"tight-cocone", TIGHT_COCONE},
-                                        {NULL, 0}};
+static const option_choice methods[] = {
+    {"labeled-delaunay", LABELED_DELAUNAY}, {"power-crust", POWER_CRUST}, {"cocone", COCONE},
+    {"tight-cocone", TIGHT_COCONE},         {"curves", CURVES},           {NULL, 0}};
 
 static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
                                             {"candidates", BRIO_EXTRACTION_CANDIDATES},
@@ -96,6 +95,8 @@ static const option options[] = {
     {"power-crust", 0, OPTION_NOTE, 0, NULL, "closed; sharp edges without points on them (--sharp)", 0},
     {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; with --boundaries open where they end", 0},
     {"tight-cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; closed", 0},
+    {"curves", 0, OPTION_NOTE, 0, NULL, "polylines, with corners and ends; the default of points in a plane", 0},
+    {"curves", 0, OPTION_FLAG, FIELD(curves), NULL, "the same as --method curves", 0},
     COMPONENT_ROWS(arguments, components),
     {"vertex-normals", 0, OPTION_FLAG, FIELD(vertex_normals), NULL, "give the vertices normals, as properties nx ny nz",
      0},
@@ -140,6 +141,7 @@ static bool has_power_crust_options(const arguments *a) {
 }
 
 static int method_of(const arguments *a) {
+    if (a->curves) return CURVES;
     return a->method != NO_METHOD ? a->method : has_power_crust_options(a) ? POWER_CRUST : LABELED_DELAUNAY;
 }
 
@@ -375,7 +377,7 @@ typedef struct method_option {
 
 /* Writes "a, b or c", the names of the methods in the set. */
 static void list_methods(unsigned set, char text[128]) {
-    option_choice chosen[TIGHT_COCONE + 1] = {0};
+    option_choice chosen[CURVES + 1] = {0};
     size_t count = 0;
     for (const option_choice *m = methods; m->name; m++)
         if (set >> m->value & 1) chosen[count++] = *m;
@@ -383,13 +385,15 @@ static void list_methods(unsigned set, char text[128]) {
 }
 
 /* Refuses options of another method. */
-static brio_status check_method(run *r) {
+static brio_status check_method(run *r, int method) {
     const arguments *a = r->arguments;
     enum {
+        PLANE = 1 << CURVES,
         SOLIDS = 1 << LABELED_DELAUNAY | 1 << POWER_CRUST,
         CRUST = 1 << POWER_CRUST,
         COCONES = 1 << COCONE | 1 << TIGHT_COCONE,
-        SIDED = 1 << LABELED_DELAUNAY | COCONES
+        SIDED = 1 << LABELED_DELAUNAY | COCONES,
+        SURFACES = SOLIDS | COCONES
     };
     const method_option given[] = {{"theta", a->theta != 0, COCONES},
                                    {"boundaries", a->boundaries, COCONES},
@@ -403,29 +407,44 @@ static brio_status check_method(run *r) {
                                    {"triangulate", a->crust.triangulate, SOLIDS},
                                    {"noise", a->crust.noise != 0, SOLIDS},
                                    {"simplify", a->crust.simplify, SOLIDS},
-                                   {"open", a->crust.open != NULL, SOLIDS},
-                                   {"closed", a->crust.closed, SOLIDS | 1 << TIGHT_COCONE},
+                                   {"open", a->crust.open != NULL, SOLIDS | PLANE},
+                                   {"closed", a->crust.closed, SOLIDS | 1 << TIGHT_COCONE | PLANE},
+                                   {"keep-largest", a->components.largest, SURFACES},
+                                   {"min-component", a->components.least > 0, SURFACES},
+                                   {"vertex-normals", a->vertex_normals, SURFACES},
+                                   {"self-intersections", a->self_intersections, SURFACES},
+                                   {"left-out", a->left_out != NULL, SURFACES},
                                    {"normals", a->crust.normals != NULL, SOLIDS},
                                    {"from", a->evidence.from != NULL, SIDED},
                                    {"ignore-normals", a->evidence.ignore_normals, SIDED},
                                    {"ignore-origins", a->evidence.ignore_origins, SIDED}};
     for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
         char names[128] = "";
-        if (!given[i].given || given[i].methods >> method_of(a) & 1) continue;
+        if (!given[i].given || given[i].methods >> method & 1) continue;
         list_methods(given[i].methods, names);
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method %s, and the method is %s", given[i].name, names,
-                        methods[method_of(a) - 1].name);
+                        methods[method - 1].name);
     }
     return BRIO_OK;
+}
+
+/* Refuses gaps that are shorter than what they are held against. */
+static brio_status check_open_of_curves(run *r, double open) {
+    if (isnan(open) || open == 0 || open >= 1) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "--open: %g is under 1; curves end at gaps over so many links", open);
 }
 
 /* Checks the options. A theta that voids the guarantee is worth a word. */
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
-    brio_status status = check_method(r);
+    brio_status status = check_method(r, method_of(a));
     if (status != BRIO_OK) return status;
+    if (a->curves && a->method != NO_METHOD && a->method != CURVES)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--curves and --method %s exclude each other",
+                        methods[a->method - 1].name);
     double spacings;
     TRY(cli_read_open(r, &a->crust, &spacings));
+    if (method_of(a) == CURVES) TRY(check_open_of_curves(r, spacings));
     if (a->crust.open && isnan(spacings) && method_of(a) == POWER_CRUST)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--open auto is for --method labeled-delaunay, and the method is power-crust");
@@ -479,8 +498,52 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, ou
     }
 }
 
+/* --- curves --- */
+
+static brio_status curves(run *r, const brio_mesh *points, brio_mesh **result) {
+    const arguments *a = r->arguments;
+    double open;
+    brio_status status = check_method(r, CURVES);
+    TRY(status);
+    TRY(cli_read_open(r, &a->crust, &open));
+    TRY(check_open_of_curves(r, open));
+    bool closed = open == 0; /* --closed, too */
+    status = cli_curve(r, points, isnan(open) || closed ? 0 : open, closed, result);
+done:
+    return status;
+}
+
+/* Tries curves: asked for, or the default of points that may be in a plane.   done  false: they are not. */
+static brio_status try_curves(run *r, const brio_mesh *points, brio_mesh **result, bool *done) {
+    const arguments *a = r->arguments;
+    bool asked = method_of(a) == CURVES, flat = asked;
+    brio_status status = BRIO_OK;
+    *done = false;
+    if (a->method == NO_METHOD && !asked && !has_power_crust_options(a)) TRY(cli_may_be_flat(r, points, &flat));
+    if (!flat) return BRIO_OK;
+    status = curves(r, points, result);
+    *done = asked || status != BRIO_ERR_NO_ANSWER || !strstr(brio_message(r->ctx), "not in a plane");
+    if (!*done) status = BRIO_OK;
+done:
+    return status;
+}
+
+static brio_status finish_surface(run *r, brio_mesh **points, brio_mesh *result, const outcome *found) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    if (a->left_out || found->leaves_many) TRY(cli_report_left_out(r, result, *points, a->left_out));
+    brio_mesh_free(*points);
+    *points = NULL;
+    unsigned how = found->open ? CERTIFY_OPEN : 0u;
+    if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
+    status = cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u));
+done:
+    return status;
+}
+
 static brio_status surface(run *r) {
     const arguments *a = r->arguments;
+    bool is_curve;
     brio_mesh *points = NULL, *result = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r));
@@ -495,17 +558,13 @@ static brio_status surface(run *r) {
     TRY(cli_read_samples(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
     outcome found = {.open = a->method == COCONE || (a->crust.open && method_of(a) == POWER_CRUST)};
-    status = reconstruct(r, points, &result, &found);
+    status = try_curves(r, points, &result, &is_curve);
+    if (status == BRIO_OK && !is_curve) status = reconstruct(r, points, &result, &found);
     suggest(r, status, points);
     if (status != BRIO_OK) goto done;
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
-    if (a->left_out || found.leaves_many) TRY(cli_report_left_out(r, result, points, a->left_out));
-    brio_mesh_free(points);
-    points = NULL;
-    unsigned how = found.open ? CERTIFY_OPEN : 0u;
-    if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
-    TRY(cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u)));
+    if (!is_curve) TRY(finish_surface(r, &points, result, &found));
     TRY(cli_write(r, result));
 done:
     brio_mesh_free(result);

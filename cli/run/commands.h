@@ -12,6 +12,7 @@
     X(alpha)                                                                                                           \
     X(offset)                                                                                                          \
     X(restricted)                                                                                                      \
+    X(tree)                                                                                                            \
     X(voronoi)                                                                                                         \
     X(check)                                                                                                           \
     X(compare)                                                                                                         \

@@ -31,9 +31,10 @@
 #define HINT_HOLES        "a larger --open K takes fewer gaps between points for holes"
 #define HINT_COMPONENTS   "a smaller --min-component N keeps more pieces"
 #define HINT_COCONE       "--method cocone --boundaries makes an open surface, where there is no inside"
-#define HINT_PLANE        "the points lie in a plane: 'brio delaunay %s --plane %s -o OUT' makes triangles of them"
-#define HINT_LINE         "the points lie on one line: no surface passes through them"
-#define HINT_MERGE        "%zu vertices are at the positions of others: 'brio convert %s OUT --merge' makes them one"
+#define HINT_PLANE                                                                                                     \
+    "the points lie in a plane: 'brio delaunay %s --plane %s -o OUT' makes triangles of them, --curves curves"
+#define HINT_LINE  "the points lie on one line: no surface passes through them"
+#define HINT_MERGE "%zu vertices are at the positions of others: 'brio convert %s OUT --merge' makes them one"
 
 /* --- warnings --- */
 

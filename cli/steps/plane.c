@@ -9,7 +9,7 @@
 
 const option_choice cli_planes[] = {{"xy", PLANE_XY}, {"yz", PLANE_YZ}, {"zx", PLANE_ZX}, {NULL, 0}};
 
-static const double COORDINATES = 16; /* bytes of a point in the plane */
+static const double COORDINATES = 16, ROWS = 24; /* bytes of a point in the plane; of one as a point of space */
 
 /* Copies two coordinates of each point; to be freed with free(). */
 static brio_status project(run *r, int plane, const brio_mesh *mesh, double **out) {
@@ -69,11 +69,13 @@ static brio_status set_faces(run *r, brio_mesh *mesh, const brio_triangulation2 
     return status;
 }
 
-static brio_status triangulate(run *r, const double *points, const double *weights, size_t n, double round_ratio,
-                               brio_triangulation2 **t) {
-    brio_delaunay2_options o = {0};
+static brio_status triangulate(run *r, const double *points, const double *weights, size_t n,
+                               const order_options *order, brio_triangulation2 **t) {
+    brio_delaunay2_options o = {.size = sizeof o};
     o.seed = r->common.seed;
-    if (!isnan(round_ratio)) o.round_ratio = round_ratio;
+    o.order = cli_order_of(order);
+    o.block_size = (size_t)order->block_size;
+    if (!isnan(order->round_ratio)) o.round_ratio = order->round_ratio;
     brio_status status = brio_delaunay2(r->ctx, points, weights, n, &o, t);
     if (status != BRIO_OK) return status;
     cli_stage(r, "order", brio_triangulation2_stats(*t)->order_seconds);
@@ -89,15 +91,17 @@ static brio_status verify_result(run *r, const brio_triangulation2 *t, const dou
     return status;
 }
 
-brio_status cli_plane(run *r, int plane, brio_mesh *mesh, const double *weights, double round_ratio, bool verify) {
+brio_status cli_plane(run *r, int plane, brio_mesh *mesh, const double *weights, const order_options *order,
+                      bool verify) {
     brio_triangulation2 *t = NULL;
     double *points = NULL;
     size_t n = mesh->num_vertices;
-    uint64_t work = brio_estimate_delaunay2(n, weights != NULL) + (uint64_t)(COORDINATES * (double)n);
+    uint64_t work = brio_estimate_delaunay2(n, weights != NULL) +
+                    (uint64_t)((COORDINATES + (cli_order_of(order) == BRIO_ORDER_BRIO ? 0 : ROWS)) * (double)n);
     brio_status status = BRIO_OK;
     TRY(cli_require_work(r, BRIO_OK, mesh, work));
     TRY(project(r, plane, mesh, &points));
-    TRY(triangulate(r, points, weights, n, round_ratio, &t));
+    TRY(triangulate(r, points, weights, n, order, &t));
     TRY(report(r, t, points, weights != NULL));
     if (verify) TRY(verify_result(r, t, points, weights));
     if (!r->common.output) goto done;

@@ -1,10 +1,11 @@
 /* The convex hull of a point set as a mesh.
  *
  *   1. Points that are certainly inside are skipped (interior.c).
- *   2. The candidates, copied in a biased randomized insertion order, are inserted one by one (polytope.c). Hulls so
- *      flat that doubles hold no point inside come from the Delaunay triangulation (delaunay_polytope.c).
- *   3. Triangles of one plane become one polygon between strictly extreme points (hull_faces.c). So the result depends
- *      on the points only, and not on the way to it.
+ *   2. The candidates, copied in an insertion order, by default a biased randomized one, are inserted one by one
+ *      (polytope.c). Hulls so flat that doubles hold no point inside come from the Delaunay triangulation
+ *      (delaunay_polytope.c).
+ *   3. Triangles of one plane become one polygon between strictly extreme points (hull_faces.c). So the result depends on
+ *      the points only, and not on the way to it.
  *   4. Polygons are cut into fans of triangles, unless the caller wants polygons.
  *
  * Based on: Clarkson, Shor. Applications of random sampling in computational geometry, II. DCG 1989.
@@ -31,6 +32,7 @@ typedef struct {
     brio_hull_polygons faces;  /* corners are records, in the end vertices of the mesh */
     brio_convex_hull_stats stats;
     double lap;
+    brio_convex_hull_options options;
 } hull;
 
 static void lap(hull *h, double *seconds) {
@@ -39,13 +41,16 @@ static void lap(hull *h, double *seconds) {
     h->lap = now;
 }
 
-/* Copies the candidates in a biased randomized insertion order. They were finite when the call began, but another
- * thread of the caller may have written to them since; from here on the hull is that of the copies. */
+/* Copies the candidates in the order of insertion. They were finite when the call began, but another thread of
+ * the caller may have written to them since; from here on the hull is that of the copies. */
 static brio_status take_records(hull *h, size_t n) {
     brio_status status = BRIO_OK;
     double *rows = NULL;
     uint32_t *order = NULL;
-    const brio_delaunay_options o = {.seed = BRIO_SEED};
+    const brio_delaunay_options o = {.order = h->options.order,
+                                     .round_ratio = h->options.round_ratio,
+                                     .seed = h->options.seed,
+                                     .block_size = h->options.block_size};
     BRIO_TRY(BRIO_ALLOC(h->ctx, rows, 3 * n));
     BRIO_TRY(BRIO_ALLOC(h->ctx, order, n));
     BRIO_TRY(BRIO_ALLOC(h->ctx, h->records.record, n + 1));
@@ -71,7 +76,12 @@ done:
 static brio_status wrap_solid(hull *h, const uint32_t corner[4]) {
     brio_status status = BRIO_OK;
     brio_polytope p = {0};
-    BRIO_TRY(brio_polytope_build(h->ctx, &h->records, corner, &p));
+    BRIO_TRY(brio_polytope_build(h->ctx, &h->records, corner, h->options.seed, &p));
+    h->stats.created = p.created;
+    h->stats.destroyed = p.destroyed;
+    h->stats.walk_steps = p.walk_steps;
+    h->stats.beyond_calls = p.beyond_calls;
+    h->stats.exact_calls = p.exact_calls;
     if (p.count == 0) {
         brio_polytope_free(h->ctx, &p);
         BRIO_TRY(brio_polytope_by_delaunay(h->ctx, &h->records, &p));
@@ -208,7 +218,12 @@ brio_status brio_convex_hull(brio_context *ctx, const double *points, size_t num
     h.stats.points = num_points;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_convex_hull_stats, stats));
     BRIO_TRY(BRIO_TAKE(ctx, brio_convex_hull_options, options, &o));
+    BRIO_REQUIRE(ctx, o.round_ratio >= 0 && o.round_ratio < 1, BRIO_ERR_ARGUMENT,
+                 "round ratio %g is not between 0 and 1", o.round_ratio);
+    BRIO_REQUIRE(ctx, (unsigned)o.order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o.order);
     BRIO_TRY(brio_refuse_points(ctx, points, num_points));
+    if (!o.seed) o.seed = BRIO_SEED;
+    h.options = o;
     BRIO_TRY(find_faces(&h));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(make_mesh(&h, &o, mesh));

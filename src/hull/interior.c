@@ -134,7 +134,7 @@ static brio_status find_planes(brio_context *ctx, const double *points, const ex
     out->error = ERROR * extent * extent * most + UNDERFLOW_FLOOR;
     brio_filter_for(&filter, (const double(*)[4])record, EXTREMES, false);
     if (brio_general_position(&filter, (const double(*)[4])record, EXTREMES, corner) < 3) return BRIO_OK;
-    status = brio_polytope_build(ctx, &records, corner, &p);
+    status = brio_polytope_build(ctx, &records, corner, 1, &p);
     if (status == BRIO_OK) set_planes(&p, (const double(*)[4])record, out);
     brio_polytope_free(ctx, &p);
     return status;

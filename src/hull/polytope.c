@@ -42,6 +42,7 @@ typedef struct {
 static bool is_beyond(builder *b, uint32_t triangle, const double *point) {
     const uint32_t *v = b->p->triangle[triangle].vertex;
     assert(triangle < b->p->count && v[0] != v[1] && v[1] != v[2] && v[2] != v[0]);
+    b->p->beyond_calls++;
     return brio_orient3d_sign(&b->filter, b->record[v[0]], b->record[v[1]], b->record[v[2]], point) > 0;
 }
 
@@ -57,6 +58,7 @@ static bool walk(builder *b, const double *point) {
             const double *from = b->record[v[(e + 1) % 3]], *to = b->record[v[(e + 2) % 3]];
             if (brio_orient3d_sign(&b->filter, b->centre, from, to, point) >= 0) continue;
             b->last = t[b->last].mate[e] >> 2;
+            b->p->walk_steps++;
             break;
         }
         if (i == 3) return false;
@@ -130,6 +132,8 @@ static bool star_is_closed(const builder *b, uint32_t r) {
 /* Joins record r to the border. */
 static brio_status fill(builder *b, uint32_t r) {
     brio_polytope *p = b->p;
+    p->destroyed += b->num_hole;
+    p->created += b->num_border;
     BRIO_FORWARD(find_places(b));
     for (size_t i = 0; i < b->num_border; i++) {
         uint32_t own = b->hole[i], outer = b->border[i];
@@ -171,7 +175,7 @@ static brio_status begin(builder *b, const uint32_t corner[4]) {
         c[2] = corner[3], c[3] = corner[2];
     brio_status status = BRIO_RESERVE(b->ctx, b->p->triangle, b->p->capacity, 4);
     if (status != BRIO_OK) return status;
-    b->p->count = 4;
+    b->p->count = b->p->created = 4;
     for (uint32_t i = 0; i < 4; i++) {
         brio_hull_triangle *t = &b->p->triangle[i];
         const uint8_t slot[3] = {FACE[i][0], FACE[i][2], FACE[i][1]};
@@ -226,11 +230,11 @@ static brio_status insert_all(builder *b, size_t n) {
 }
 
 brio_status brio_polytope_build(brio_context *ctx, const brio_hull_records *records, const uint32_t corner[4],
-                                brio_polytope *out) {
+                                uint64_t seed, brio_polytope *out) {
     brio_status status = BRIO_OK;
     size_t n = records->count;
     double *centre = records->record[n];
-    builder b = {.ctx = ctx, .p = out, .index = records->index, .centre = centre, .rng = brio_rng_new(1)};
+    builder b = {.ctx = ctx, .p = out, .index = records->index, .centre = centre, .rng = brio_rng_new(seed)};
     b.record = (const double(*)[4])records->record;
     *out = (brio_polytope){0};
     BRIO_TRY(BRIO_RESERVE(ctx, b.stack, b.stack_capacity, 3));
@@ -240,6 +244,7 @@ brio_status brio_polytope_build(brio_context *ctx, const brio_hull_records *reco
     if (place_centre(&b, centre, corner)) {
         brio_filter_for(&b.filter, b.record, n + 1, false);
         BRIO_TRY(insert_all(&b, n));
+        out->exact_calls = b.filter.unsettled;
     } else {
         out->count = 0;
     }

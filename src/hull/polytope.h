@@ -23,6 +23,7 @@ typedef struct {
     brio_hull_triangle *triangle;
     size_t count, capacity;
     uint32_t *same; /* #records: for a vertex, the record of the lowest index at its position */
+    uint64_t created, destroyed, walk_steps, beyond_calls, exact_calls; /* as in brio_convex_hull_stats */
 } brio_polytope;
 
 /** Points of a hull. */
@@ -37,12 +38,12 @@ typedef struct {
  *  corner  receives dimension + 1 records.   Returns the dimension, -1 to 3. */
 int brio_general_position(brio_filter *f, const double (*record)[4], size_t num_records, uint32_t corner[4]);
 
-/** Builds the convex hull of records of dimension 3, in their order.
+/** Builds the convex hull of records of dimension 3, in their order.   seed  of the walk's choices.
  *  corner    what brio_general_position found.
  *  out       without triangles if the rounded centroid of the corners is not strictly inside them.
  *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_polytope_build(brio_context *ctx, const brio_hull_records *records, const uint32_t corner[4],
-                                brio_polytope *out);
+                                uint64_t seed, brio_polytope *out);
 
 /** Builds the same hull from the Delaunay triangulation of the records; for hulls that are too flat for the other
  *  function. */

@@ -289,6 +289,7 @@ static brio_status triangulate(brio_context *ctx, const brio_plane_input *given,
     BRIO_REQUIRE(ctx, n < (UINT32_C(1) << 29) - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^29 - 17", n);
     BRIO_REQUIRE(ctx, o.round_ratio >= 0 && o.round_ratio < 1, BRIO_ERR_ARGUMENT,
                  "round ratio %g is not between 0 and 1", o.round_ratio);
+    BRIO_REQUIRE(ctx, (unsigned)o.order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o.order);
     double start = brio_seconds();
     BRIO_TRY(brio_plane_input_set(ctx, given->points, given->weights, n, given->coordinates, &input));
     BRIO_TRY(construct(ctx, &input, &o, start, out));

@@ -1,12 +1,33 @@
-/* The store's construction from the caller's points: a biased randomized insertion order along a Hilbert curve.
+/* The store's construction from the caller's points: a biased randomized insertion order along a Hilbert curve,
+ * or, on request, an order of space.
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003. */
 #include "plane/plane_store.h"
 #include "base/memory.h"
+#include "order/order.h"
 #include "order/rounds.h"
 #include <assert.h>
 
 enum { MORE_RECORDS = 2 /* the apex and the infinite vertex */ };
+
+/* Writes the points' indices in an order of space, of the points with 0 for their third coordinate. */
+static brio_status order_as_in_space(brio_context *ctx, const brio_plane_input *input,
+                                     const brio_delaunay2_options *options, uint32_t *order) {
+    brio_status status = BRIO_OK;
+    const brio_delaunay_options o = {.order = options->order,
+                                     .round_ratio = options->round_ratio,
+                                     .seed = options->seed,
+                                     .block_size = options->block_size};
+    brio_plane_points points = brio_plane_input_points(input);
+    double *rows = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, rows, 3 * input->count));
+    for (size_t i = 0; i < input->count; i++)
+        for (size_t k = 0; k < 2; k++) rows[3 * i + k] = points.rows[points.stride * i + (size_t)points.axis[k]];
+    BRIO_TRY(brio_order_points(ctx, &(brio_input){rows, NULL, input->count}, &o, order, NULL, NULL, NULL));
+done:
+    brio_release(ctx, rows);
+    return status;
+}
 
 /* Writes the points' indices in the order of insertion. */
 static brio_status order_points(brio_context *ctx, const brio_plane_input *input, const brio_delaunay2_options *options,
@@ -18,6 +39,7 @@ static brio_status order_points(brio_context *ctx, const brio_plane_input *input
     brio_plane_points points = brio_plane_input_points(input);
     brio_round_ends ends;
     BRIO_TRY(brio_progress(ctx, "order", 0));
+    if (options->order != BRIO_ORDER_BRIO) return order_as_in_space(ctx, input, options, order);
     BRIO_TRY(BRIO_ALLOC(ctx, items, n));
     BRIO_TRY(BRIO_ALLOC(ctx, spare, n));
     for (size_t i = 0; i < n; i++) items[i] = i;

@@ -73,6 +73,7 @@ RUNS = {
     "terrain": ["terrain {ball.ply} -o {out}.ply", "terrain {ball.ply} --raster {out}.asc --cell 0.001 -o {out2}.ply"],
     "locate": ["locate {few.ply} --at {big.ply} -o {out}.csv", "locate {ball.ply} --plane xy --at {ball.ply} -o {out}.npy"],
     "restricted": ["restricted {solid.ply} --surface {dense.ply} -o {out}.ply"],
+    "tree": ["tree {ball.ply} -o {out}.ply", "tree {ball.ply} --plane xy -o {out}.vtp"],
     "interpolate": ["interpolate {small.ply} --at {scan.ply} --property view -o {out}.ply"],
 }
 

@@ -10,14 +10,14 @@ import subprocess
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
 COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide", "simplify", "terrain",
-            "locate", "interpolate", "voronoi", "restricted"]
+            "locate", "interpolate", "voronoi", "restricted", "tree"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
                  "--first-conflict", "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--page-size", "--cache-size", "--verify", "--neighbors", "--faces",
                  "--edges"],
-    "surface": ["--method", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
+    "surface": ["--method", "--curves", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
                 "--vertex-normals", "--self-intersections", "--polygons", "--extraction", "--keep-largest",
                 "--min-component", "--from", "--ignore-normals", "--ignore-origins", "--left-out"],
@@ -25,7 +25,7 @@ OWN_OPTIONS = {
                "--sampling-density", "--sharp"],
     "offset": ["--distance", "--error", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",
                "--vertex-normals", "--self-intersections"],
-    "hull": ["--polygons"],
+    "hull": ["--polygons", "--order", "--block-size", "--round-ratio"],
     "alpha": ["--alpha", "--filtration", "--weights", "--weights-mod", "--unweighted"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections", "--samples"],
     "compare": ["--samples", "--within"],
@@ -40,6 +40,7 @@ OWN_OPTIONS = {
     "voronoi": ["--weights", "--weights-mod", "--unweighted", "--box", "--faces"],
     "interpolate": ["--at", "--plane", "--property", "--method"],
     "restricted": ["--surface"],
+    "tree": ["--plane"],
 }
 
 

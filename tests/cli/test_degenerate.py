@@ -26,7 +26,7 @@ DIMENSION = {"none": -1, "one": 0, "same": 0, "two": 1, "line": 1, "three": 2, "
 DISTINCT = {"none": 0, "one": 1, "two": 2, "same": 1, "line": 6, "three": 3, "plane": 16}
 
 # command line: the exit code of each set, in the order of SETS, and the sentence of a refusal.
-SOLID = r"no points, no surface|\d+ distinct points (of dimension \d bound|span) no solid|no inside found|no pole with a cell"
+SOLID = r"no points, no surface|lie on an area|\d+ distinct points (of dimension \d bound|span) no solid|no inside found|no pole with a cell"
 RUNS = {
     "delaunay {p}": ("0000000", None),
     "delaunay {p} --verify": ("0000000", None),
@@ -45,6 +45,8 @@ RUNS = {
     "alpha {p} --alpha auto -o {o}.ply": ("3333333", r"of dimension -?\d have no tetrahedra, so no alpha complex"),
     "alpha {p} --alpha 1 -o {o}.ply": ("3333333", r"of dimension -?\d have no tetrahedra, so no alpha complex"),
     "surface {p} -o {o}.ply": ("3333333", SOLID),
+    "surface {p} --curves -o {o}.ply": ("3000003", SOLID),
+    "tree {p} -o {o}.ply": ("0000000", None),
     "surface {p} --method power-crust -o {o}.ply": ("3333333", SOLID),
     "surface {p} --method cocone -o {o}.ply": ("3333333", SOLID),
     "surface {p} --method tight-cocone -o {o}.ply": ("3333333", SOLID),

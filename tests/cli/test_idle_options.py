@@ -7,6 +7,7 @@ IDLE has those that may be, with the reason.
 """
 
 import json
+import math
 import os
 import re
 import shutil
@@ -42,7 +43,7 @@ MODES = [
     "iso ball.map --level -4 -o out.ply", "iso atoms.pdb --level 1 -o out.ply", "iso ball.map --level -4",
     "convert text.csv out.las", "info text.csv",
     "generate scan -n 90 -o out.ply", "generate solid --resolution 16 -o out.ply",
-    "subdivide mesh.ply -o out.ply", "restricted cloud.ply --surface mesh2.ply -o out.ply", "locate cloud.ply --at p.csv -o out.csv",
+    "subdivide mesh.ply -o out.ply", "restricted cloud.ply --surface mesh2.ply -o out.ply", "tree cloud.ply -o out.ply", "surface ring.xyz -o out.ply", "locate cloud.ply --at p.csv -o out.csv",
     "interpolate text.csv --at p.csv --property q -o out.csv", "interpolate text.csv --at p.csv --property q -o out.ply",
 ]
 
@@ -64,6 +65,8 @@ IDLE = {
     ("alpha cloud.ply --alpha auto -o out.ply", "unweighted"), ("voronoi cloud.ply", "unweighted"),
     ("voronoi cloud.ply -o out.csv", "unweighted"),
     ("locate cloud.ply --at p.csv -o out.csv", "unweighted"), ("check flat.node", "unweighted"),
+    # of points in a plane this is the default, and this curve is open by so much
+    ("surface ring.xyz -o out.ply", "curves"), ("surface ring.xyz -o out.ply", "open"),
     # these surfaces are closed already, and these points know no normals and no places of scanners
     ("check mesh.ply", "open"),
     ("surface cloud.ply", "open"), ("surface cloud.ply", "closed"),
@@ -87,6 +90,7 @@ class IdleOptions(CliTest):
         self.expect(0, "hull", self.path("cloud.ply"), "-o", self.path("mesh.ply"), "--quiet")
         self.expect(0, "subdivide", self.path("mesh.ply"), "-o", self.path("mesh2.ply"), "--quiet")
         self.off("open.off", OCTAHEDRON, OCTAHEDRON_FACES[:-1])
+        self.xyz("ring.xyz", [(math.cos(i / 9), math.sin(i / 9), 0) for i in range(50)])
         self.tetrahedra("flat", FLAT, FLAT_RIGHT)
         self.ball_map("ball.map", 12)
         self.file("w.txt", "".join("%d\n" % (i % 5) for i in range(150)))

@@ -14,7 +14,7 @@ except ImportError:
 class Usage(CliTest):
     def test_options_of_tetrahedra(self):
         points = self.xyz("a.xyz", [(0, 0, 0), (1, 0, 0), (0, 1, 0)])
-        for more in ["--order", "hilbert"], ["--locate", "jump"], ["--rounds"], ["--record-every", "9"]:
+        for more in ["--locate", "jump"], ["--rounds"], ["--record-every", "9"]:
             self.usage("--plane goes with", "delaunay", points, "--plane", "xy", *more)
         self.usage("xy, yz, zx|plane", "delaunay", points, "--plane", "xz")
         self.usage("cannot hold", "delaunay", points, "--plane", "xy", "-o", "out.node")
@@ -24,6 +24,26 @@ class Usage(CliTest):
         run = self.expect(4, "delaunay", points, "--plane", "xy", "--max-memory", "20M")
         self.assertRegex(run.err, "memory")
         self.assertEqual(self.facts("delaunay", points, "--plane", "xy", "--max-memory", "60M")["points"], 200000)
+
+
+class Orders(CliTest):
+    def test_triangles_do_not_depend_on_the_order(self):
+        """The counters do: random points far from each other are found by longer walks than along a curve."""
+        points, found = self.cloud("a.ply", 3000), {}
+        for order in ("brio", "brio-octree", "brio-kdtree", "octree", "hilbert", "random", "input"):
+            facts = self.facts("delaunay", points, "--plane", "xy", "--order", order, "--verify")
+            self.assertTrue(facts["verified"])
+            found[order] = facts
+        self.assertEqual(len({facts["checksum"] for facts in found.values()}), 1)
+        self.assertGreater(len({facts["created"] for facts in found.values()}), 4)
+        self.assertGreater(found["random"]["walk_steps"], 4 * found["brio"]["walk_steps"])
+        again = self.facts("delaunay", points, "--plane", "xy", "--order", "random", "--seed", "7")
+        self.assertEqual(again["checksum"], found["random"]["checksum"])
+        self.assertNotEqual(again["created"], found["random"]["created"])
+        halves = self.facts("delaunay", points, "--plane", "xy", "--order", "brio-octree", "--block-size", "9", "--round-ratio", "0.3")
+        self.assertNotEqual(halves["created"], found["brio-octree"]["created"])
+        self.usage("--round-ratio: the insertion order has no rounds", "delaunay", points, "--plane", "xy", "--order", "hilbert",
+                   "--round-ratio", "0.5")
 
 
 class TriangleTest(CliTest):

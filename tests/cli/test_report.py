@@ -1,6 +1,7 @@
 """What the program says: the report for people, JSON, warnings, hints, help."""
 
 import fcntl
+import math
 import os
 import pty
 import re
@@ -63,6 +64,8 @@ class People(CliTest):
         yield "offset", mesh, "-D", "0.1", "-o", out
         octahedron = self.off("o.off", OCTAHEDRON, OCTAHEDRON_FACES)
         yield "restricted", octahedron, "--surface", octahedron, "-o", out
+        yield "tree", points, "-o", out
+        yield "surface", self.xyz("ring.xyz", [(math.cos(i / 9), math.sin(i / 9), 0) for i in range(50)]), "-o", out
         yield "check", mesh, "--self-intersections"
         yield "compare", mesh, mesh, "--samples", "100"
         yield "compare", points, mesh, "--within", "9"
@@ -138,7 +141,7 @@ class Messages(CliTest):
     def test_wrong_words_list_the_right_ones(self):
         for arguments in [("surface", "a", "-o", "b.ply", "--method"), ("delaunay", "a", "--order")]:
             self.usage(r"unknown name 'xyzzy', expected [a-z-]+, .* or [a-z-]+\n", *arguments, "xyzzy")
-        self.usage("expected labeled-delaunay, power-crust, cocone or tight-cocone; did you mean 'cocone'", "surface", "a",
+        self.usage("expected labeled-delaunay, power-crust, cocone, tight-cocone or curves; did you mean 'cocone'", "surface", "a",
                    "-o", "b.ply", "--method", "cocoon")
 
     def test_memory_hints(self):

@@ -148,7 +148,7 @@ static void delaunay_gives_the_same_polygons(void) {
         }
         brio_filter_for(&filter, (const double(*)[4])record, POINTS, false);
         EXPECT(brio_general_position(&filter, (const double(*)[4])record, POINTS, corner) == 3);
-        EXPECT(brio_polytope_build(ctx, &records, corner, &by_points) == BRIO_OK);
+        EXPECT(brio_polytope_build(ctx, &records, corner, 1, &by_points) == BRIO_OK);
         EXPECT(brio_polytope_by_delaunay(ctx, &records, &by_delaunay) == BRIO_OK);
         EXPECT(brio_hull_faces(ctx, &by_delaunay, &records, &other) == BRIO_OK);
         if (by_points.count > 0) {

@@ -193,6 +193,13 @@ ENDS_WITH(brio_mesh, face_properties);
 ENDS_WITH(brio_coverage, left_out);
 ENDS_WITH(brio_alpha_complex, triangulation2);
 ENDS_WITH(brio_restricted_stats, cut_seconds);
+ENDS_WITH(brio_delaunay2_options, block_size);
+ENDS_WITH(brio_convex_hull_options, block_size);
+ENDS_WITH(brio_convex_hull_stats, exact_calls);
+ENDS_WITH(brio_curve_options, reserved_int);
+ENDS_WITH(brio_curve_stats, curve_seconds);
+ENDS_WITH(brio_curve_certificate, length);
+ENDS_WITH(brio_spanning_tree_stats, tree_seconds);
 
 static void statuses_have_words_of_their_own(void) {
     static const brio_status all[] = {BRIO_OK,        BRIO_ERR_ARGUMENT,  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER,

@@ -1,0 +1,15 @@
+/* brio surface of points in a plane: curves. */
+#ifndef BRIO_CLI_CURVE_H
+#define BRIO_CLI_CURVE_H
+
+#include "cli/run/run.h"
+
+/** Whether `brio surface` makes curves of these points without being asked: they may be in a plane, are on no line, and more
+ *  than three. A few points decide, so that it costs nothing where they are not; brio_curve then looks at all. */
+brio_status cli_may_be_flat(run *r, const brio_mesh *points, bool *flat);
+
+/** Makes curves, reports them with their certificate, and gives them the properties of the points.
+ *  open  of brio_curve_options.   closed  the same. */
+brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed, brio_mesh **out);
+
+#endif
