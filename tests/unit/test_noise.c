@@ -140,6 +140,71 @@ static void no_noise_where_there_is_no_surface(void) {
     brio_context_free(ctx);
 }
 
+/* --- walls --- */
+
+/* A jittered grid of `side` by `side` points, one spacing apart. */
+static void add_sheet(brio_rng *rng, size_t side, double z, double *p) {
+    for (size_t i = 0; i < side * side; i++) {
+        p[3 * i] = (double)(i % side) + 0.7 * brio_rng_double(rng);
+        p[3 * i + 1] = (double)(i / side) + 0.7 * brio_rng_double(rng);
+        p[3 * i + 2] = z;
+    }
+}
+
+enum { SIDE = 40 };
+
+/* Two sheets, or one if they are not apart. Returns the number of points. */
+static size_t make_wall(uint64_t seed, double apart, double sigma, double *p) {
+    brio_rng rng = brio_rng_new(seed);
+    size_t n = 0;
+    for (int i = 0; i < (apart > 0 ? 2 : 1); i++, n += SIDE * SIDE) add_sheet(&rng, SIDE, i * apart, p + 3 * n);
+    disturb(seed + 1, n, sigma, p);
+    return n;
+}
+
+static brio_least_scatter scatter_of(brio_context *ctx, const double *p, size_t n) {
+    brio_least_scatter s = {-1, false};
+    EXPECT(brio_least_noise(ctx, p, n, &s) == BRIO_OK);
+    return s;
+}
+
+/* A thin wall is no noise: of exact points it has none, and of points with noise no more than one sheet of them. */
+static void thin_walls_are_no_noise(void) {
+    static const double apart[] = {0.5, 0.7, 1, 1.5, 2, 3, 5};
+    static double p[6 * SIDE * SIDE];
+    brio_context *ctx = new_context();
+    for (size_t i = 0; i < sizeof apart / sizeof *apart; i++) {
+        size_t n = make_wall(i, apart[i], 0, p);
+        brio_least_scatter s = scatter_of(ctx, p, n);
+        EXPECT(s.level < 1e-6, "%g apart: noise %g", apart[i], s.level);
+        EXPECT(s.layered || apart[i] > 2, "%g apart", apart[i]);
+        EXPECT(level_of(ctx, p, n) == 0, "%g apart: %g", apart[i], level_of(ctx, p, n));
+        n = make_wall(i, apart[i], 0.1, p);
+        s = scatter_of(ctx, p, n);
+        EXPECT(s.level > 0.01 && s.level < 0.085, "%g apart: noise %g of 0.1", apart[i], s.level);
+    }
+    for (size_t i = 2; i < 5; i++) EXPECT(scatter_of(ctx, p, make_wall(i, apart[i], 0.3, p)).layered);
+    brio_context_free(ctx);
+}
+
+/* The noise of one sheet is noise, whatever its distribution, and one sheet has no layers. */
+static void noise_of_one_sheet_has_no_layers(void) {
+    static double p[6 * SIDE * SIDE];
+    brio_context *ctx = new_context();
+    for (uint64_t i = 1; i <= 6; i++) { /* above, no surface is visible */
+        double sigma = 0.1 * (double)i;
+        size_t n = make_wall(i, 0, sigma, p);
+        brio_least_scatter s = scatter_of(ctx, p, n);
+        EXPECT(!s.layered && s.level > 0.3 * sigma && s.level < 0.7 * sigma, "%g of %g", s.level, sigma);
+        brio_rng rng = brio_rng_new(i);
+        n = make_wall(i, 0, 0, p);
+        for (size_t k = 0; k < n; k++) p[3 * k + 2] += sigma * sqrt(12) * (brio_rng_double(&rng) - 0.5);
+        s = scatter_of(ctx, p, n);
+        EXPECT(!s.layered && s.level > 0.3 * sigma && s.level < 0.8 * sigma, "uniform: %g of %g", s.level, sigma);
+    }
+    brio_context_free(ctx);
+}
+
 /* --- less --- */
 
 static void smoothing_does_not_depend_on_order_threads_or_duplicates(void) {
@@ -380,6 +445,8 @@ SUITE(test_noise) {
     RUN(level_is_that_of_the_noise);
     RUN(no_noise_in_shapes);
     RUN(no_noise_where_there_is_no_surface);
+    RUN(thin_walls_are_no_noise);
+    RUN(noise_of_one_sheet_has_no_layers);
     RUN(smoothing_does_not_depend_on_order_threads_or_duplicates);
     RUN(smoothing_keeps_quadratic_shapes);
     RUN(crust_of_noisy_samples_runs_through_their_middle);

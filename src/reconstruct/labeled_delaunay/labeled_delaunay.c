@@ -74,6 +74,7 @@ typedef struct {
     float (*outside)[3];     /* #P: the axes, and once there are labels, which way is outside */
     brio_sample_evidence evidence;
     float *own;            /* #P, or NULL: what evidence, or their sheet, tells of the samples, in BRIO_VOTE_UNIT */
+    bool is_layered;       /* most samples have a second sheet close behind theirs */
     bool is_open;          /* the surface proved to be open */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
@@ -317,7 +318,8 @@ static brio_status open_surface(reconstruction *r) {
     brio_unseen u;
     brio_sample_points samples = {r->ctx, r->points, r->num_points, r->own ? (const float(*)[3])r->outside : NULL};
     brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL,
-                           .proven = r->is_open};
+                           .proven = r->is_open,
+                           .layered = r->is_layered && !r->own};
     if (o->open > 0) rule = (brio_hole_rule){.choice = BRIO_HOLES_WIDER, .most = o->open};
     BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &r->of_faces, &u));
     r->stats.left_out = before - r->num_faces;
@@ -376,12 +378,15 @@ done:
 static brio_status treat_noise(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_noise how = r->options->noise;
-    BRIO_TRY(brio_least_noise(r->ctx, r->points, r->num_points, &r->stats.noise));
-    r->left = r->stats.noise;
+    brio_least_scatter scatter;
+    BRIO_TRY(brio_least_noise(r->ctx, r->points, r->num_points, &scatter));
+    r->left = r->stats.noise = scatter.level;
+    r->is_layered = scatter.layered;
     r->stats.smoothed = how == BRIO_NOISE_SMOOTH || (how == BRIO_NOISE_AUTO && r->stats.noise > LEAST_NOISE);
-    if (r->stats.smoothed && r->stats.noise > MOST_NOISE) {
+    if (r->stats.smoothed && r->stats.noise > MOST_NOISE && !(how == BRIO_NOISE_AUTO && scatter.layered)) {
         BRIO_TRY(brio_smooth_samples(r->ctx, r->points, r->num_points));
-        BRIO_TRY(brio_least_noise(r->ctx, r->points, r->num_points, &r->left));
+        BRIO_TRY(brio_least_noise(r->ctx, r->points, r->num_points, &scatter));
+        r->left = scatter.level;
     }
     lap(r, &r->stats.noise_seconds);
 done:

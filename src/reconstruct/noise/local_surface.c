@@ -131,18 +131,26 @@ double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *
     return s->unit * sqrt(squares / fmax(freedom, 0.1 * all));
 }
 
-double brio_plane_spread(brio_neighbourhood *n) {
-    double sum = 0, squares = 0;
+bool brio_plane_heights(brio_neighbourhood *n, double *height) {
+    double mean = 0;
     brio_local_surface s;
     bool fitted = true;
     for (size_t i = 0; i < n->count; i++) n->weight[i] = 1;
     pad(n);
     fit_planes(n, 1, &s, &fitted);
-    if (!fitted) return INFINITY;
+    if (!fitted) return false;
     for (size_t i = 0; i < n->count; i++) {
-        double d[3] = {n->offset[0][i], n->offset[1][i], n->offset[2][i]}, height = brio_dot(d, s.frame[2]);
-        sum += height, squares += height * height;
+        double d[3] = {n->offset[0][i], n->offset[1][i], n->offset[2][i]};
+        height[i] = brio_dot(d, s.frame[2]);
+        mean += height[i] / (double)n->count;
     }
-    double mean = sum / (double)n->count;
-    return sqrt(fmax(squares / (double)n->count - mean * mean, 0));
+    for (size_t i = 0; i < n->count; i++) height[i] -= mean;
+    return true;
+}
+
+double brio_plane_spread(brio_neighbourhood *n) {
+    double height[BRIO_MOST_NEAR], squares = 0;
+    if (!brio_plane_heights(n, height)) return INFINITY;
+    for (size_t i = 0; i < n->count; i++) squares += height[i] * height[i];
+    return sqrt(squares / (double)n->count);
 }

@@ -44,6 +44,10 @@ void brio_move_onto(const brio_local_surface *s, double *point);
 /** Returns the weighted standard deviation of the neighbours from the surface that was fitted to them. */
 double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s);
 
+/** Finds the heights of the neighbours over the best plane through their mean.
+ *  n  the weights are overwritten.   height  n->count, written: their sum is 0.   Returns false if they are on a line. */
+bool brio_plane_heights(brio_neighbourhood *n, double *height);
+
 /** Returns the standard deviation of the neighbours from the best plane through their mean, INFINITY if they are on a
  *  line.   n  the weights are overwritten. */
 double brio_plane_spread(brio_neighbourhood *n);

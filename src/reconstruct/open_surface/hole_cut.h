@@ -18,6 +18,7 @@ typedef struct {
     double usual_area; /* in squares of the usual radius */
     double area;
     double facing; /* the mean of brio_net_facing over the area */
+    double beyond; /* as brio_rim_beyond finds it; 0 of holes that need not show it */
     bool unlikely; /* samples of a surface would hardly leave such a gap */
     bool open;
 } brio_hole;
@@ -33,7 +34,8 @@ typedef struct {
 typedef struct {
     enum { BRIO_HOLES_FILL, BRIO_HOLES_SEEN, BRIO_HOLES_WIDER } choice;
     double most;
-    bool proven; /* SEEN: the surface is known to be open, and its holes need not prove that again */
+    bool proven;  /* SEEN: the surface is known to be open, and its holes need not prove that again */
+    bool layered; /* SEEN: samples have another sheet close behind theirs, so that holes prove nothing */
 } brio_hole_rule;
 
 /** Finds the holes, and leaves each open or fills it, as a whole.

@@ -142,7 +142,8 @@ brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_
     BRIO_TRY(BRIO_ALLOC(ctx, size, *num_faces));
     BRIO_TRY(brio_face_sizes(&net, radius, usual));
     if (rule->choice == BRIO_HOLES_WIDER) BRIO_TRY(find_spacing(&net, &spacing));
-    brio_hole_rule scaled = {rule->choice, rule->most * spacing, rule->proven};
+    brio_hole_rule scaled = *rule;
+    scaled.most *= spacing;
     BRIO_TRY(brio_cut_holes(&net, radius, usual, &scaled, part, &holes));
     if (is_any_open(&net, &holes)) {
         BRIO_TRY(brio_drop_small_pieces(&net, part));
