@@ -2,6 +2,7 @@
 every order, far from the origin, turned, and in other units."""
 
 import random
+import struct
 
 from brio_cli import CliTest, main
 
@@ -43,6 +44,20 @@ class Equal(CliTest):
         for file, unit in self.ways([(i, j, 0) for i in range(8) for j in range(8)], "plain", "far", "turned"):
             facts = self.facts("terrain", file, "--raster", self.path("a.asc"), "--cell", repr(unit))
             self.assertEqual((facts["columns"], facts["rows"], facts["empty_cells"]), (7, 7, 0), self.what)
+
+    def test_levels_of_a_map(self):
+        """The values are singles: 0.3 was less than its value, 0.7 more, so that a peak was there or not."""
+        size, answers = 9, set()
+        for k in range(1, 100, 3):
+            values = [0.0] * size**3
+            values[size**3 // 2] = k / 100
+            header = struct.pack("<10i", size, size, size, 2, 0, 0, 0, size - 1, size - 1, size - 1)
+            header += struct.pack("<6f", size - 1, size - 1, size - 1, 90, 90, 90) + struct.pack("<3i", 1, 2, 3)
+            header = header.ljust(208, b"\0") + b"MAP \x44\x44\0\0"
+            file = self.file("a.map", header.ljust(1024, b"\0") + struct.pack("<%df" % len(values), *values))
+            run = self.run_brio("iso", file, "--level", repr(k / 100), "-o", self.path("a.ply"), "--quiet")
+            answers.add(run.code)
+        self.assertEqual(answers, {3})
 
     def test_surfaces_as_far_apart_as_they_may_be(self):
         """'the surfaces are 0.1 apart, more than 0.1'."""
