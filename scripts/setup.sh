@@ -204,12 +204,13 @@ make_tests_environment() {
     [ -x "$environment/bin/pip" ] || $python -m venv "$environment" >/dev/null 2>&1 || true
 }
 
-# The packages themselves. Says so if they stay missing: the tests that need them are skipped.
+# The packages themselves. Says so if they stay missing: the tests that need them are skipped. Of thousands of modules the
+# tests import few, which Python compiles when it first does.
 install_tests_packages() {
     make_tests_environment
     if ! cmp -s tests/requirements.txt "$environment/requirements.txt"; then
         echo "setup: installing tests/requirements.txt in $environment"
-        "$environment/bin/pip" install -q -r tests/requirements.txt >/dev/null 2>&1 &&
+        "$environment/bin/pip" install -q --no-compile -r tests/requirements.txt >/dev/null 2>&1 &&
             cp tests/requirements.txt "$environment/requirements.txt" ||
             echo "setup: tests/requirements.txt could not be installed from PyPI: tests will be skipped" >&2
     fi

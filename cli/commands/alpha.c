@@ -7,12 +7,15 @@
 #include "cli/steps/hints.h"
 #include "cli/run/interrupt.h"
 #include "cli/steps/properties.h"
+#include "cli/steps/rounding.h"
 #include "cli/steps/weights.h"
 #include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+static const double CENTRES_ROUNDING = 8; /* chosen: a centre moves by more than the points of its sphere do */
 
 typedef struct arguments {
     weights_options weights;
@@ -103,12 +106,21 @@ static brio_status triangulate(run *r, const brio_mesh *input, const double *wei
     return BRIO_OK;
 }
 
+/* Returns the greatest squared radius that counts as equal to one that the user gives. */
+static double up_to(double alpha, const brio_mesh *points) {
+    if (!(alpha > 0)) return alpha;
+    double radius = cli_up_to(sqrt(alpha), CENTRES_ROUNDING * cli_rounding(points));
+    return radius * radius;
+}
+
 static brio_status make_shape(run *r, const brio_mesh *input, const brio_alpha_complex *complex, double alpha) {
     brio_status status = BRIO_OK;
     brio_mesh *surface = NULL;
     brio_alpha_shape_stats s = {0};
-    if (isnan(alpha)) TRY(brio_alpha_auto(r->ctx, complex, &alpha));
-    TRY(brio_alpha_shape(r->ctx, input->vertices, complex, alpha, &surface, &s));
+    double most = up_to(alpha, input);
+    if (isnan(alpha)) TRY(brio_alpha_auto(r->ctx, complex, &most));
+    TRY(brio_alpha_shape(r->ctx, input->vertices, complex, most, &surface, &s));
+    if (!isnan(alpha)) s.alpha = alpha; /* as it was given */
     cli_lap(r, "shape");
     report(r, complex, surface, &s);
     TRY(cli_carry_properties(r, input, NULL, surface));

@@ -4,6 +4,7 @@
 #include "cli/run/run.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/properties.h"
+#include "cli/steps/rounding.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,11 +72,11 @@ static void report(facts *f, const double *sorted, const double *magnitudes, siz
     report_histogram(f, sorted, count);
 }
 
-/* Reports whether `worst` is within a limit, and fails with BRIO_ERR_CHECK if not.   outside  of `all` points. */
+/* Reports whether all points are within a limit, and fails with BRIO_ERR_CHECK if not.   outside  of `all` points. */
 static brio_status judge_within(run *r, double worst, double within, size_t outside, size_t all) {
-    cli_fact_bool(&r->facts, "within", worst <= within);
+    cli_fact_bool(&r->facts, "within", !outside);
     cli_fact_count(&r->facts, "outside", outside);
-    if (worst <= within) return BRIO_OK;
+    if (!outside) return BRIO_OK;
     return cli_fail(r, BRIO_ERR_CHECK, "%zu of %zu points are farther than %g, the farthest %g", outside, all, within,
                     worst);
 }
@@ -89,9 +90,10 @@ static brio_status add_property(run *r, brio_mesh *points, const double *distanc
 }
 
 /* Reports how far points are from a surface, with the side; writes them with the property `distance` to -o.
- *  within  > 0: fails with BRIO_ERR_CHECK if a point is farther. */
+ *  within  > 0: fails with BRIO_ERR_CHECK if a point is farther, by more than rounding. */
 static brio_status compare_cloud(run *r, brio_mesh *points, const brio_mesh *surface, double within) {
     size_t n = points->num_vertices, outside = 0;
+    double up_to = cli_up_to(within, fmax(cli_rounding(points), cli_rounding(surface)));
     double *distance = malloc((n + 1) * sizeof *distance), *magnitude = malloc((n + 1) * sizeof *magnitude);
     brio_status status = BRIO_OK;
     if (!distance || !magnitude) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu distances", n);
@@ -100,7 +102,7 @@ static brio_status compare_cloud(run *r, brio_mesh *points, const brio_mesh *sur
     if (r->common.output) TRY(add_property(r, points, distance));
     for (size_t i = 0; i < n; i++) {
         magnitude[i] = fabs(distance[i]);
-        outside += within > 0 && magnitude[i] > within;
+        outside += within > 0 && magnitude[i] > up_to;
     }
     qsort(distance, n, sizeof *distance, compare_doubles);
     qsort(magnitude, n, sizeof *magnitude, compare_doubles);
@@ -156,9 +158,9 @@ static brio_status compare_surfaces(run *r, const brio_mesh *a, const brio_mesh 
     cli_lap(r, "compare");
     report_distance(&r->facts, &d);
     if (chosen->within > 0) {
-        cli_fact_bool(&r->facts, "within", d.hausdorff <= chosen->within);
-        if (d.hausdorff > chosen->within)
-            FAIL(r, BRIO_ERR_CHECK, "the surfaces are %g apart, more than %g", d.hausdorff, chosen->within);
+        bool within = d.hausdorff <= cli_up_to(chosen->within, fmax(cli_rounding(a), cli_rounding(b)));
+        cli_fact_bool(&r->facts, "within", within);
+        if (!within) FAIL(r, BRIO_ERR_CHECK, "the surfaces are %g apart, more than %g", d.hausdorff, chosen->within);
     }
 done:
     return status;

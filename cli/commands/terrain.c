@@ -3,6 +3,7 @@
 #include "cli/steps/estimate.h"
 #include "cli/files/raster.h"
 #include "cli/files/read_write.h"
+#include "cli/steps/rounding.h"
 #include "cli/steps/selection.h"
 #include <errno.h>
 #include <math.h>
@@ -109,10 +110,11 @@ static brio_status triangulate(run *r, terrain *t) {
     return BRIO_OK;
 }
 
-/* Chooses the triangles without a side over `most`; 0: all. */
+/* Chooses the triangles without a side over `most`, up to rounding; 0: all. */
 static brio_status choose_triangles(run *r, double most, terrain *t) {
     size_t count = brio_triangulation2_stats(t->t)->triangles;
     const brio_triangle *triangle = brio_triangulation2_triangles(t->t);
+    double up_to = cli_up_to(most, cli_rounding(t->points));
     t->kept = malloc(count + 1);
     if (!t->kept) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu triangles", count);
     for (size_t i = 0; i < count; i++) {
@@ -122,7 +124,7 @@ static brio_status choose_triangles(run *r, double most, terrain *t) {
             const double *b = t->map + 2 * (size_t)triangle[i].vertex[(k + 1) % 3];
             longest = fmax(longest, hypot(a[0] - b[0], a[1] - b[1]));
         }
-        t->kept[i] = !(most > 0) || longest <= most;
+        t->kept[i] = !(most > 0) || longest <= up_to;
         t->num_kept += t->kept[i];
     }
     if (!t->num_kept) return cli_fail(r, BRIO_ERR_NO_ANSWER, "no triangle is left: all have a side over %g", most);
@@ -169,16 +171,19 @@ static brio_status fill_row(run *r, void *user, size_t row, double *heights) {
     return BRIO_OK;
 }
 
-/* Lays a grid whose lines are at multiples of the cell over the points. */
+/* Lays a grid whose lines are at multiples of the cell over the points. A point that is beyond a line by rounding alone needs
+ * no cell there. */
 static brio_status lay_grid(run *r, double cell, terrain *t) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, cells[2];
+    double share = cli_up_to(cell, cli_rounding(t->points)) / cell - 1; /* of a cell */
     for (size_t i = 0; i < 2 * t->points->num_vertices; i++) {
         low[i % 2] = fmin(low[i % 2], t->map[i]);
         high[i % 2] = fmax(high[i % 2], t->map[i]);
     }
     for (int k = 0; k < 2; k++) {
-        low[k] = floor(low[k] / cell) * cell;
-        cells[k] = fmax(ceil((high[k] - low[k]) / cell), 1);
+        double first = floor(low[k] / cell + share);
+        low[k] = first * cell;
+        cells[k] = fmax(ceil(high[k] / cell - share) - first, 1);
     }
     if (!(cells[0] * cells[1] <= MOST_CELLS))
         return cli_fail(r, BRIO_ERR_TOO_LARGE, "--cell: %g makes %.0f by %.0f cells, more than %g", cell, cells[0],

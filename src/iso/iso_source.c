@@ -3,6 +3,7 @@
  * Finds the resolution for a wanted number of vertices by trial. The number of vertices grows about with the square of
  * the resolution, except for details that finer cells reveal; so a few rounds suffice. */
 #include "iso/iso_source.h"
+#include <float.h>
 #include <math.h>
 
 enum { FIRST_RESOLUTION = 100, MOST_RESOLUTION = 1 << 15, MOST_ROUNDS = 5 };
@@ -66,9 +67,14 @@ static brio_status make_surface_of_size(brio_context *ctx, const brio_iso_source
     return BRIO_OK;
 }
 
-/* Converts a level in standard deviations to the map's unit. */
-static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, double *level) {
+/* Converts a level in standard deviations to the map's unit. Rounds another level of a map as its values are, to single
+ * precision: a level of 0.7 is then equal to values of 0.7. */
+static brio_status settle_level(brio_context *ctx, const brio_iso_source *from, int deviations, double *level) {
     double mean, deviation;
+    if (!deviations) {
+        if (from->is_map && fabs(*level) <= (double)FLT_MAX) *level = (double)(float)*level;
+        return BRIO_OK;
+    }
     BRIO_EXPECT(ctx, from->is_map, BRIO_ERR_ARGUMENT,
                 "a level in standard deviations is for maps: the density of atoms has no mean");
     brio_volume_statistics(&from->volume, &mean, &deviation);
@@ -82,7 +88,7 @@ brio_status brio_iso_source_surface(brio_context *ctx, const brio_iso_source *fr
     brio_iso_surface_options o = *options;
     *out = NULL;
     if (o.blobbiness == 0) o.blobbiness = BLOBBINESS;
-    if (o.deviations) BRIO_TRY(settle_level(ctx, from, &level));
+    BRIO_TRY(settle_level(ctx, from, o.deviations, &level));
     BRIO_TRY(o.vertices ? make_surface_of_size(ctx, from, level, &o, out)
                         : make_surface(ctx, from, level, &o, o.resolution, out));
 done:

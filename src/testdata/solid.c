@@ -138,7 +138,7 @@ done:
 }
 
 /* Meshes the solid coarsely. Writes the spacing of its samples, 0 if it is no solid at all, and the share of its thin
- * places. */
+ * places, which takes most of the time, if the solid was built for about this spacing. */
 static brio_status measure(solid *s, double *spacing, double *thin) {
     brio_status status = BRIO_OK;
     brio_csg_blocks blocks = {0};
@@ -155,7 +155,8 @@ static brio_status measure(solid *s, double *spacing, double *thin) {
     }
     BRIO_TRY(brio_solid_keep_parts(s->ctx, mesh, &s->keep));
     *spacing = sqrt(AREA_A_SAMPLE * brio_solid_area(mesh) / SAMPLES);
-    BRIO_TRY(brio_solid_thin_share(s->ctx, &grid, mesh, LEAST_THICKNESS * *spacing, thin));
+    if (fabs(*spacing / s->spacing - 1) <= 2 * SAME_SPACING)
+        BRIO_TRY(brio_solid_thin_share(s->ctx, &grid, mesh, LEAST_THICKNESS * *spacing, thin));
 done:
     brio_csg_blocks_free(s->ctx, &blocks);
     brio_mesh_free(mesh);

@@ -19,6 +19,7 @@ import tempfile
 BRIO = os.environ.get("BRIO", "brio")
 PROCESSES = 2
 LARGE = 310000  # bytes of a file of samples: larger ones are for make check-all
+FAR = 0.3  # a chamfer distance that takes the judge ten times as long as a usual one: for make check-all, too
 SKIPPED = 77
 EXACT = {"watertight": "watertight", "flipped": "flipped_edges", "nonmanifold": "nonmanifold_vertices",
          "components": "components", "genus": "genus"}
@@ -107,6 +108,9 @@ def main():
         large = [m for m in models if os.path.getsize(os.path.join(data, m["file"])) > LARGE]
         models = [m for m in models if m not in large]
         print("left out, for make check-all: " + " ".join(m["file"] for m in large))
+        for m in models:
+            if m["chamfer"] != "-" and float(m["chamfer"]) > FAR:
+                m["truth"] = m["chamfer"] = "-"
     with concurrent.futures.ThreadPoolExecutor(PROCESSES) as pool:
         for line, differences in pool.map(lambda model: examine(model, data, judge, method), models):
             wrong += bool(differences)

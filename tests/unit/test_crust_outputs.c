@@ -29,14 +29,15 @@ static brio_certificate certify(brio_context *ctx, const brio_mesh *mesh) {
 /* --- simplified --- */
 
 static void simplified_torus_is_a_quarter_and_the_same(void) {
-    static double p[3 * 6000];
-    torus_points(1, 6000, p);
+    enum { N = SHORT_TESTS ? 3000 : 6000 };
+    static double p[3 * N];
+    torus_points(1, N, p);
     brio_context *ctx = new_small_context();
     brio_surface_options o = CRUST_OPTIONS;
-    brio_mesh *whole = crust(ctx, p, 6000, &o, NULL), *simple;
+    brio_mesh *whole = crust(ctx, p, N, &o, NULL), *simple;
     brio_distance d = {0};
     o.simplify = 1;
-    simple = crust(ctx, p, 6000, &o, NULL);
+    simple = crust(ctx, p, N, &o, NULL);
     brio_certificate c = certify(ctx, simple);
     EXPECT(c.closed && c.manifold && c.oriented && c.components == 1 && c.genus == 1);
     EXPECT(fabs(c.volume - 3.158273) < 0.02 * 3.158273, "volume %g", c.volume);

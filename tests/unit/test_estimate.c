@@ -6,7 +6,7 @@
 #include <limits.h>
 #include <string.h>
 
-enum { N = 40000 };
+enum { N = SHORT_TESTS ? 20000 : 40000 };
 
 static double points[3 * N], weights[N];
 
@@ -197,7 +197,7 @@ static void surfaces_take_what_was_estimated(void) {
 static void pieces_of_the_cocone_count(void) {
     brio_context *scanner = new_context();
     brio_mesh *scan = NULL;
-    EXPECT(brio_generate(scanner, BRIO_KIND_SCAN, 40000, NULL, &scan) == BRIO_OK);
+    EXPECT(brio_generate(scanner, BRIO_KIND_SCAN, N, NULL, &scan) == BRIO_OK);
     const size_t pieces[] = {2, 10, 40};
     uint64_t whole = 0, in_pieces = 0;
     for (int i = 0; i < (SHORT_TESTS ? 1 : 3) && scan; i++) {

@@ -9,7 +9,7 @@
 
 #define PI 3.141592653589793
 
-enum { UNKNOWN = -1 };
+enum { UNKNOWN = -1, PLACES_A_FACE = SHORT_TESTS ? 3 : 8, PLACES = SHORT_TESTS ? 5000 : 20000 };
 
 /* --- solids --- */
 
@@ -91,7 +91,7 @@ static brio_mesh *sphere(brio_context *ctx) {
     static const double v[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
     static const uint32_t c[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
     brio_mesh *mesh = triangle_mesh(ctx, v, 6, c, 8), *finer = NULL;
-    EXPECT(brio_mesh_subdivide(ctx, mesh, 4, &finer) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_mesh_subdivide(ctx, mesh, SHORT_TESTS ? 3 : 4, &finer) == BRIO_OK, "%s", brio_message(ctx));
     for (size_t i = 0; i < finer->num_vertices; i++) {
         double *p = finer->vertices + 3 * i, length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
         for (int k = 0; k < 3; k++) p[k] /= length;
@@ -137,14 +137,14 @@ static void measure(const brio_mesh *solid_mesh, const brio_mesh *mesh, double d
         for (int k = 0; k < 3; k++) u[k] = p[1][k] - p[0][k], v[k] = p[2][k] - p[0][k];
         for (int k = 0; k < 3; k++) n[k] = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
         double area = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        for (int i = 0; i < 8; i++) {
+        for (int i = 0; i < PLACES_A_FACE; i++) {
             double s = sqrt(brio_rng_double(&rng)), t = brio_rng_double(&rng), x[3], q[3];
             size_t triangle;
             for (int k = 0; k < 3; k++) x[k] = p[0][k] + s * (1 - t) * u[k] + s * t * v[k];
             double d = sqrt(brio_closest_point(&solid.tree, x, q, &triangle));
             if (brio_winding_number(&solid, x) != 0) d = -d;
             *most = fmax(*most, fabs(d - distance));
-            sum += area / 8 * fabs(d - distance);
+            sum += area / PLACES_A_FACE * fabs(d - distance);
         }
         area_sum += area;
     }
@@ -162,7 +162,7 @@ static double missed(const brio_mesh *solid_mesh, const brio_mesh *mesh, double 
     double most = 0;
     EXPECT(brio_solid_new(ctx, solid_mesh, &solid) == BRIO_OK && brio_solid_new(ctx, mesh, &result) == BRIO_OK);
     const brio_triangle_tree *t = &solid.tree;
-    for (int i = 0; i < 20000; i++) {
+    for (int i = 0; i < PLACES; i++) {
         /* a random place about the box, its nearest point, and the point at the distance from there */
         double x[3], q[3], y[3];
         size_t triangle;
@@ -411,8 +411,8 @@ static void wrong_distances_and_errors_are_refused(void) {
 }
 
 static void estimate_holds(void) {
-    brio_mesh *(*const make[])(brio_context *) = {unit_cube, prism_32, l_shape, sphere, torus_64};
-    for (int i = 0; i < 5; i += SHORT_TESTS ? 2 : 1)
+    brio_mesh *(*const make[])(brio_context *) = {unit_cube, l_shape, prism_32, sphere, torus_64};
+    for (int i = 0; i < (SHORT_TESTS ? 2 : 5); i++)
         for (double distance = -0.1; distance < 0.2; distance += 0.2) {
             brio_context *ctx = new_context();
             brio_mesh *mesh = make[i](ctx), *out = NULL;

@@ -12,7 +12,8 @@
 
 static brio_context *ctx;
 
-enum { SEEDS = SHORT_TESTS ? 1 : 6, RESOLUTION = SHORT_TESTS ? 32 : 48 };
+/* Few inputs have seeds whose first or second solid is a good one: the search takes most of the time. */
+enum { FIRST_SEED = SHORT_TESTS ? 2 : 1, SEEDS = SHORT_TESTS ? 1 : 6, RESOLUTION = SHORT_TESTS ? 32 : 48 };
 
 /* --- trees --- */
 
@@ -290,7 +291,7 @@ static void expect_unit_box(const brio_mesh *mesh) {
 
 static void solids_are_certified(void) {
     int64_t least = INT64_MAX, most = 0, crossed = 0;
-    for (uint64_t seed = 1; seed <= SEEDS; seed++)
+    for (uint64_t seed = FIRST_SEED; seed < FIRST_SEED + SEEDS; seed++)
         for (brio_solid_kind kind = 0; kind < BRIO_SOLID_END; kind++) {
             brio_mesh *mesh = solid_of(kind, seed, RESOLUTION);
             brio_certificate c = certify(mesh);
@@ -310,11 +311,11 @@ static void solids_are_certified(void) {
 }
 
 static void solid_follows_from_its_seed(void) {
-    for (brio_solid_kind kind = 0; kind < BRIO_SOLID_END; kind += SHORT_TESTS ? 2 : 1) {
+    for (brio_solid_kind kind = SHORT_TESTS ? BRIO_SOLID_MACHINED : 0; kind < BRIO_SOLID_END; kind++) {
         brio_context_set_threads(ctx, 1);
         brio_mesh *a = solid_of(kind, 3, RESOLUTION);
         brio_context_set_threads(ctx, 2);
-        brio_mesh *b = solid_of(kind, 3, RESOLUTION), *other = solid_of(kind, 4, RESOLUTION);
+        brio_mesh *b = solid_of(kind, 3, RESOLUTION), *other = solid_of(kind, 2, RESOLUTION);
         brio_context_set_threads(ctx, 0);
         size_t n = a->num_vertices, m = a->num_faces;
         EXPECT(b->num_vertices == n && !memcmp(a->vertices, b->vertices, 3 * n * sizeof(double)), "kind %d", (int)kind);
