@@ -38,6 +38,7 @@ typedef struct {
     const double *points;
     pair *near;      /* #P */
     double *allowed; /* #P */
+    uint8_t *last;   /* #P: the last sweep in which `allowed` changed */
 } search;
 
 static void offer(pair *p, uint32_t q, double square) {
@@ -50,25 +51,35 @@ static void offer(pair *p, uint32_t q, double square) {
 
 /* Limits the spacing at q by that at p. Returns whether that changed it. */
 static bool limit(const search *s, uint32_t p, uint32_t q, double square) {
-    double more = s->allowed[q] - s->allowed[p];
+    double more = s->allowed[q] - s->allowed[p], before = s->allowed[q];
     if (more <= 0 || more * more <= GROWTH * GROWTH * square) return false;
     s->allowed[q] = s->allowed[p] + GROWTH * sqrt(square);
-    return true;
+    return s->allowed[q] != before; /* by rounding, it may stay */
 }
 
-/* Passes over the edges of all tetrahedra, each edge as often as it has tetrahedra. Writes whether a limit changed. */
-static brio_status sweep(brio_context *ctx, const search *s, bool backwards, bool first, bool *changed) {
+/* Returns whether a limit of a tetrahedron's samples has changed since the sweep before passed the tetrahedron. */
+static bool has_changed(const search *s, const uint32_t *v, int sweep) {
+    bool changed = sweep == 0;
+    for (int k = 0; k < 4; k++) changed |= v[k] < s->num_points && s->last[v[k]] + 1 >= sweep;
+    return changed;
+}
+
+/* Passes over the edges of the tetrahedra at which something changed, each edge as often as it has such tetrahedra. The first
+ * sweep passes over all of them, and offers their samples to each other. Writes whether a limit changed. */
+static brio_status pass_over(brio_context *ctx, const search *s, int sweep, bool *changed) {
     brio_status status = BRIO_OK;
     *changed = false;
     for (size_t n = 0; n < s->num_tets; n++) {
-        const uint32_t *v = s->tet[backwards ? s->num_tets - 1 - n : n].vertex;
-        BRIO_TRY(brio_look(ctx, 4));
+        const uint32_t *v = s->tet[sweep % 2 == 1 ? s->num_tets - 1 - n : n].vertex;
+        BRIO_TRY(brio_look(ctx, sweep == 0 ? 4 : 1));
+        if (!has_changed(s, v, sweep)) continue;
         for (int j = 1; j < 4; j++)
             for (int k = 0; k < j; k++) {
                 if (v[j] >= s->num_points || v[k] >= s->num_points) continue;
                 double square = brio_square_distance(s->points + 3 * (size_t)v[j], s->points + 3 * (size_t)v[k]);
-                *changed |= limit(s, v[j], v[k], square) | limit(s, v[k], v[j], square);
-                if (!first) continue;
+                if (limit(s, v[j], v[k], square)) s->last[v[k]] = (uint8_t)sweep, *changed = true;
+                if (limit(s, v[k], v[j], square)) s->last[v[j]] = (uint8_t)sweep, *changed = true;
+                if (sweep > 0) continue;
                 offer(&s->near[v[j]], v[k], square);
                 offer(&s->near[v[k]], v[j], square);
             }
@@ -95,17 +106,19 @@ brio_status brio_find_strays(brio_context *ctx, const brio_triangulation *t, con
     size_t vertices = brio_triangulation_stats(t)->vertices;
     BRIO_TRY(BRIO_ALLOC(ctx, s.near, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, s.allowed, num_points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.last, num_points));
     for (size_t p = 0; p < num_points; p++) {
         s.near[p] = (pair){INFINITY, INFINITY, UINT32_MAX};
         s.allowed[p] = spacing[p];
     }
     bool changed = true;
-    for (int n = 0; n < SWEEPS && changed; n++) BRIO_TRY(sweep(ctx, &s, n % 2 == 1, n == 0, &changed));
+    for (int sweep = 0; sweep < SWEEPS && changed; sweep++) BRIO_TRY(pass_over(ctx, &s, sweep, &changed));
     bool many = (double)mark(&s, SUSPECT, stray) > MANY * (double)vertices;
     size_t count = mark(&s, many ? LIKELY : LONELY, stray);
     if ((double)count > MOST * (double)vertices) mark(&s, INFINITY, stray);
 done:
     brio_release(ctx, s.near);
     brio_release(ctx, s.allowed);
+    brio_release(ctx, s.last);
     return status;
 }
