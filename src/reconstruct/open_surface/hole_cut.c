@@ -160,6 +160,15 @@ static bool is_sideways(const brio_hole *h) {
     return h->facing < SIDEWAYS && h->usual_area > SIDEWAYS_AREA;
 }
 
+/* Returns how often the holes make up what proves that the surface is open: one of them, or all unlikely ones by their
+ * area. */
+static double proof_of(const brio_hole_list *l, double unlikely, double all) {
+    double proof = all > 0 ? unlikely / (PROOF_SHARE * all) : 0;
+    for (size_t i = 0; i < l->count; i++)
+        proof = fmax(proof, fmin(l->hole[i].ratio / PROOF, l->hole[i].usual_area / PROOF_AREA));
+    return proof;
+}
+
 /* Decides which holes stay open. */
 static void decide(const cutting *c) {
     brio_hole_list *l = c->holes;
@@ -172,6 +181,7 @@ static void decide(const cutting *c) {
         if (h->unlikely) unlikely += h->area;
         open |= h->ratio > PROOF && h->usual_area > PROOF_AREA;
     }
+    l->proof = proof_of(l, unlikely, all);
     open = c->rule->choice == BRIO_HOLES_SEEN && (open || unlikely > PROOF_SHARE * all);
     for (size_t i = 0; i < l->count; i++) l->hole[i].open |= open && (l->hole[i].unlikely || is_sideways(&l->hole[i]));
 }
