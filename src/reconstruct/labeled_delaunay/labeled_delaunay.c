@@ -20,6 +20,7 @@
  *                          measured on generated solids (vote_weight.c). */
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/scale.h"
 #include "base/versioned.h"
 #include "dual/spacing.h"
@@ -66,6 +67,9 @@ static const double THETA = 0.39269908169872414;
 /* Where labels that are not the best yet have proved so often that the surface is open, the best ones would, too. Chosen. */
 static const double CLEAR = 2;
 
+/* Of at least MANY samples, one in FEW is asked first whether the surface is open. Chosen. */
+enum { MANY = 200000, FEW = 8 };
+
 typedef struct {
     brio_context *ctx;
     const brio_labeled_delaunay_options *options;
@@ -82,6 +86,7 @@ typedef struct {
     float (*outside)[3];     /* #P: the axes, and once there are labels, which way is outside */
     brio_sample_evidence evidence;
     float *own;            /* #P, or NULL: what evidence, or their sheet, tells of the samples, in BRIO_VOTE_UNIT */
+    double proof;          /* as brio_unseen has it: of the votes alone */
     bool is_open;          /* the surface proved to be open */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
@@ -203,12 +208,14 @@ done:
 static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
-    if (r->is_open) {
-        BRIO_TRY(orient_by_sheets(r));
-    } else {
+    if (!r->turned) {
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->turned, r->num_points));
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->alone, r->num_points));
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->outside, r->num_points));
+    }
+    if (r->is_open) {
+        BRIO_TRY(orient_by_sheets(r));
+    } else {
         BRIO_TRY(sign_sheets(r));
         BRIO_TRY(orient_by_evidence(r));
     }
@@ -462,6 +469,7 @@ static brio_status look_ahead(reconstruction *r) {
     BRIO_TRY(list_faces(r, &boundary));
     num_faces = r->num_faces;
     BRIO_TRY(cut_holes(r, &u));
+    r->proof = u.proof;
     r->is_open = u.holes > 0 && u.proof > CLEAR;
     if (r->is_open) holes = u.holes, left_out = num_faces - r->num_faces;
 done:
@@ -536,25 +544,6 @@ done:
     return status;
 }
 
-static brio_status find_surface(reconstruction *r, const double *points) {
-    brio_status status = BRIO_OK;
-    const brio_bar bar = brio_progress_bar(r->ctx);
-    bool by_itself = r->options->holes == BRIO_HOLES_AUTO && r->options->open == 0;
-    BRIO_TRY(take_samples(r, points));
-    BRIO_TRY(treat_noise(r));
-    brio_progress_part(r->ctx, bar, 0, 0.4);
-    BRIO_TRY(triangulate(r));
-    BRIO_TRY(measure_spacing(r));
-    if (r->options->noise != BRIO_NOISE_KEEP) BRIO_TRY(drop_strays(r));
-    BRIO_TRY(find_faces(r, by_itself, bar, 0.4, by_itself ? 0.7 : 0.95));
-    if (by_itself && r->stats.holes > 0 && !r->own) BRIO_TRY(find_sheets(r, bar, 0.7, 0.95));
-    brio_progress_part(r->ctx, bar, 0.95, 1);
-    if (r->stats.smoothed) BRIO_TRY(smooth(r));
-done:
-    brio_progress_part(r->ctx, bar, 0, 1);
-    return status;
-}
-
 static void release(reconstruction *r) {
     brio_vote_graph_free(&r->graph);
     brio_pole_vectors_free(r->ctx, &r->dual);
@@ -571,6 +560,70 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->confidence);
     brio_release(r->ctx, r->of_faces.bridge);
     brio_release(r->ctx, r->of_faces.size);
+}
+
+/* Copies about one in FEW of the samples, chosen by their positions. */
+static brio_status take_few(const reconstruction *r, reconstruction *few) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, few->points, 3 * r->num_points));
+    for (size_t p = 0; p < r->num_points; p++) {
+        const double *from = r->points + 3 * p;
+        uint64_t hash = 0;
+        for (size_t k = 0; k < 3; k++) hash = brio_hash(hash, brio_double_key(from[k]));
+        if (hash % FEW != 0) continue;
+        memcpy(few->points + 3 * few->num_points++, from, 3 * sizeof *from);
+    }
+done:
+    return status;
+}
+
+/* Asks a few of the samples whether the surface is open: holes that they prove all of them would prove. Otherwise writes
+ * whether all are worth asking. */
+static brio_status ask_few(reconstruction *r, bool *maybe) {
+    brio_status status = BRIO_OK;
+    reconstruction few = {.ctx = r->ctx,
+                          .options = r->options,
+                          .exponent = r->exponent,
+                          .left = r->left / sqrt(FEW), /* in spacings */
+                          .graph = {.ctx = r->ctx},
+                          .lap = r->lap};
+    *maybe = true;
+    if (r->num_points < MANY) goto done;
+    BRIO_TRY(take_few(r, &few));
+    BRIO_TRY(brio_delaunay(r->ctx, few.points, NULL, few.num_points, NULL, &few.delaunay));
+    if (brio_triangulation_stats(few.delaunay)->dimension < 3) goto done;
+    BRIO_TRY(measure_spacing(&few));
+    BRIO_TRY(orient(&few));
+    BRIO_TRY(vote(&few));
+    BRIO_TRY(look_ahead(&few));
+    r->is_open = few.is_open;
+    *maybe = few.proof > CLEAR / FEW;
+done:
+    release(&few);
+    lap(r, &r->stats.labels_seconds);
+    return status;
+}
+
+static brio_status find_surface(reconstruction *r, const double *points) {
+    brio_status status = BRIO_OK;
+    const brio_bar bar = brio_progress_bar(r->ctx);
+    bool by_itself = r->options->holes == BRIO_HOLES_AUTO && r->options->open == 0;
+    bool evidence = r->evidence.given.normals || r->evidence.given.origins, maybe = true;
+    BRIO_TRY(take_samples(r, points));
+    BRIO_TRY(treat_noise(r));
+    brio_progress_part(r->ctx, bar, 0, 0.4);
+    BRIO_TRY(triangulate(r));
+    BRIO_TRY(measure_spacing(r));
+    if (r->options->noise != BRIO_NOISE_KEEP) BRIO_TRY(drop_strays(r));
+    brio_progress_part(r->ctx, bar, 0.4, 0.45);
+    if (by_itself && !evidence) BRIO_TRY(ask_few(r, &maybe));
+    if (!r->is_open) BRIO_TRY(find_faces(r, by_itself && maybe, bar, 0.45, by_itself ? 0.7 : 0.95));
+    if (by_itself && (r->is_open || r->stats.holes > 0) && !r->own) BRIO_TRY(find_sheets(r, bar, 0.7, 0.95));
+    brio_progress_part(r->ctx, bar, 0.95, 1);
+    if (r->stats.smoothed) BRIO_TRY(smooth(r));
+done:
+    brio_progress_part(r->ctx, bar, 0, 1);
+    return status;
 }
 
 brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
