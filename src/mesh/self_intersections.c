@@ -21,8 +21,9 @@ enum {
     LEAF_FACES = 4,
     MOST_LEVELS = 64,
     CURVE_BITS = 16,
-    BATCH = 1 << 12,   /* faces between two reports of progress */
-    FACES_A_CHUNK = 64 /* faces that a thread takes at once; chosen */
+    BATCH = 1 << 12,    /* faces between two reports of progress */
+    FACES_A_CHUNK = 64, /* faces that a thread takes at once; chosen */
+    BOXES_A_THREAD = 1 << 12
 };
 
 typedef struct {
@@ -99,23 +100,28 @@ static box box_of(const brio_mesh *m, size_t face) {
     return b;
 }
 
+static void find_boxes(void *user, size_t begin, size_t end, int thread) {
+    tree *t = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) t->faces[i] = box_of(t->mesh, t->order[i]);
+}
+
 static brio_status sort_faces(brio_context *ctx, tree *t) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = t->mesh;
+    int threads = brio_threads(ctx, m->num_faces, BOXES_A_THREAD);
     box all = empty_box();
     uint64_t *keys = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, t->faces, m->num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, t->order, m->num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, keys, m->num_faces));
-    for (size_t f = 0; f < m->num_faces; f++) {
-        if (m->face_offsets[f + 1] - m->face_offsets[f] < 3) continue;
-        t->faces[t->count] = box_of(m, f);
-        box_add(&all, t->faces[t->count].low, t->faces[t->count].high);
-        t->order[t->count++] = (uint32_t)f;
-    }
+    for (size_t f = 0; f < m->num_faces; f++)
+        if (m->face_offsets[f + 1] - m->face_offsets[f] > 2) t->order[t->count++] = (uint32_t)f;
+    BRIO_TRY(brio_for(ctx, threads, t->count, find_boxes, t));
+    for (size_t i = 0; i < t->count; i++) box_add(&all, t->faces[i].low, t->faces[i].high);
     for (size_t i = 0; i < t->count; i++) keys[i] = curve_key(&all, &t->faces[i]);
     BRIO_TRY(brio_radix_sort(ctx, keys, t->order, t->count, 3 * CURVE_BITS));
-    for (size_t i = 0; i < t->count; i++) t->faces[i] = box_of(m, t->order[i]);
+    BRIO_TRY(brio_for(ctx, threads, t->count, find_boxes, t));
 done:
     brio_release(ctx, keys);
     return status;

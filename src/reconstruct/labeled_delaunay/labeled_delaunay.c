@@ -131,21 +131,25 @@ done:
     return status;
 }
 
-static brio_status measure_spacing(reconstruction *r) {
+/* second  NULL, or as brio_sample_spacing writes it. */
+static brio_status measure_spacing(reconstruction *r, float *second) {
     if (!r->spacing) {
         brio_status status = BRIO_ALLOC(r->ctx, r->spacing, r->num_points);
         if (status != BRIO_OK) return status;
     }
-    return brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing);
+    return brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing, second);
 }
 
-/* Takes the strays out of the samples, and triangulates the others again. */
+/* Measures the spacing. Takes the strays out of the samples, and triangulates the others again. */
 static brio_status drop_strays(reconstruction *r) {
     brio_status status = BRIO_OK;
     uint8_t *stray = NULL;
+    float *second = NULL;
     size_t kept = 0;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, second, r->num_points));
+    BRIO_TRY(measure_spacing(r, second));
     BRIO_TRY(BRIO_ALLOC(r->ctx, stray, r->num_points));
-    BRIO_TRY(brio_find_strays(r->ctx, r->delaunay, r->points, r->num_points, r->spacing, stray));
+    BRIO_TRY(brio_find_strays(r->ctx, r->delaunay, r->points, r->num_points, r->spacing, second, stray));
     for (size_t p = 0; p < r->num_points; p++) r->stats.strays += stray[p];
     if (!r->stats.strays) goto done;
     for (size_t p = 0; p < r->num_points; p++) {
@@ -157,9 +161,10 @@ static brio_status drop_strays(reconstruction *r) {
     brio_triangulation_free(r->delaunay);
     r->delaunay = NULL;
     BRIO_TRY(triangulate(r));
-    BRIO_TRY(measure_spacing(r));
+    BRIO_TRY(measure_spacing(r, NULL));
 done:
     brio_release(r->ctx, stray);
+    brio_release(r->ctx, second);
     return status;
 }
 
@@ -592,7 +597,7 @@ static brio_status ask_few(reconstruction *r, bool *maybe) {
     BRIO_TRY(take_few(r, &few));
     BRIO_TRY(brio_delaunay(r->ctx, few.points, NULL, few.num_points, NULL, &few.delaunay));
     if (brio_triangulation_stats(few.delaunay)->dimension < 3) goto done;
-    BRIO_TRY(measure_spacing(&few));
+    BRIO_TRY(measure_spacing(&few, NULL));
     BRIO_TRY(orient(&few));
     BRIO_TRY(vote(&few));
     BRIO_TRY(look_ahead(&few));
@@ -613,8 +618,7 @@ static brio_status find_surface(reconstruction *r, const double *points) {
     BRIO_TRY(treat_noise(r));
     brio_progress_part(r->ctx, bar, 0, 0.4);
     BRIO_TRY(triangulate(r));
-    BRIO_TRY(measure_spacing(r));
-    if (r->options->noise != BRIO_NOISE_KEEP) BRIO_TRY(drop_strays(r));
+    BRIO_TRY(r->options->noise == BRIO_NOISE_KEEP ? measure_spacing(r, NULL) : drop_strays(r));
     brio_progress_part(r->ctx, bar, 0.4, 0.45);
     if (by_itself && !evidence) BRIO_TRY(ask_few(r, &maybe));
     if (!r->is_open) BRIO_TRY(find_faces(r, by_itself && maybe, bar, 0.45, by_itself ? 0.7 : 0.95));

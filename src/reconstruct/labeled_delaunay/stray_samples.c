@@ -28,26 +28,13 @@ static const double GROWTH = 0.05, LONELY = 12, SUSPECT = 7, LIKELY = 4, MANY = 
 enum { SWEEPS = 8 };
 
 typedef struct {
-    double first, second; /* squared distances of the nearest two samples, from `nearest` and another one */
-    uint32_t nearest;
-} pair;
-
-typedef struct {
     const brio_tetrahedron *tet;
     size_t num_tets, num_points;
     const double *points;
-    pair *near;      /* #P */
+    const float *second;
     double *allowed; /* #P */
     uint8_t *last;   /* #P: the last sweep in which `allowed` changed */
 } search;
-
-static void offer(pair *p, uint32_t q, double square) {
-    if (q == p->nearest) return;
-    if (square < p->first)
-        p->second = p->first, p->first = square, p->nearest = q;
-    else if (square < p->second)
-        p->second = square;
-}
 
 /* Limits the spacing at q by that at p. Returns whether that changed it. */
 static bool limit(const search *s, uint32_t p, uint32_t q, double square) {
@@ -64,8 +51,8 @@ static bool has_changed(const search *s, const uint32_t *v, int sweep) {
     return changed;
 }
 
-/* Passes over the edges of the tetrahedra at which something changed, each edge as often as it has such tetrahedra. The first
- * sweep passes over all of them, and offers their samples to each other. Writes whether a limit changed. */
+/* Passes over the edges of the tetrahedra at which something changed, at first of all, each edge as often as it has such
+ * tetrahedra. Writes whether a limit changed. */
 static brio_status pass_over(brio_context *ctx, const search *s, int sweep, bool *changed) {
     brio_status status = BRIO_OK;
     *changed = false;
@@ -79,9 +66,6 @@ static brio_status pass_over(brio_context *ctx, const search *s, int sweep, bool
                 double square = brio_square_distance(s->points + 3 * (size_t)v[j], s->points + 3 * (size_t)v[k]);
                 if (limit(s, v[j], v[k], square)) s->last[v[k]] = (uint8_t)sweep, *changed = true;
                 if (limit(s, v[k], v[j], square)) s->last[v[j]] = (uint8_t)sweep, *changed = true;
-                if (sweep > 0) continue;
-                offer(&s->near[v[j]], v[k], square);
-                offer(&s->near[v[k]], v[j], square);
             }
     }
 done:
@@ -92,32 +76,28 @@ done:
 static size_t mark(const search *s, double times, uint8_t *stray) {
     size_t count = 0;
     for (size_t p = 0; p < s->num_points; p++)
-        count += stray[p] = s->near[p].second < INFINITY && sqrt(s->near[p].second) > times * s->allowed[p];
+        count += stray[p] = s->second[p] < INFINITY && (double)s->second[p] > times * s->allowed[p];
     return count;
 }
 
 brio_status brio_find_strays(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_points,
-                             const double *spacing, uint8_t *stray) {
+                             const double *spacing, const float *second, uint8_t *stray) {
     brio_status status = BRIO_OK;
     search s = {.tet = brio_triangulation_tetrahedra(t),
                 .num_tets = brio_triangulation_stats(t)->tetrahedra,
                 .num_points = num_points,
-                .points = points};
+                .points = points,
+                .second = second};
     size_t vertices = brio_triangulation_stats(t)->vertices;
-    BRIO_TRY(BRIO_ALLOC(ctx, s.near, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, s.allowed, num_points));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.last, num_points));
-    for (size_t p = 0; p < num_points; p++) {
-        s.near[p] = (pair){INFINITY, INFINITY, UINT32_MAX};
-        s.allowed[p] = spacing[p];
-    }
+    for (size_t p = 0; p < num_points; p++) s.allowed[p] = spacing[p];
     bool changed = true;
     for (int sweep = 0; sweep < SWEEPS && changed; sweep++) BRIO_TRY(pass_over(ctx, &s, sweep, &changed));
     bool many = (double)mark(&s, SUSPECT, stray) > MANY * (double)vertices;
     size_t count = mark(&s, many ? LIKELY : LONELY, stray);
     if ((double)count > MOST * (double)vertices) mark(&s, INFINITY, stray);
 done:
-    brio_release(ctx, s.near);
     brio_release(ctx, s.allowed);
     brio_release(ctx, s.last);
     return status;
