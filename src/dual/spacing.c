@@ -35,6 +35,7 @@ typedef struct {
     const double *points;
     neighbours *list; /* #samples */
     double *spacing;
+    float *second; /* or NULL */
 } measuring;
 
 /* Offers each end of an edge to the other end, if that is one of the samples begin to end - 1. */
@@ -61,16 +62,17 @@ static void measure_part(void *user, size_t begin, size_t end, int thread) {
         double sum = 0;
         for (uint32_t i = 0; i < m->list[s].count; i++) sum += sqrt((double)m->list[s].square[i]);
         m->spacing[s] = m->list[s].count ? sum / m->list[s].count : 0;
+        if (m->second) m->second[s] = m->list[s].count > 1 ? sqrtf(m->list[s].square[1]) : INFINITY;
     }
 }
 
 brio_status brio_sample_spacing(brio_context *ctx, const brio_triangulation *t, const double *points,
-                                size_t num_samples, double *spacing) {
+                                size_t num_samples, double *spacing, float *second) {
     brio_status status = BRIO_OK;
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
     size_t count = brio_triangulation_stats(t)->tetrahedra;
     int threads = brio_threads(ctx, num_samples, SAMPLES_A_THREAD);
-    measuring m = {.num_samples = num_samples, .points = points, .spacing = spacing};
+    measuring m = {.num_samples = num_samples, .points = points, .spacing = spacing, .second = second};
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, m.list, num_samples));
     for (size_t first = 0; first < count; first += SLICE) {
         m.tet = tet + first;

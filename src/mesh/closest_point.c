@@ -373,6 +373,37 @@ double brio_closest_within(const brio_triangle_tree *tree, const double *p, doub
     return best < bound ? best : INFINITY;
 }
 
+/* Returns the square of the distance of a triangle. */
+static double distance_to(const brio_triangle_tree *tree, size_t triangle, const double *p) {
+    double q[3];
+    brio_closest_on_triangle(tree, triangle, p, q);
+    return brio_square_distance(p, q);
+}
+
+bool brio_is_within(const brio_triangle_tree *tree, const double *p, double bound, size_t *triangle) {
+    visit stack[MOST_LEVELS];
+    int depth = 0;
+    if (distance_to(tree, *triangle, p) < bound) return true;
+    stack[depth++] = (visit){0, 0, tree->num_triangles, 0};
+    while (depth > 0) {
+        visit v = stack[--depth];
+        if (v.high - v.low > BRIO_LEAF_TRIANGLES) {
+            visit lower = visit_child(tree, &v, 0, p), upper = visit_child(tree, &v, 1, p);
+            bool lower_first = lower.distance <= upper.distance;
+            const visit *first = lower_first ? &lower : &upper, *then = lower_first ? &upper : &lower;
+            if (then->distance < bound) stack[depth++] = *then;
+            if (first->distance < bound) stack[depth++] = *first;
+            continue;
+        }
+        for (size_t t = v.low; t < v.high; t++)
+            if (distance_to(tree, t, p) < bound) {
+                *triangle = t;
+                return true;
+            }
+    }
+    return false;
+}
+
 double brio_closest_point(const brio_triangle_tree *tree, const double *p, double *closest, size_t *triangle) {
     *triangle = 0;
     memcpy(closest, tree->vertices + 3 * (size_t)tree->triangles[0][0], 3 * sizeof *closest);

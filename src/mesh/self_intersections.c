@@ -21,8 +21,9 @@ enum {
     LEAF_FACES = 4,
     MOST_LEVELS = 64,
     CURVE_BITS = 16,
-    BATCH = 1 << 12,   /* faces between two reports of progress */
-    FACES_A_CHUNK = 64 /* faces that a thread takes at once; chosen */
+    BATCH = 1 << 12,    /* faces between two reports of progress */
+    FACES_A_CHUNK = 64, /* faces that a thread takes at once; chosen */
+    BOXES_A_THREAD = 1 << 12
 };
 
 typedef struct {
@@ -36,7 +37,7 @@ typedef struct {
     uint32_t *order; /* faces with three corners or more, along the curve */
     size_t count;
     box *nodes;
-    box *faces;       /* in the order of the mesh */
+    box *faces;       /* along the curve, too */
     uint32_t *beside; /* NULL, or #order + 1: how many faces before each place are not asked about */
 } tree;
 
@@ -91,23 +92,36 @@ static uint64_t curve_key(const box *all, const box *face) {
     return key;
 }
 
+/* Returns the box of a face. */
+static box box_of(const brio_mesh *m, size_t face) {
+    box b = empty_box();
+    for (uint64_t h = m->face_offsets[face]; h < m->face_offsets[face + 1]; h++)
+        box_add(&b, corner(m, h), corner(m, h));
+    return b;
+}
+
+static void find_boxes(void *user, size_t begin, size_t end, int thread) {
+    tree *t = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) t->faces[i] = box_of(t->mesh, t->order[i]);
+}
+
 static brio_status sort_faces(brio_context *ctx, tree *t) {
     brio_status status = BRIO_OK;
     const brio_mesh *m = t->mesh;
+    int threads = brio_threads(ctx, m->num_faces, BOXES_A_THREAD);
     box all = empty_box();
     uint64_t *keys = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, t->faces, m->num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, t->order, m->num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, keys, m->num_faces));
-    for (size_t f = 0; f < m->num_faces; f++) {
-        t->faces[f] = empty_box();
-        for (uint64_t h = m->face_offsets[f]; h < m->face_offsets[f + 1]; h++)
-            box_add(&t->faces[f], corner(m, h), corner(m, h));
-        box_add(&all, t->faces[f].low, t->faces[f].high);
+    for (size_t f = 0; f < m->num_faces; f++)
         if (m->face_offsets[f + 1] - m->face_offsets[f] > 2) t->order[t->count++] = (uint32_t)f;
-    }
-    for (size_t i = 0; i < t->count; i++) keys[i] = curve_key(&all, &t->faces[t->order[i]]);
+    BRIO_TRY(brio_for(ctx, threads, t->count, find_boxes, t));
+    for (size_t i = 0; i < t->count; i++) box_add(&all, t->faces[i].low, t->faces[i].high);
+    for (size_t i = 0; i < t->count; i++) keys[i] = curve_key(&all, &t->faces[i]);
     BRIO_TRY(brio_radix_sort(ctx, keys, t->order, t->count, 3 * CURVE_BITS));
+    BRIO_TRY(brio_for(ctx, threads, t->count, find_boxes, t));
 done:
     brio_release(ctx, keys);
     return status;
@@ -116,7 +130,7 @@ done:
 static void build_node(tree *t, range r) {
     box b = empty_box();
     if (r.high - r.low <= LEAF_FACES) {
-        for (size_t i = r.low; i < r.high; i++) box_add(&b, t->faces[t->order[i]].low, t->faces[t->order[i]].high);
+        for (size_t i = r.low; i < r.high; i++) box_add(&b, t->faces[i].low, t->faces[i].high);
     } else {
         size_t middle = r.low + (r.high - r.low) / 2, child = 2 * r.node + 1;
         build_node(t, (range){child, r.low, middle});
@@ -175,13 +189,15 @@ static bool box_of_triangle_meets(const double *const t[3], const box *b) {
     return true;
 }
 
-static bool faces_cross(const tree *tr, size_t f, size_t g) {
+/* Returns whether the faces at two places of the order cross. */
+static bool faces_cross(const tree *tr, size_t at, size_t other) {
     const brio_mesh *m = tr->mesh;
+    size_t f = tr->order[at], g = tr->order[other];
     uint64_t nf = m->face_offsets[f + 1] - m->face_offsets[f] - 2, ng = m->face_offsets[g + 1] - m->face_offsets[g] - 2;
     const double *t[3], *u[3];
     for (uint64_t i = 0; i < nf; i++) {
         fan_triangle(m, f, i, t);
-        if (!box_of_triangle_meets(t, &tr->faces[g])) continue;
+        if (!box_of_triangle_meets(t, &tr->faces[other])) continue;
         box b = empty_box();
         for (int k = 0; k < 3; k++) box_add(&b, t[k], t[k]);
         for (uint64_t j = 0; j < ng; j++) {
@@ -214,7 +230,7 @@ static int64_t count_crossing(const tree *t, size_t at, const uint8_t *only, uin
     stack[depth++] = (range){0, 0, t->count};
     while (depth > 0) {
         range r = stack[--depth];
-        if (is_done(t, r, at) || !boxes_meet(&t->nodes[r.node], &t->faces[face])) continue;
+        if (is_done(t, r, at) || !boxes_meet(&t->nodes[r.node], &t->faces[at])) continue;
         if (r.high - r.low > LEAF_FACES) {
             size_t middle = r.low + (r.high - r.low) / 2, child = 2 * r.node + 1;
             stack[depth++] = (range){child, r.low, middle};
@@ -223,7 +239,7 @@ static int64_t count_crossing(const tree *t, size_t at, const uint8_t *only, uin
         }
         for (size_t i = only || r.low > at ? r.low : at + 1; i < r.high; i++) {
             if (i <= at && (i == at || only[t->order[i]])) continue;
-            if (!boxes_meet(&t->faces[t->order[i]], &t->faces[face]) || !faces_cross(t, face, t->order[i])) continue;
+            if (!boxes_meet(&t->faces[i], &t->faces[at]) || !faces_cross(t, at, i)) continue;
             count++;
             if (crosses) mark(crosses, face), mark(crosses, t->order[i]);
         }

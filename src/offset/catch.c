@@ -38,11 +38,11 @@ static bool is_crossed(const net *n, const double *centre) {
 
 /* Returns whether the offset near a cell's centre is far from the surface; then writes a point of it. */
 static bool is_missed(const net *n, const double *centre, double *sample) {
-    double normal[3], nearest[3], most = MOST_APART * n->w->error;
-    size_t triangle;
+    double normal[3], most = MOST_APART * n->w->error;
+    size_t triangle = 0;
     if (!brio_offset_reach(&n->w->field, centre, BRIO_OFFSET_TOLERANCE * n->w->error, sample, normal)) return false;
     if (brio_square_distance(sample, centre) > 0.75 * n->side * n->side) return false;
-    return !n->surface || brio_closest_within(n->surface, sample, most * most, nearest, &triangle) >= most * most;
+    return !n->surface || !brio_is_within(n->surface, sample, most * most, &triangle);
 }
 
 static void look_part(void *user, size_t begin, size_t end, int thread) {

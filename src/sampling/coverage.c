@@ -122,11 +122,12 @@ static void look_at_faces(void *user, size_t begin, size_t end, int thread) {
 static void look_at_points(void *user, size_t begin, size_t end, int thread) {
     const coverage *c = user;
     (void)thread;
-    for (size_t i = c->first + begin; i < c->first + end; i++) {
-        double closest[3], most = LEFT_OUT * c->spacing[i];
-        size_t triangle;
-        bool near = brio_closest_within(&c->faces, c->tree.point[i], most * most, closest, &triangle) < INFINITY;
-        c->left_out[c->tree.index[i]] = most > 0 && !near;
+    for (size_t i = c->first + begin, triangle = 0; i < c->first + end; i++) {
+        double most = LEFT_OUT * c->spacing[i];
+        if (i % ITEMS_A_CHUNK == 0)
+            triangle = 0; /* however the threads share the points, each looks at the same triangles */
+        c->left_out[c->tree.index[i]] =
+            most > 0 && !brio_is_within(&c->faces, c->tree.point[i], most * most, &triangle);
     }
 }
 

@@ -29,7 +29,7 @@ static brio_status set_up(scene *s, brio_context *ctx, void (*make)(uint64_t, si
     s->graph.ctx = ctx;
     make(1, SAMPLES, s->points);
     BRIO_TRY(brio_delaunay(ctx, s->points, NULL, SAMPLES, NULL, &s->delaunay));
-    BRIO_TRY(brio_sample_spacing(ctx, s->delaunay, s->points, SAMPLES, s->spacing));
+    BRIO_TRY(brio_sample_spacing(ctx, s->delaunay, s->points, SAMPLES, s->spacing, NULL));
     BRIO_TRY(brio_pole_vectors_find(ctx, s->delaunay, s->points, SAMPLES, 0.39, &s->dual));
     BRIO_TRY(brio_vote_graph_new(ctx, &s->dual, s->spacing, 0, NULL, &s->graph));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->label, s->dual.t.count + SAMPLES));

@@ -77,7 +77,7 @@ static void signs_agree_along_sheets(void) {
     size_t down[2] = {0}, all[2] = {0};
     make_scene();
     EXPECT(brio_delaunay(ctx, scene, NULL, num_scene, NULL, &t) == BRIO_OK);
-    EXPECT(brio_sample_spacing(ctx, t, scene, num_scene, spacing) == BRIO_OK);
+    EXPECT(brio_sample_spacing(ctx, t, scene, num_scene, spacing, NULL) == BRIO_OK);
     EXPECT(brio_pole_vectors_find(ctx, t, scene, num_scene, 0.39, &v) == BRIO_OK);
     EXPECT(brio_sign_sheets(ctx, &v, spacing, 0, turned, alone) == BRIO_OK);
     for (size_t p = 0; p < num_scene; p++) {

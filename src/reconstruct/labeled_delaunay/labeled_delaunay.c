@@ -8,7 +8,8 @@
  *   5. Regions of a few tetrahedra are dropped. Labels change where the boundary is not one fan, at the least cost in
  *      energy (mending.c), and where little evidence holds a handle (weak_handles.c).
  *   6. If the surface proves to be open, 3 to 5 once more: the orientation of its sheets counts as evidence then, and what is
- *      beyond the hull is no longer outside by force.
+ *      beyond the hull is no longer outside by force. Where labels leave no doubt that are not the best yet, the better ones
+ *      are not looked for before that.
  *   7. On request, the confidence of each sample, from the votes. What of the surface the samples do not show, and on
  *      request holes that stay open (open_surface/).
  *   8. The vertices of noisy samples are smoothed along the surface. On request, edges collapse.
@@ -18,6 +19,7 @@
  * Differs from the papers: no lines of sight; samples are unknowns, too, and their votes are weighed by log-odds that were
  *                          measured on generated solids (vote_weight.c). */
 #include "base/memory.h"
+#include "base/rng.h"
 #include "base/scale.h"
 #include "dual/spacing.h"
 #include "order/canonical_points.h"
@@ -58,6 +60,12 @@ static const double SHEET = 3;
 /* Half the opening of the co-cones, for the first orientation: pi / 8 as in [Amenta Choi Dey Leekha 2000]. */
 static const double THETA = 0.39269908169872414;
 
+/* Where labels that are not the best yet have proved so often that the surface is open, the best ones would, too. Chosen. */
+static const double CLEAR = 2;
+
+/* Of at least MANY samples, one in FEW is asked first whether the surface is open. Chosen. */
+enum { MANY = 200000, FEW = 8 };
+
 typedef struct {
     brio_context *ctx;
     const brio_surface_options *options;
@@ -75,6 +83,7 @@ typedef struct {
     brio_sample_evidence evidence;
     float *own;            /* #P, or NULL: what evidence, or their sheet, tells of the samples, in BRIO_VOTE_UNIT */
     bool is_layered;       /* most samples have a second sheet close behind theirs */
+    double proof;          /* as brio_unseen has it: of the votes alone */
     bool is_open;          /* the surface proved to be open */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
@@ -119,21 +128,25 @@ done:
     return status;
 }
 
-static brio_status measure_spacing(reconstruction *r) {
+/* second  NULL, or as brio_sample_spacing writes it. */
+static brio_status measure_spacing(reconstruction *r, float *second) {
     if (!r->spacing) {
         brio_status status = BRIO_ALLOC(r->ctx, r->spacing, r->num_points);
         if (status != BRIO_OK) return status;
     }
-    return brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing);
+    return brio_sample_spacing(r->ctx, r->delaunay, r->points, r->num_points, r->spacing, second);
 }
 
-/* Takes the strays out of the samples, and triangulates the others again. */
+/* Measures the spacing. Takes the strays out of the samples, and triangulates the others again. */
 static brio_status drop_strays(reconstruction *r) {
     brio_status status = BRIO_OK;
     uint8_t *stray = NULL;
+    float *second = NULL;
     size_t kept = 0;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, second, r->num_points));
+    BRIO_TRY(measure_spacing(r, second));
     BRIO_TRY(BRIO_ALLOC(r->ctx, stray, r->num_points));
-    BRIO_TRY(brio_find_strays(r->ctx, r->delaunay, r->points, r->num_points, r->spacing, stray));
+    BRIO_TRY(brio_find_strays(r->ctx, r->delaunay, r->points, r->num_points, r->spacing, second, stray));
     for (size_t p = 0; p < r->num_points; p++) r->stats.strays += stray[p];
     if (!r->stats.strays) goto done;
     for (size_t p = 0; p < r->num_points; p++) {
@@ -145,9 +158,10 @@ static brio_status drop_strays(reconstruction *r) {
     brio_triangulation_free(r->delaunay);
     r->delaunay = NULL;
     BRIO_TRY(triangulate(r));
-    BRIO_TRY(measure_spacing(r));
+    BRIO_TRY(measure_spacing(r, NULL));
 done:
     brio_release(r->ctx, stray);
+    brio_release(r->ctx, second);
     return status;
 }
 
@@ -196,12 +210,14 @@ done:
 static brio_status orient(reconstruction *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
-    if (r->is_open) {
-        BRIO_TRY(orient_by_sheets(r));
-    } else {
+    if (!r->turned) {
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->turned, r->num_points));
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->alone, r->num_points));
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->outside, r->num_points));
+    }
+    if (r->is_open) {
+        BRIO_TRY(orient_by_sheets(r));
+    } else {
         BRIO_TRY(sign_sheets(r));
         BRIO_TRY(orient_by_evidence(r));
     }
@@ -239,21 +255,32 @@ done:
     return status;
 }
 
+/* Takes from the labels whether the axes of the samples point inwards. */
+static void take_signs(reconstruction *r) {
+    for (size_t p = 0; p < r->num_points; p++) r->turned[p] = r->label[r->dual.t.count + p] == BRIO_LABEL_INNER;
+}
+
+/* Finds the best labels of the tetrahedra for those of the samples, and of the samples for those of the tetrahedra. */
+static brio_status vote(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, r->dual.t.count + r->num_points));
+    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, r->own, &r->graph));
+    BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label));
+done:
+    return status;
+}
+
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
-    size_t num_tets = r->dual.t.count;
-    BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, num_tets + r->num_points));
-    BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, r->own, &r->graph));
-    BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label, &r->stats.undecided));
+    BRIO_TRY(brio_settle_labels(&r->graph, r->label, &r->stats.undecided));
     BRIO_TRY(brio_vote_energy(&r->graph, r->label, &r->stats.energy));
     lap(r, &r->stats.labels_seconds);
     if (r->own) BRIO_TRY(brio_drop_hull_patches(r->ctx, &r->dual, r->label));
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));
-    for (size_t p = 0; p < r->num_points; p++) {
-        r->turned[p] = r->label[num_tets + p] == BRIO_LABEL_INNER;
+    take_signs(r);
+    for (size_t p = 0; p < r->num_points; p++)
         for (size_t k = 0; k < 3 && r->turned[p]; k++) r->outside[p][k] = -r->outside[p][k];
-    }
     if (r->stats.evidence)
         r->stats.agreement = brio_evidence_agreement(r->own, r->turned, r->num_points, &r->stats.told);
     lap(r, &r->stats.manifold_seconds);
@@ -286,17 +313,26 @@ static brio_status list_faces(reconstruction *r, const brio_facets *boundary) {
     return BRIO_OK;
 }
 
+/* Makes the boundary of the labels a manifold, and lists its facets. */
+static brio_status find_boundary(reconstruction *r, brio_facets *boundary) {
+    brio_status status = BRIO_OK;
+    size_t changed = 0;
+    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = !r->own, .label = r->label};
+    BRIO_TRY(brio_make_manifold(r->ctx, &labels, boundary, &changed));
+    r->stats.relabeled += changed;
+    BRIO_TRY(drop_specks(r));
+    brio_release(r->ctx, boundary->facet);
+    *boundary = (brio_facets){0};
+    BRIO_TRY(brio_boundary_facets(r->ctx, &labels, boundary));
+    drop_infinite(r, boundary);
+done:
+    return status;
+}
+
 static brio_status extract(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_facets boundary = {0};
-    size_t changed = 0;
-    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = !r->own, .label = r->label};
-    BRIO_TRY(brio_make_manifold(r->ctx, &labels, &boundary, &changed));
-    r->stats.relabeled += changed;
-    BRIO_TRY(drop_specks(r));
-    brio_release(r->ctx, boundary.facet);
-    BRIO_TRY(brio_boundary_facets(r->ctx, &labels, &boundary));
-    drop_infinite(r, &boundary);
+    BRIO_TRY(find_boundary(r, &boundary));
     BRIO_REQUIRE(r->ctx, boundary.count > 0, BRIO_ERR_NO_ANSWER, "no inside found");
     BRIO_TRY(list_faces(r, &boundary));
     if (r->options->confidence) {
@@ -310,18 +346,23 @@ done:
     return status;
 }
 
-/* Finds what the samples do not show, and leaves holes open on request. */
-static brio_status open_surface(reconstruction *r) {
-    brio_status status = BRIO_OK;
+/* Leaves holes open, and finds what the samples do not show of the rest. */
+static brio_status cut_holes(reconstruction *r, brio_unseen *u) {
     const brio_surface_options *o = r->options;
-    size_t before = r->num_faces;
-    brio_unseen u;
     brio_sample_points samples = {r->ctx, r->points, r->num_points, r->own ? (const float(*)[3])r->outside : NULL};
     brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL,
                            .proven = r->is_open,
                            .layered = r->is_layered && !r->own};
     if (o->open > 0) rule = (brio_hole_rule){.choice = BRIO_HOLES_WIDER, .most = o->open};
-    BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &r->of_faces, &u));
+    return brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &r->of_faces, u);
+}
+
+/* Finds what the samples do not show, and leaves holes open on request. */
+static brio_status open_surface(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    size_t before = r->num_faces;
+    brio_unseen u;
+    BRIO_TRY(cut_holes(r, &u));
     r->stats.left_out = before - r->num_faces;
     r->stats.holes = u.holes;
     r->stats.bridges = u.bridges;
@@ -393,28 +434,75 @@ done:
     return status;
 }
 
+/* Forgets the surface and what is known of it. */
+static void forget_faces(reconstruction *r) {
+    brio_release(r->ctx, r->faces);
+    brio_release(r->ctx, r->of_faces.bridge);
+    brio_release(r->ctx, r->of_faces.size);
+    r->of_faces = (brio_triangle_facts){0};
+    r->faces = NULL;
+    r->num_faces = 0;
+}
+
 /* Forgets the labels, all that they were found by, and the surface. The triangulation stays. */
 static void forget_labels(reconstruction *r) {
     brio_vote_graph_free(&r->graph);
     brio_pole_vectors_free(r->ctx, &r->dual);
     brio_release(r->ctx, r->label);
-    brio_release(r->ctx, r->faces);
     brio_release(r->ctx, r->confidence);
-    brio_release(r->ctx, r->of_faces.bridge);
-    brio_release(r->ctx, r->of_faces.size);
     r->dual = (brio_pole_vectors){0};
-    r->of_faces = (brio_triangle_facts){0};
-    r->label = NULL, r->faces = NULL, r->confidence = NULL;
-    r->num_faces = r->stats.specks = r->stats.handles = 0;
+    r->label = NULL, r->confidence = NULL;
+    forget_faces(r);
+    r->stats.specks = r->stats.handles = 0;
 }
 
-/* Finds the surface that has both, labels and holes.   from, to  of the progress `bar`. */
-static brio_status find_faces(reconstruction *r, brio_bar bar, double from, double to) {
+/* Looks whether the votes leave no doubt that the surface is open. Works on a copy of the labels. */
+static brio_status look_ahead(reconstruction *r) {
+    brio_status status = BRIO_OK;
+    const brio_surface_stats before = r->stats;
+    const double begun = r->lap;
+    size_t size = r->dual.t.count + r->num_points, holes = 0, left_out = 0, num_faces;
+    uint8_t *label = r->label;
+    brio_facets boundary = {0};
+    brio_unseen u;
+    r->label = NULL;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, size));
+    memcpy(r->label, label, size);
+    BRIO_TRY(drop_specks(r));
+    take_signs(r);
+    BRIO_TRY(find_boundary(r, &boundary));
+    if (boundary.count == 0) goto done;
+    BRIO_TRY(list_faces(r, &boundary));
+    num_faces = r->num_faces;
+    BRIO_TRY(cut_holes(r, &u));
+    r->proof = u.proof;
+    r->is_open = u.holes > 0 && u.proof > CLEAR;
+    if (r->is_open) holes = u.holes, left_out = num_faces - r->num_faces;
+done:
+    brio_release(r->ctx, boundary.facet);
+    brio_release(r->ctx, r->label);
+    r->label = label;
+    forget_faces(r);
+    r->stats = before;
+    r->stats.holes = holes, r->stats.left_out = left_out;
+    r->lap = begun;
+    lap(r, &r->stats.labels_seconds);
+    return status;
+}
+
+/* Finds the surface that has both, labels and holes.
+ *  ahead     whether to end without one where the votes leave no doubt that it is open.
+ *  from, to  of the progress `bar`. */
+static brio_status find_faces(reconstruction *r, bool ahead, brio_bar bar, double from, double to) {
     brio_status status = BRIO_OK;
     double step = (to - from) / 4;
     brio_progress_part(r->ctx, bar, from, from + step);
     BRIO_TRY(orient(r));
-    brio_progress_part(r->ctx, bar, from + step, from + 3 * step);
+    brio_progress_part(r->ctx, bar, from + step, from + 2 * step);
+    BRIO_TRY(vote(r));
+    if (ahead && !r->own) BRIO_TRY(look_ahead(r));
+    if (ahead && r->is_open) goto done;
+    brio_progress_part(r->ctx, bar, from + 2 * step, from + 3 * step);
     BRIO_TRY(label(r));
     brio_progress_part(r->ctx, bar, from + 3 * step, to);
     BRIO_TRY(extract(r));
@@ -429,7 +517,7 @@ static brio_status find_sheets(reconstruction *r, brio_bar bar, double from, dou
     size_t holes = r->stats.holes, left_out = r->stats.left_out;
     r->is_open = true;
     forget_labels(r);
-    brio_status status = find_faces(r, bar, from, to);
+    brio_status status = find_faces(r, false, bar, from, to);
     if (holes > r->stats.holes) r->stats.holes = holes;
     if (left_out > r->stats.left_out) r->stats.left_out = left_out;
     return status;
@@ -462,25 +550,6 @@ done:
     return status;
 }
 
-static brio_status find_surface(reconstruction *r, const double *points) {
-    brio_status status = BRIO_OK;
-    const brio_bar bar = brio_progress_bar(r->ctx);
-    bool by_itself = r->options->holes == BRIO_HOLES_AUTO && r->options->open == 0;
-    BRIO_TRY(take_samples(r, points));
-    BRIO_TRY(treat_noise(r));
-    brio_progress_part(r->ctx, bar, 0, 0.4);
-    BRIO_TRY(triangulate(r));
-    BRIO_TRY(measure_spacing(r));
-    if (r->options->noise != BRIO_NOISE_KEEP) BRIO_TRY(drop_strays(r));
-    BRIO_TRY(find_faces(r, bar, 0.4, by_itself ? 0.7 : 0.95));
-    if (by_itself && r->stats.holes > 0 && !r->own) BRIO_TRY(find_sheets(r, bar, 0.7, 0.95));
-    brio_progress_part(r->ctx, bar, 0.95, 1);
-    if (r->stats.smoothed) BRIO_TRY(smooth(r));
-done:
-    brio_progress_part(r->ctx, bar, 0, 1);
-    return status;
-}
-
 static void release(reconstruction *r) {
     brio_vote_graph_free(&r->graph);
     brio_pole_vectors_free(r->ctx, &r->dual);
@@ -497,6 +566,71 @@ static void release(reconstruction *r) {
     brio_release(r->ctx, r->confidence);
     brio_release(r->ctx, r->of_faces.bridge);
     brio_release(r->ctx, r->of_faces.size);
+}
+
+/* Copies about one in FEW of the samples, chosen by their positions. */
+static brio_status take_few(const reconstruction *r, reconstruction *few) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(r->ctx, few->points, 3 * r->num_points));
+    for (size_t p = 0; p < r->num_points; p++) {
+        const double *from = r->points + 3 * p;
+        uint64_t hash = 0;
+        for (size_t k = 0; k < 3; k++) hash = brio_hash(hash, brio_double_key(from[k]));
+        if (hash % FEW != 0) continue;
+        memcpy(few->points + 3 * few->num_points++, from, 3 * sizeof *from);
+    }
+done:
+    return status;
+}
+
+/* Asks a few of the samples whether the surface is open: holes that they prove all of them would prove. Otherwise writes
+ * whether all are worth asking. */
+static brio_status ask_few(reconstruction *r, bool *maybe) {
+    brio_status status = BRIO_OK;
+    reconstruction few = {.ctx = r->ctx,
+                          .options = r->options,
+                          .exponent = r->exponent,
+                          .left = r->left / sqrt(FEW), /* in spacings */
+                          .is_layered = r->is_layered,
+                          .graph = {.ctx = r->ctx},
+                          .lap = r->lap};
+    *maybe = true;
+    if (r->num_points < MANY) goto done;
+    BRIO_TRY(take_few(r, &few));
+    BRIO_TRY(brio_delaunay(r->ctx, few.points, NULL, few.num_points, NULL, &few.delaunay));
+    if (brio_triangulation_stats(few.delaunay)->dimension < 3) goto done;
+    BRIO_TRY(measure_spacing(&few, NULL));
+    BRIO_TRY(orient(&few));
+    BRIO_TRY(vote(&few));
+    BRIO_TRY(look_ahead(&few));
+    r->is_open = few.is_open;
+    *maybe = few.proof > CLEAR / FEW;
+done:
+    release(&few);
+    lap(r, &r->stats.labels_seconds);
+    return status;
+}
+
+/* Finds the surface, and whether it is open. */
+static brio_status find_surface(reconstruction *r, const double *points) {
+    brio_status status = BRIO_OK;
+    const brio_bar bar = brio_progress_bar(r->ctx);
+    bool by_itself = r->options->holes == BRIO_HOLES_AUTO && r->options->open == 0;
+    bool evidence = r->evidence.given.normals || r->evidence.given.origins, maybe = true;
+    BRIO_TRY(take_samples(r, points));
+    BRIO_TRY(treat_noise(r));
+    brio_progress_part(r->ctx, bar, 0, 0.4);
+    BRIO_TRY(triangulate(r));
+    BRIO_TRY(r->options->noise == BRIO_NOISE_KEEP ? measure_spacing(r, NULL) : drop_strays(r));
+    brio_progress_part(r->ctx, bar, 0.4, 0.45);
+    if (by_itself && !evidence) BRIO_TRY(ask_few(r, &maybe));
+    if (!r->is_open) BRIO_TRY(find_faces(r, by_itself && maybe, bar, 0.45, by_itself ? 0.7 : 0.95));
+    if (by_itself && (r->is_open || r->stats.holes > 0) && !r->own) BRIO_TRY(find_sheets(r, bar, 0.7, 0.95));
+    brio_progress_part(r->ctx, bar, 0.95, 1);
+    if (r->stats.smoothed) BRIO_TRY(smooth(r));
+done:
+    brio_progress_part(r->ctx, bar, 0, 1);
+    return status;
 }
 
 /* Fills the mesh.   samples  #P: receives the sample of each vertex. */

@@ -67,23 +67,26 @@ static int32_t weigh(const signing *s, uint32_t p, uint32_t q, double distance) 
     return (int32_t)lrint(UNIT * brio_axis_log_odds(along, mirrored, distance, s->noise));
 }
 
-/* Returns the tetrahedron after `tet` round the edge p q, coming from `before`, or any of the two if that is none. */
-static uint32_t next_round_edge(const brio_tetrahedra *t, uint32_t tet, uint32_t p, uint32_t q, uint32_t before) {
+/* Writes the two neighbours of a tetrahedron round its edge p q. */
+static void neighbours_round_edge(const brio_tetrahedra *t, uint32_t tet, uint32_t p, uint32_t q, uint32_t beside[2]) {
     const brio_tetrahedron *x = &t->tet[tet];
-    uint32_t next = before;
-    for (int k = 0; k < 4; k++)
-        if (x->vertex[k] != p && x->vertex[k] != q && brio_tet_of(x->mate[k]) != before) next = brio_tet_of(x->mate[k]);
-    return next;
+    for (int k = 0, count = 0; k < 4; k++)
+        if (x->vertex[k] != p && x->vertex[k] != q) beside[count++] = brio_tet_of(x->mate[k]);
 }
 
-/* Returns whether a tetrahedron is the first one of all round an edge: each edge is tied once. */
+/* Returns whether a tetrahedron is the first one of all round an edge: each edge is tied once. Most are not, which their
+ * neighbours tell. */
 static bool is_first_round_edge(const brio_tetrahedra *t, uint32_t tet, uint32_t p, uint32_t q) {
-    uint32_t before = BRIO_INFINITE, now = tet;
-    do {
-        uint32_t next = next_round_edge(t, now, p, q, before);
+    uint32_t beside[2], before = tet;
+    neighbours_round_edge(t, tet, p, q, beside);
+    uint32_t now = beside[0], last = beside[1];
+    if (now < tet || last < tet) return false;
+    while (now != last) {
+        neighbours_round_edge(t, now, p, q, beside);
+        uint32_t next = beside[beside[0] == before];
+        if (next < tet) return false;
         before = now, now = next;
-        if (now < tet) return false;
-    } while (now != tet);
+    }
     return true;
 }
 

@@ -28,49 +28,44 @@ static const double GROWTH = 0.05, LONELY = 12, SUSPECT = 7, LIKELY = 4, MANY = 
 enum { SWEEPS = 8 };
 
 typedef struct {
-    double first, second; /* squared distances of the nearest two samples, from `nearest` and another one */
-    uint32_t nearest;
-} pair;
-
-typedef struct {
     const brio_tetrahedron *tet;
     size_t num_tets, num_points;
     const double *points;
-    pair *near;      /* #P */
+    const float *second;
     double *allowed; /* #P */
+    uint8_t *last;   /* #P: the last sweep in which `allowed` changed */
 } search;
-
-static void offer(pair *p, uint32_t q, double square) {
-    if (q == p->nearest) return;
-    if (square < p->first)
-        p->second = p->first, p->first = square, p->nearest = q;
-    else if (square < p->second)
-        p->second = square;
-}
 
 /* Limits the spacing at q by that at p. Returns whether that changed it. */
 static bool limit(const search *s, uint32_t p, uint32_t q, double square) {
-    double more = s->allowed[q] - s->allowed[p];
+    double more = s->allowed[q] - s->allowed[p], before = s->allowed[q];
     if (more <= 0 || more * more <= GROWTH * GROWTH * square) return false;
     s->allowed[q] = s->allowed[p] + GROWTH * sqrt(square);
-    return true;
+    return s->allowed[q] != before; /* by rounding, it may stay */
 }
 
-/* Passes over the edges of all tetrahedra, each edge as often as it has tetrahedra. Writes whether a limit changed. */
-static brio_status sweep(brio_context *ctx, const search *s, bool backwards, bool first, bool *changed) {
+/* Returns whether a limit of a tetrahedron's samples has changed since the sweep before passed the tetrahedron. */
+static bool has_changed(const search *s, const uint32_t *v, int sweep) {
+    bool changed = sweep == 0;
+    for (int k = 0; k < 4; k++) changed |= v[k] < s->num_points && s->last[v[k]] + 1 >= sweep;
+    return changed;
+}
+
+/* Passes over the edges of the tetrahedra at which something changed, at first of all, each edge as often as it has such
+ * tetrahedra. Writes whether a limit changed. */
+static brio_status pass_over(brio_context *ctx, const search *s, int sweep, bool *changed) {
     brio_status status = BRIO_OK;
     *changed = false;
     for (size_t n = 0; n < s->num_tets; n++) {
-        const uint32_t *v = s->tet[backwards ? s->num_tets - 1 - n : n].vertex;
-        BRIO_TRY(brio_look(ctx, 4));
+        const uint32_t *v = s->tet[sweep % 2 == 1 ? s->num_tets - 1 - n : n].vertex;
+        BRIO_TRY(brio_look(ctx, sweep == 0 ? 4 : 1));
+        if (!has_changed(s, v, sweep)) continue;
         for (int j = 1; j < 4; j++)
             for (int k = 0; k < j; k++) {
                 if (v[j] >= s->num_points || v[k] >= s->num_points) continue;
                 double square = brio_square_distance(s->points + 3 * (size_t)v[j], s->points + 3 * (size_t)v[k]);
-                *changed |= limit(s, v[j], v[k], square) | limit(s, v[k], v[j], square);
-                if (!first) continue;
-                offer(&s->near[v[j]], v[k], square);
-                offer(&s->near[v[k]], v[j], square);
+                if (limit(s, v[j], v[k], square)) s->last[v[k]] = (uint8_t)sweep, *changed = true;
+                if (limit(s, v[k], v[j], square)) s->last[v[j]] = (uint8_t)sweep, *changed = true;
             }
     }
 done:
@@ -81,31 +76,29 @@ done:
 static size_t mark(const search *s, double times, uint8_t *stray) {
     size_t count = 0;
     for (size_t p = 0; p < s->num_points; p++)
-        count += stray[p] = s->near[p].second < INFINITY && sqrt(s->near[p].second) > times * s->allowed[p];
+        count += stray[p] = s->second[p] < INFINITY && (double)s->second[p] > times * s->allowed[p];
     return count;
 }
 
 brio_status brio_find_strays(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_points,
-                             const double *spacing, uint8_t *stray) {
+                             const double *spacing, const float *second, uint8_t *stray) {
     brio_status status = BRIO_OK;
     search s = {.tet = brio_triangulation_tetrahedra(t),
                 .num_tets = brio_triangulation_stats(t)->tetrahedra,
                 .num_points = num_points,
-                .points = points};
+                .points = points,
+                .second = second};
     size_t vertices = brio_triangulation_stats(t)->vertices;
-    BRIO_TRY(BRIO_ALLOC(ctx, s.near, num_points));
     BRIO_TRY(BRIO_ALLOC(ctx, s.allowed, num_points));
-    for (size_t p = 0; p < num_points; p++) {
-        s.near[p] = (pair){INFINITY, INFINITY, UINT32_MAX};
-        s.allowed[p] = spacing[p];
-    }
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.last, num_points));
+    for (size_t p = 0; p < num_points; p++) s.allowed[p] = spacing[p];
     bool changed = true;
-    for (int n = 0; n < SWEEPS && changed; n++) BRIO_TRY(sweep(ctx, &s, n % 2 == 1, n == 0, &changed));
+    for (int sweep = 0; sweep < SWEEPS && changed; sweep++) BRIO_TRY(pass_over(ctx, &s, sweep, &changed));
     bool many = (double)mark(&s, SUSPECT, stray) > MANY * (double)vertices;
     size_t count = mark(&s, many ? LIKELY : LONELY, stray);
     if ((double)count > MOST * (double)vertices) mark(&s, INFINITY, stray);
 done:
-    brio_release(ctx, s.near);
     brio_release(ctx, s.allowed);
+    brio_release(ctx, s.last);
     return status;
 }

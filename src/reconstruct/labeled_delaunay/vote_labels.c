@@ -120,18 +120,26 @@ done:
     return status;
 }
 
-brio_status brio_vote_labels(const brio_vote_graph *g, const uint8_t *turned, uint8_t *label, size_t *undecided) {
-    brio_status status = BRIO_OK;
+static voting begin(const brio_vote_graph *g, uint8_t *label) {
     const brio_pole_vectors *dual = g->dual;
-    voting v = {.g = g,
-                .ctx = g->ctx,
-                .num_tets = dual->t.count,
-                .num_finite = dual->num_finite,
-                .num_samples = dual->num_points,
-                .label = label};
+    return (voting){.g = g,
+                    .ctx = g->ctx,
+                    .num_tets = dual->t.count,
+                    .num_finite = dual->num_finite,
+                    .num_samples = dual->num_points,
+                    .label = label};
+}
+
+brio_status brio_vote_labels(const brio_vote_graph *g, const uint8_t *turned, uint8_t *label) {
+    voting v = begin(g, label);
     for (size_t tet = 0; tet < v.num_tets; tet++) label[tet] = BRIO_LABEL_OUTER;
     for (size_t p = 0; p < v.num_samples; p++) label[v.num_tets + p] = turned[p] ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-    BRIO_TRY(take_turns(&v));
+    return take_turns(&v);
+}
+
+brio_status brio_settle_labels(const brio_vote_graph *g, uint8_t *label, size_t *undecided) {
+    brio_status status = BRIO_OK;
+    voting v = begin(g, label);
     BRIO_TRY(BRIO_ALLOC(v.ctx, v.fixed, v.num_tets + v.num_samples));
     memset(v.fixed, 1, v.num_tets + v.num_samples);
     BRIO_TRY(brio_for(v.ctx, brio_threads(v.ctx, v.num_samples, NODES_A_THREAD), v.num_samples, free_contested, &v));

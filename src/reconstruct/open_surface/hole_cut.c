@@ -198,21 +198,20 @@ done:
     return status;
 }
 
-/* Returns whether the holes prove that the surface is open. */
-static bool is_open(const cutting *c) {
+/* Returns how often the holes make up what proves that the surface is open: one of them, or all unlikely ones by their
+ * area. Holes behind whose rims samples go on prove nothing. */
+static double proof_of(const cutting *c) {
     const brio_hole_list *l = c->holes;
-    double all = 0, unlikely = 0;
-    bool open = false;
-    if (c->rule->choice != BRIO_HOLES_SEEN || c->rule->proven) return c->rule->proven;
-    if (c->rule->layered) return false;
+    double all = 0, unlikely = 0, proof = 0;
+    if (c->rule->layered) return 0;
     for (size_t f = 0; f < c->net->num_faces; f++) all += area_of(c->net, f);
     for (size_t i = 0; i < l->count; i++) {
         const brio_hole *h = &l->hole[i];
         if (!h->unlikely || h->beyond > BEYOND) continue;
         unlikely += h->area;
-        open |= h->ratio > PROOF && h->usual_area > PROOF_AREA;
+        proof = fmax(proof, fmin(h->ratio / PROOF, h->usual_area / PROOF_AREA));
     }
-    return open || unlikely > PROOF_SHARE * all;
+    return all > 0 ? fmax(proof, unlikely / (PROOF_SHARE * all)) : proof;
 }
 
 /* Finds how wide circles outside of unlikely holes are, against what is usual there: all but a hundredth are under it.
@@ -249,8 +248,10 @@ static brio_status decide(const cutting *c, const size_t *end) {
     double widest;
     for (size_t i = 0; i < l->count; i++)
         l->hole[i].unlikely = l->hole[i].ratio > SURE && l->hole[i].usual_area > SURE_AREA;
-    if (c->rule->choice == BRIO_HOLES_SEEN && !c->rule->proven) BRIO_TRY(look_beyond(c, end));
-    if (!is_open(c)) goto done;
+    if (c->rule->choice != BRIO_HOLES_SEEN) goto done;
+    if (!c->rule->proven) BRIO_TRY(look_beyond(c, end));
+    l->proof = proof_of(c);
+    if (!c->rule->proven && l->proof <= 1) goto done;
     BRIO_TRY(find_widest(c, end, &widest));
     for (size_t i = 0; i < l->count; i++) l->hole[i].open |= stays_open(&l->hole[i], widest);
 done:

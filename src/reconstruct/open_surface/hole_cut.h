@@ -27,6 +27,7 @@ typedef struct {
     brio_context *ctx;
     brio_hole *hole;
     size_t count, capacity;
+    double proof; /* SEEN: how often the holes make up what proves that a surface is open */
 } brio_hole_list;
 
 /** The rule by which holes stay open. FILL: none does. SEEN: those too wide for the samples round them. WIDER: those with

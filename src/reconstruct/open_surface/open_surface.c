@@ -82,7 +82,7 @@ static void report_unseen(const brio_triangle_net *n, const double *radius, cons
                           const brio_hole_list *holes, brio_unseen *out) {
     double all = 0, bridges = 0, distant = 0;
     const brio_hole *largest = NULL;
-    *out = (brio_unseen){0};
+    *out = (brio_unseen){.proof = holes->proof};
     for (size_t i = 0; i < holes->count; i++) {
         const brio_hole *h = &holes->hole[i];
         if (h->open)

@@ -15,6 +15,7 @@ typedef struct {
 /** What of a surface the samples do not show. */
 typedef struct {
     size_t holes;             /* left open */
+    double proof;             /* how often the holes make up what proves that the surface is open */
     size_t bridges;           /* filled, though samples of a surface would hardly leave such gaps */
     double bridge_share;      /* of the area: that of the bridges */
     double largest_radius;    /* of the widest circle of the bridge of the largest area; 0 if there is none */

@@ -121,7 +121,7 @@ static brio_status measure_spacing(brio_labeled_poles *l, const brio_triangulati
     double *of_sample = NULL;
     BRIO_TRY(BRIO_ALLOC(l->ctx, of_sample, l->num_samples));
     BRIO_TRY(BRIO_ALLOC(l->ctx, l->spacing, l->poles.count));
-    BRIO_TRY(brio_sample_spacing(l->ctx, delaunay, l->points, l->num_samples, of_sample));
+    BRIO_TRY(brio_sample_spacing(l->ctx, delaunay, l->points, l->num_samples, of_sample, NULL));
     brio_pole_spacing(&l->poles, l->num_samples, of_sample, l->spacing);
 done:
     brio_release(l->ctx, of_sample);
