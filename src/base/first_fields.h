@@ -13,9 +13,9 @@
 #define BRIO_FIRST_brio_convex_hull_options   samples
 #define BRIO_FIRST_brio_convex_hull_stats     mesh_seconds
 #define BRIO_FIRST_brio_coverage              left_out
-#define BRIO_FIRST_brio_curve_certificate        length
-#define BRIO_FIRST_brio_curve_options            reserved_int
-#define BRIO_FIRST_brio_curve_stats              curve_seconds
+#define BRIO_FIRST_brio_curve_certificate     length
+#define BRIO_FIRST_brio_curve_options         reserved_int
+#define BRIO_FIRST_brio_curve_stats           curve_seconds
 #define BRIO_FIRST_brio_delaunay2_options     seed
 #define BRIO_FIRST_brio_delaunay_options      cache_bytes
 #define BRIO_FIRST_brio_distance              diagonal
@@ -35,7 +35,7 @@
 #define BRIO_FIRST_brio_read_notes            rounded_column
 #define BRIO_FIRST_brio_read_options          origins
 #define BRIO_FIRST_brio_restricted_stats      cut_seconds
-#define BRIO_FIRST_brio_spanning_tree_stats      tree_seconds
+#define BRIO_FIRST_brio_spanning_tree_stats   tree_seconds
 #define BRIO_FIRST_brio_surface_options       reserved_int
 #define BRIO_FIRST_brio_surface_stats         simplify_seconds
 #define BRIO_FIRST_brio_write_options         reserved_int

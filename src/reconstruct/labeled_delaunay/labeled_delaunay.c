@@ -128,7 +128,7 @@ done:
     return status;
 }
 
-/* second  NULL, or as brio_sample_spacing writes it. */
+/* Measures the spacings of the samples.   second  NULL, or as brio_sample_spacing writes it. */
 static brio_status measure_spacing(reconstruction *r, float *second) {
     if (!r->spacing) {
         brio_status status = BRIO_ALLOC(r->ctx, r->spacing, r->num_points);
@@ -165,7 +165,7 @@ done:
     return status;
 }
 
-/* Signs the axes so that neighbours agree. */
+/* Gives signs to the axes, so that neighbours agree. */
 static brio_status sign_sheets(reconstruction *r) {
     return brio_sign_sheets(r->ctx, &r->dual, r->spacing, r->left, r->turned, r->alone);
 }
