@@ -14,6 +14,8 @@ static inline brio_inserter *insertion_begin(brio_context *ctx, const double *po
     brio_store *store = NULL;
     brio_inserter *ins = NULL;
     o.order = BRIO_ORDER_INPUT;
+    if (!o.max_tetrahedra) o.max_tetrahedra = UINT32_C(1) << 30; /* brio_delaunay fills in the defaults, */
+    if (!o.seed) o.seed = 1;                                     /* which is left out here */
     EXPECT(brio_store_new(ctx, &(brio_input){points, weights, n}, &o, NULL, &store) == BRIO_OK);
     EXPECT(brio_start(store) == BRIO_OK && store->dimension > 0);
     EXPECT(brio_inserter_new(store, &ins) == BRIO_OK);

@@ -276,7 +276,7 @@ static void planes_of_points(void) {
     enum { POINTS = 300 };
     double p[3 * POINTS], turned[3 * POINTS];
     brio_context *ctx = new_context();
-    brio_plane_frame f = {0}, g = {.size = sizeof g};
+    brio_plane_frame f = {0}, g = {0};
     uniform_points(6, POINTS, p);
     for (int i = 0; i < POINTS; i++) p[3 * i + 2] = 0.5 * p[3 * i] + 2 + 0.01 * (p[3 * i + 2] - 0.5);
     for (int i = 0; i < POINTS; i++) memcpy(turned + 3 * i, p + 3 * (POINTS - 1 - i), 3 * sizeof *p);
@@ -297,7 +297,7 @@ static void planes_of_points(void) {
     EXPECT(brio_plane_fit(ctx, NULL, 0, &f) == BRIO_OK && f.dimension == -1);
     p[5] = INFINITY;
     EXPECT(brio_plane_fit(ctx, p, POINTS, &f) == BRIO_ERR_NOT_FINITE);
-    brio_plane_frame unset = {0};
+    brio_plane_frame unset = {.size = 4};
     EXPECT(brio_plane_fit(ctx, p, 1, &unset) == BRIO_ERR_ARGUMENT);
     brio_context_free(ctx);
 }
@@ -308,7 +308,6 @@ static void refusals(void) {
     fixture f = fixture_new(p, w, 100);
     EXPECT(interpolate(&f, BRIO_INTERPOLATION_NATURAL, p, 1, p, 1, &result) == BRIO_ERR_ARGUMENT);
     EXPECT(interpolate(&f, BRIO_INTERPOLATION_END, p, 1, p, 1, &result) == BRIO_ERR_ARGUMENT);
-    EXPECT(interpolate(&f, BRIO_INTERPOLATION_LINEAR, p, 0, p, 1, &result) == BRIO_ERR_ARGUMENT);
     EXPECT(interpolate(&f, BRIO_INTERPOLATION_LINEAR, NULL, 1, p, 1, &result) == BRIO_ERR_ARGUMENT);
     fixture_free(&f);
 }

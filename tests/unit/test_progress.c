@@ -207,7 +207,8 @@ static brio_status power_shape(void) {
 static brio_status cocone(bool tight, uint32_t pieces) {
     brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh = NULL;
-    o.method = tight, o.pieces = pieces ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
+    o.method = tight ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
+    o.pieces = pieces;
     brio_status status = make_cocone(ctx, scan->vertices, scan->num_vertices, &o, &mesh, NULL);
     brio_mesh_free(mesh);
     return status;
