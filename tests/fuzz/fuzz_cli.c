@@ -1,7 +1,7 @@
 /* The program's command lines: main itself, called with words that the input chooses from the tables of commands and options,
  * good and hostile values, and files that are right or spoilt. It ends with one of its exit codes, and never with that of a
  * fault. What it prints goes nowhere. */
-#include "commands.h"
+#include "cli/run/commands.h"
 #include "fuzz.h"
 #include <dirent.h>
 #include <sys/stat.h>

@@ -94,6 +94,7 @@
 #include "medial.h"        /* medial axes */
 #include "iso.h"           /* iso-surfaces of maps and atoms */
 #include "plane.h"         /* triangulations of the plane */
+#include "curve.h"         /* curves of points in a plane */
 #include "predicates.h"    /* exact signs */
 #include "estimate.h"      /* memory that a call will take */
 #include "testdata.h"      /* points and solids to try */

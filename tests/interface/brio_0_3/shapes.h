@@ -18,6 +18,11 @@ typedef struct brio_convex_hull_options {
     int polygons; /* 1: a facet is one polygon; 0: a facet is a fan of triangles from its first corner */
     int reserved_int;
     uint32_t *samples; /* room for #P indices: receives for each vertex of the mesh the index of its point */
+    brio_order order;  /* this and what follows came later. Insertion order, of which the hull does not depend */
+    int reserved_int2;
+    double round_ratio; /* as in brio_delaunay_options; 0: the order's own */
+    uint64_t seed;      /* every random choice follows from it */
+    size_t block_size;  /* most points in a block of an octree or a k-d tree; 0: 2,000 */
 } brio_convex_hull_options;
 
 typedef struct brio_convex_hull_stats {
@@ -29,6 +34,10 @@ typedef struct brio_convex_hull_stats {
     int dimension;     /* of the affine hull of the points: -1 (no points) to 3 */
     int reserved_int;
     double skip_seconds, hull_seconds, mesh_seconds;
+    uint64_t created, destroyed; /* these and what follows came later. Triangles on the way; 0 for dimensions below 3 */
+    uint64_t walk_steps;         /* from triangle to triangle, in search of one that a point is beyond */
+    uint64_t beyond_calls;       /* tests of a point against the plane of a triangle */
+    uint64_t exact_calls;        /* signs that floating-point arithmetic did not settle */
 } brio_convex_hull_stats;
 
 /** Computes the convex hull of a point set, exactly. Vertices are the strictly extreme points, in ascending order of their
