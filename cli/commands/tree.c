@@ -19,8 +19,8 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.plane = NO_PLANE};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_VTP,
-                                      BRIO_FORMAT_VTU, BRIO_FORMAT_VTK, BRIO_FORMAT_AUTO};
+static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU,
+                                      BRIO_FORMAT_VTK, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
 
 /* Bytes of an edge of the triangulation, which has about eight a point. */
 static const double EDGE_BYTES = 32, EDGES = 8;
@@ -98,7 +98,7 @@ const command cli_tree = {
         "is the same for every order of the points. Without -o it is reported and not written.",
     .examples = "brio tree points.ply -o tree.vtp\nedges for ParaView\n"
                 "brio tree lidar.las --plane xy -o tree.ply\nthe tree of the map, over the points in space\n",
-    .outputs = "ply obj vtp vtu vtk",
+    .outputs = "ply vtp vtu vtk glb",
     .output_optional = true,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,

@@ -45,7 +45,7 @@ static void report(run *r, const brio_curve_stats *s) {
     cli_fact_count(f, "gaps", s->gaps);
 }
 
-/* Edges of a Delaunay triangulation do not cross. */
+/* Reports the certificate. Edges of a Delaunay triangulation do not cross. */
 static brio_status certify(run *r, const brio_mesh *curve, const brio_curve_stats *s) {
     facts *f = &r->facts;
     brio_curve_certificate c = {0};
@@ -72,9 +72,9 @@ static brio_status require_edges(run *r) {
     brio_format format;
     if (!r->common.output) return BRIO_OK;
     FORWARD(cli_output_format(r, r->common.output, r->common.format, &format));
-    if (format != BRIO_FORMAT_OFF && format != BRIO_FORMAT_STL) return BRIO_OK;
+    if (brio_format_facts(format)->holds & BRIO_HOLDS_EDGES) return BRIO_OK;
     return cli_fail(r, BRIO_ERR_ARGUMENT,
-                    "%s cannot hold edges, and points in a plane make curves: .ply .obj .vtp .vtu .vtk .glb can",
+                    "%s cannot hold edges, and points in a plane make curves: .ply .vtp .vtu .vtk .glb can",
                     r->common.output);
 }
 

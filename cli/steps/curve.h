@@ -4,7 +4,7 @@
 
 #include "cli/run/run.h"
 
-/** Whether `brio surface` makes curves of these points without being asked: they may be in a plane, are on no line, and more
+/** Finds out whether `brio surface` makes curves of these points without being asked: they may be in a plane, are on no line, and more
  *  than three. A few points decide, so that it costs nothing where they are not; brio_curve then looks at all. */
 brio_status cli_may_be_flat(run *r, const brio_mesh *points, bool *flat);
 

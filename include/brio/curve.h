@@ -80,8 +80,7 @@ typedef struct brio_spanning_tree_stats {
 
 /** Computes the Euclidean minimum spanning tree of points: edges that join all positions, with the least sum of lengths. Lengths
  *  are compared exactly. Among edges of one length, those are taken first whose lexicographically lesser end, then whose greater
- *  end, comes first; where this leaves several trees, as in a square with its two diagonals' corners, the one of edges of the
- *  triangulation of brio_delaunay is taken. So the tree is the same for every order of the points.
+ *  end, comes first. Only edges of the triangulation of brio_delaunay count. So the tree is the same for every order of the points.
  *  points   #P by 3. Those of a plane have their coordinates there, with a third one that is the same for all.
  *  out      owned by the caller, NULL on error. Its vertices are the distinct positions in the order of the points, with the
  *           property "sample" (uint32, the index of the point). Its edges are sorted, the shortest first; of each, the

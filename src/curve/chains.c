@@ -16,7 +16,8 @@ static const double SHARP = 0.6981317007977318, CALM = 1.0 / 3, PARTING = 2.9670
 /* --- chains --- */
 
 /* Appends the chain that begins at row p, with the link that is given, if any. */
-static void append_chain(const brio_curve_work *w, uint32_t p, uint8_t *seen, brio_curve_chains *c, uint32_t *place) {
+static brio_status append_chain(const brio_curve_work *w, uint32_t p, uint8_t *seen, brio_curve_chains *c,
+                                uint32_t *place) {
     uint32_t from = p, at = w->link[p][0];
     c->begin[c->num_curves] = *place;
     c->row[(*place)++] = p;
@@ -24,10 +25,12 @@ static void append_chain(const brio_curve_work *w, uint32_t p, uint8_t *seen, br
     while (at != BRIO_NO_ROW && at != p) {
         c->row[(*place)++] = at;
         seen[at] = 1;
+        BRIO_FORWARD(brio_look(w->ctx, 1));
         uint32_t next = brio_curve_beyond(w, at, from);
         from = at, at = next;
     }
     c->closed[c->num_curves++] = at == p;
+    return BRIO_OK;
 }
 
 /* Returns the first end of the chain of p, or p if it is closed. */
@@ -59,7 +62,7 @@ static brio_status list_chains(const brio_curve_work *w, brio_curve_chains *c) {
     BRIO_TRY(BRIO_ALLOC_ZERO(w->ctx, c->corner, linked));
     for (uint32_t p = 0; p < w->num_rows; p++) {
         if (seen[p] || w->link[p][0] == BRIO_NO_ROW) continue;
-        append_chain(w, beginning_of(w, p), seen, c, &place);
+        BRIO_TRY(append_chain(w, beginning_of(w, p), seen, c, &place));
     }
     c->begin[c->num_curves] = place;
 done:
@@ -105,13 +108,15 @@ static size_t mark_corner(const walk *c, size_t i, const double t[4], uint8_t *c
     return fabs(sum) < PARTING ? 1 : 2;
 }
 
-static void find_corners(const walk *c, uint8_t *corner, size_t *num_corners) {
+static brio_status find_corners(const walk *c, uint8_t *corner, size_t *num_corners) {
     double t[4] = {0, turn_at(c, -1), turn_at(c, 0), turn_at(c, 1)};
     for (size_t i = 0; i < c->count; i++) {
         memmove(t, t + 1, 3 * sizeof *t);
         t[3] = turn_at(c, (ptrdiff_t)i + 2);
         *num_corners += mark_corner(c, i, t, corner);
+        BRIO_FORWARD(brio_look(c->w->ctx, 1));
     }
+    return BRIO_OK;
 }
 
 brio_status brio_curve_trace(const brio_curve_work *w, brio_curve_chains *out) {
@@ -120,7 +125,7 @@ brio_status brio_curve_trace(const brio_curve_work *w, brio_curve_chains *out) {
     BRIO_TRY(list_chains(w, out));
     for (size_t i = 0; i < out->num_curves; i++) {
         walk c = {w, out->row + out->begin[i], out->begin[i + 1] - out->begin[i], out->closed[i]};
-        find_corners(&c, out->corner + out->begin[i], &out->num_corners);
+        BRIO_TRY(find_corners(&c, out->corner + out->begin[i], &out->num_corners));
     }
 done:
     if (status != BRIO_OK) brio_curve_chains_free(w->ctx, out);

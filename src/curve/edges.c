@@ -37,6 +37,7 @@ static brio_status list_triangles(brio_curve_work *w, const brio_triangulation2 
     BRIO_FORWARD(BRIO_ALLOC(w->ctx, w->neighbour, total));
     BRIO_FORWARD(BRIO_ALLOC(w->ctx, w->apex, total));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(w->ctx, w->gap, total));
+    BRIO_FORWARD(brio_look(w->ctx, count));
     FOR_EDGES(f, i, {
         uint32_t slot = w->start[triangle[f].vertex[(i + 1) % 3] + 1]++;
         w->neighbour[slot] = triangle[f].vertex[(i + 2) % 3];

@@ -150,22 +150,26 @@ done:
 
 /* --- the tree --- */
 
-/* Writes the edges of the tree to the front of the list `chosen`, as vertices of the mesh; returns their number. */
-static size_t join_by_length(const tree *t, const uint32_t *vertex, uint32_t *parent, uint32_t *chosen) {
+/* Writes the edges of the tree to the front of the list `chosen`, as vertices of the mesh, and their number. */
+static brio_status join_by_length(const tree *t, const uint32_t *vertex, uint32_t *parent, uint32_t *chosen,
+                                  size_t *joined) {
     size_t count = 0;
     for (size_t i = 0; i < t->edges.count; i++) {
         const uint32_t *ends = t->edges.ends + 2 * (size_t)t->order[i];
+        BRIO_FORWARD(brio_look(t->ctx, 1));
         if (brio_find(parent, ends[0]) == brio_find(parent, ends[1])) continue;
         brio_unite(parent, ends[0], ends[1], true);
         chosen[2 * count] = vertex[ends[0]];
         chosen[2 * count++ + 1] = vertex[ends[1]];
     }
-    return count;
+    *joined = count;
+    return BRIO_OK;
 }
 
 static brio_status make_mesh(const tree *t, brio_mesh **out) {
     brio_status status = BRIO_OK;
     uint32_t *vertex = NULL, *parent = NULL, *chosen = NULL;
+    size_t count;
     BRIO_TRY(BRIO_ALLOC(t->ctx, vertex, t->num_points));
     BRIO_TRY(BRIO_ALLOC(t->ctx, parent, t->num_points));
     BRIO_TRY(BRIO_ALLOC(t->ctx, chosen, 2 * t->num_points));
@@ -174,7 +178,7 @@ static brio_status make_mesh(const tree *t, brio_mesh **out) {
         parent[i] = (uint32_t)i;
     }
     BRIO_TRY(brio_samples_mesh(t->ctx, t->points, t->num_points, vertex, out));
-    size_t count = join_by_length(t, vertex, parent, chosen);
+    BRIO_TRY(join_by_length(t, vertex, parent, chosen, &count));
     BRIO_TRY(brio_mesh_set_edges(*out, chosen, count));
 done:
     brio_release(t->ctx, vertex);

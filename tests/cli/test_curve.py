@@ -90,9 +90,10 @@ class Curves(CliTest):
                    "surface", ring, "-o", out, "--noise", "smooth")
         self.usage("--left-out is for", "surface", ring, "-o", out, "--curves", "--left-out", self.path("l.ply"))
         self.usage("exclude each other", "surface", ring, "-o", out, "--curves", "--method", "cocone")
-        self.usage("cannot hold edges", "surface", ring, "-o", self.path("o.stl"))
+        for name in ("o.stl", "o.off", "o.obj"):
+            self.usage("cannot hold edges", "surface", ring, "-o", self.path(name))
         self.assertIn("--curves", " ".join(self.facts("surface", ring, "-o", out, "--method", "cocone", code=3)["hints"]))
-        for name in ("o.obj", "o.vtp", "o.vtu", "o.vtk", "o.glb"):
+        for name in ("o.vtp", "o.vtu", "o.vtk", "o.glb"):
             self.expect(0, "surface", ring, "-o", self.path(name), "--quiet")
 
     def test_thin_is_flat(self):
