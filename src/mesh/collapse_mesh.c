@@ -274,7 +274,7 @@ static brio_status check_faces(brio_context *ctx, const brio_mesh *mesh) {
     return BRIO_OK;
 }
 
-/* --- quadrics --- */
+/* --- quadrics of the mesh --- */
 
 /* Sums the quadrics of the triangles round each vertex inside the surface. Those of the boundary do not collapse. */
 static void add_quadrics(void *user, size_t begin, size_t end, int thread) {

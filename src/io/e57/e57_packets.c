@@ -166,7 +166,7 @@ static void e57_fill(brio_e57_decoder *d) {
     while (d->done < d->count) put(d, numbers, d->count - d->done < BLOCK ? (size_t)(d->count - d->done) : BLOCK);
 }
 
-/* --- packets --- */
+/* --- the section --- */
 
 /* Reads the packets of an E57 file's section of points.
  *

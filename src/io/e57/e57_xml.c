@@ -107,7 +107,7 @@ static bool e57_field_read(brio_e57_field *field, const char *const *attributes,
     return false;
 }
 
-/* --- the tree --- */
+/* --- the parser --- */
 
 #ifdef BRIO_HAS_EXPAT
 

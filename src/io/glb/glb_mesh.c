@@ -298,7 +298,7 @@ done:
     return status;
 }
 
-/* --- vertices --- */
+/* --- the scene --- */
 
 /* Chosen. */
 enum { MOST_PROPERTIES = 256 };

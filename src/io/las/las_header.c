@@ -252,7 +252,7 @@ brio_status brio_las_records_give(brio_builder *b, const brio_las_header *h) {
     return brio_crs_describe(m);
 }
 
-/* --- the header --- */
+/* --- formats --- */
 
 enum { LEAST_HEADER = 227, HEADER_1_4 = 375, HEADER_1_5 = 393, MOST_MINOR = 5 };
 enum { STANDARD_TIME = 1, SYNTHETIC_RETURNS = 8, SHIFTED_TIME = 64 /* bits of the global encoding */ };

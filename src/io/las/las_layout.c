@@ -197,7 +197,7 @@ double brio_las_grid_moved(const brio_las_grid *grid, const brio_mesh *m) {
     return most;
 }
 
-/* --- fields --- */
+/* --- places of properties --- */
 
 enum { LATE = 4 /* place of the first format of version 1.4 in the list of formats */, MOST_EXTRAS = 340 };
 enum { UINT64 = 7, INT64 = 8, SINGLE = 9 /* types of extra bytes */ };

@@ -112,7 +112,7 @@ static void put_counts(const brio_las_facts *f, char *header, bool is_1_4) {
     for (int i = 0; i < BRIO_LAS_RETURNS; i++) brio_put_le64(header + 255 + 8 * i, f->returns[i + 1]);
 }
 
-/* --- records --- */
+/* --- records of variable length --- */
 
 static bool is_early(size_t size) {
     return size <= MOST_EARLY;

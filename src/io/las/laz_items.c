@@ -233,7 +233,7 @@ void brio_laz_infrared_next(brio_laz_infrared_models *m, brio_laz_coder *c, brio
 /* Encodes the items of records of formats 0 to 3, and times, colours and near infrared of all formats. Each function is
  * the counterpart of the one above that decodes. */
 
-/* --- points of formats 0 to 5 --- */
+/* --- points of formats 0 to 5, encoded --- */
 
 /* Encodes a byte with the models that its last value chooses. */
 static void put_byte(brio_laz_pen *pen, brio_laz_arena *arena, brio_laz_model *models, uint8_t *last, uint8_t byte) {
@@ -289,7 +289,7 @@ void brio_laz_point10_put(brio_laz_point10 *p, brio_laz_pen *pen, brio_laz_arena
     memcpy(last, row, sizeof p->last);
 }
 
-/* --- times --- */
+/* --- times, encoded --- */
 
 static bool is_near(uint64_t a, uint64_t b, int32_t *difference) {
     int64_t d = (int64_t)(a - b);
@@ -363,7 +363,7 @@ void brio_laz_time_put(brio_laz_time *t, brio_laz_pen *pen, brio_laz_arena *aren
     }
 }
 
-/* --- colours --- */
+/* --- colours, encoded --- */
 
 static int byte_of(uint16_t value, int half) {
     return value >> 8 * half & 255;

@@ -136,7 +136,7 @@ brio_status brio_vtk_deflate(brio_context *ctx, const void *bytes, size_t size, 
 
 #endif
 
-/* --- arrays --- */
+/* --- an array --- */
 
 /* MOST_DIGITS: characters of a number in a text. Both chosen. */
 enum { INPUT = 1 << 16, MOST_DIGITS = 100 };

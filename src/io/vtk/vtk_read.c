@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* --- cells --- */
+/* --- lists of cells --- */
 
 /* The cells of a VTU or VTP file as polygons, tetrahedra and edges.
  *
@@ -195,7 +195,7 @@ brio_status brio_vtk_add_cells(brio_builder *b, const brio_vtk_cells *cells, bri
     return BRIO_OK;
 }
 
-/* --- the file --- */
+/* --- the reader --- */
 
 /* Rows of points decoded at a time. Chosen. */
 enum { ROWS = 1 << 12 };

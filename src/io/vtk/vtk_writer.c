@@ -101,7 +101,7 @@ done:
     return status;
 }
 
-/* --- arrays --- */
+/* --- the writer --- */
 
 /* PART: bytes of w->part. PER_LINE: numbers of a line of text. SHARE: of the progress while arrays are compressed. All
  * chosen. */
