@@ -21,7 +21,8 @@
 #include "reconstruct/cocone/sample_orientation.h"
 #include <string.h>
 
-/* Of the samples. Half a sphere has 0.01, scans of one side 0.05, closed models with sharp edges 0.08, noisy ones 0.29. Chosen. */
+/* Of the samples. Half a sphere has 0.01, scans of one side 0.05, closed models with sharp edges 0.08, noisy ones 0.29.
+ * Chosen. */
 static const double MOST_BOUNDARY = 0.15;
 
 typedef struct {
@@ -63,8 +64,8 @@ done:
     return status;
 }
 
-/* Finds the boundary samples. With BRIO_BOUNDARIES_AUTO there are none where many would be: then the samples are too few, or too
- * noisy, all over, and their cells tell nothing of boundaries. */
+/* Finds the boundary samples. With BRIO_BOUNDARIES_AUTO there are none where many would be: then the samples are too few,
+ * or too noisy, all over, and their cells tell nothing of boundaries. */
 static brio_status find_boundary(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocone_surface *out = r->out;
