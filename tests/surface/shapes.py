@@ -214,8 +214,8 @@ def shapes():
         "pipe": Shape([Cylinder(1, 0, 4)], 2),
         "bowl": Shape([Band(1, 2 * np.pi / 3, np.pi)], 1),
         "half cylinder": Shape([Cylinder(1, 0, 3, np.pi)], 1),
-        "strip": Shape([Rectangle([0, 0, 0], [20, 0, 0], [0, 0.3, 0])], 1, points=600),  # three spacings wide
-        "plane patch": Shape([Rectangle([0, 0, 0], [1, 0, 0], [0, 1, 0])], 1),
+        "strip": Shape([Cylinder(10, 0, 0.3, 2)], 1, points=600),  # three spacings wide; of a plane, brio says that it is one
+        "patch": Shape([Cylinder(3, 0, 1, 1 / 3)], 1),
         "room": Shape(box(True), 0),
         "room without a wall": Shape(box(True, [(0, 0)]), 1),
         "crossing sheets": Shape([Rectangle([-1, -1, 0], [2, 0, 0], [0, 2, 0]),
@@ -283,7 +283,7 @@ def halves_of(shape, v, f, area, rng):
     for direction, angle in shape.holes:
         inner = np.cos(0.8 * angle)
         near = np.flatnonzero(middle @ direction > np.cos(min(np.pi, 2 * angle + 4 * shape.spacing)))
-        S = scattered(v, f[near], area[near], 2000, rng)[0] if len(near) else np.zeros((0, 3))
+        S = scattered(v, f[near], area[near], 40000, rng)[0] if len(near) else np.zeros((0, 3))
         share = (S @ direction > inner * np.linalg.norm(S, axis=1)).mean() if len(S) else 0
         covered = share * area[near].sum() / (2 * np.pi * (1 - inner))
         halves += 0.1 < covered < 0.9
@@ -376,7 +376,7 @@ def main():
                     name, sampling, n, f["area"], f["invented"], f["missing"], f["turned"], f["parts"], f["shards"], f["loops"],
                     f["of"], f["halves"], f["open"], report["noise"], right)
             except RuntimeError as e:
-                row, right = "%s\t%s\t%s" % (name, sampling, e), False
+                row, right = "%s\t%s\t%s" % (name, sampling, str(e).split("\n")[0]), False
             wrong += not right
             rows.append(row)
             print(row, flush=True)
