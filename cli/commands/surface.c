@@ -93,7 +93,7 @@ static const option options[] = {
     {"labeled-delaunay", 0, OPTION_NOTE, 0, NULL,
      "also from noisy points; open where they end (--closed: closed); the one that is right most often", 0},
     {"power-crust", 0, OPTION_NOTE, 0, NULL, "closed; sharp edges without points on them (--sharp)", 0},
-    {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; with --boundaries open where they end", 0},
+    {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; open where they end", 0},
     {"tight-cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; closed", 0},
     {"curves", 0, OPTION_NOTE, 0, NULL, "polylines, with corners and ends; the default of points in a plane", 0},
     {"curves", 0, OPTION_FLAG, FIELD(curves), NULL, "the same as --method curves", 0},
@@ -115,7 +115,7 @@ static const option options[] = {
     {"theta", 0, OPTION_NUMBER | OPTION_POSITIVE, FIELD(theta), "ANGLE",
      "half the opening of the co-cones, radians (default pi/8)", 0},
     {"boundaries", 0, OPTION_FLAG, FIELD(boundaries), NULL,
-     "find the points at boundaries and leave the surface open there", 0},
+     "leave the surface open at the points found at boundaries, also where these are over 15 % of all", 0},
     {"density", 0, OPTION_FLAG, FIELD(density), NULL,
      "estimate how densely the points sample the surface, also in properties of the vertices", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of cocone", 0},
@@ -181,6 +181,12 @@ static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surf
 
 /* --- the co-cones --- */
 
+/* Returns how brio_cocone treats boundaries. */
+static int ways_with_boundaries(const arguments *a) {
+    bool by_itself = a->method == COCONE && a->pieces <= 1 && a->extraction == BRIO_EXTRACTION_LABELS;
+    return a->boundaries ? 1 : by_itself ? BRIO_BOUNDARIES_AUTO : 0;
+}
+
 static void report_cocone(run *r, const brio_surface_stats *s) {
     const arguments *a = r->arguments;
     facts *f = &r->facts;
@@ -188,7 +194,7 @@ static void report_cocone(run *r, const brio_surface_stats *s) {
     cli_fact_count(f, "candidates", s->candidates);
     cli_fact_count(f, "pruned", s->pruned);
     cli_fact_text(f, "extraction", extractions[a->extraction].name);
-    if (a->boundaries) cli_fact_count(f, "boundary_samples", s->boundary_samples);
+    if (ways_with_boundaries(a)) cli_fact_count(f, "boundary_samples", s->boundary_samples);
     cli_fact_count(f, "relabeled", s->relabeled);
     if (a->pieces > 1) {
         cli_fact_count(f, "pieces", s->pieces);
@@ -223,7 +229,7 @@ static brio_status cocone(run *r, brio_mesh *points, brio_mesh **surface) {
     o.seed = r->common.seed;
     o.theta = a->theta;
     o.method = a->method == TIGHT_COCONE ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
-    o.boundaries = a->boundaries;
+    o.boundaries = ways_with_boundaries(a);
     o.pieces = a->pieces;
     o.density = a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
     o.extraction = (brio_extraction)a->extraction;
@@ -581,7 +587,7 @@ const command cli_surface = {
         "others a surface that ends where they end. "
         "Other points: brio help methods. The certificate in the report says what the surface is, whatever the method.",
     .examples = "brio surface scan.ply -o surface.ply\nthe usual way\n"
-                "brio surface part.xyz --method cocone --boundaries -o shell.ply\nan open surface\n"
+                "brio surface part.xyz --method cocone -o shell.ply\nan open surface\n"
                 "brio surface scan.ply --closed -o solid.stl\nwithout holes, as a printer needs it\n"
                 "brio surface scan.las --open 5 --keep-largest -o surface.ply\nleaves holes over 5 point spacings "
                 "open, drops crumbs\n",

@@ -16,8 +16,7 @@ const manual_entry cli_exit_codes[] = {
 
 const manual_entry cli_advice[] = {
     {"brio surface IN -o OUT", "points of a surface, noisy or not; open where they end; no normals needed. Start here"},
-    {"brio surface IN --method cocone --boundaries -o OUT",
-     "an open surface: a shell, a part of an object; clean points"},
+    {"brio surface IN --method cocone -o OUT", "an open surface: a shell, a part of an object; clean points"},
     {"brio surface IN --closed -o OUT", "a scan with holes, to be closed all over"},
     {"brio surface IN --noise smooth -o OUT", "noise that you see but the report does not (`smoothed`)"},
     {"brio surface IN --sharp -R 0.4 -o OUT", "machine parts whose sharp edges have no points on them"},

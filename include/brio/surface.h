@@ -159,6 +159,8 @@ typedef enum brio_extraction {
     BRIO_EXTRACTION_END
 } brio_extraction;
 
+enum { BRIO_BOUNDARIES_AUTO = 2 }; /* for brio_surface_options.boundaries */
+
 /** Options of brio_surface. A field of 0 is the default. One that is set and that the method does not have is
  *  BRIO_ERR_ARGUMENT; the methods that have it are named first. */
 struct brio_surface_options {
@@ -185,7 +187,8 @@ struct brio_surface_options {
     brio_pole_options poles; /* POWER_CRUST, OFFSET */
     double theta;            /* COCONE, TIGHT_COCONE: half the opening angle in radians, below pi/2; 0: pi/8 */
     /* COCONE, TIGHT_COCONE, 1: finds points at boundaries and where the sampling is too sparse by the shape of their
-     * Voronoi cells, and rejects triangles all of whose vertices are such points. */
+     * Voronoi cells, and rejects triangles all of whose vertices are such points. BRIO_BOUNDARIES_AUTO: likewise, unless
+     * over 15 % of the points are such, which tells nothing. */
     int boundaries;
     int density; /* COCONE, TIGHT_COCONE, 1: estimates the sampling density, and adds it as properties of the vertices */
     /* COCONE: N > 1 is the super co-cone. It triangulates the points in about N pieces, one after the other, and matches

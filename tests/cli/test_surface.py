@@ -436,9 +436,9 @@ class Cocone(CliTest):
         counts = "samples vertices faces".split()
         internals = {key: count for key in "unused candidates pruned relabeled".split()}
         sampling = {"r_median": number, "r_p95": number, "outside_guarantee": count, "outside_share": number}
-        for method in ("cocone", "tight-cocone"):
+        for method, more in (("cocone", {"boundary_samples": count}), ("tight-cocone", {})):
             facts = self.facts("surface", points, "-o", self.path("out.ply"), "--method", method)
-            self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, "method": str,
+            self.assert_schema(facts, {**COMMON_FACTS, **{key: count for key in counts}, **more, "method": str,
                                        "certificate": CERTIFICATE, "seconds": seconds, "sampling": sampling,
                                        "internals": internals})
             self.assertEqual((facts["method"], facts["vertices"], facts["faces"]), (method, 2000, 3996))
@@ -446,6 +446,8 @@ class Cocone(CliTest):
             self.assertEqual((c["closed"], c["manifold"], c["oriented"], c["genus"]), (True, True, True, 0))
         bounded = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--boundaries")
         self.assertLess(bounded["boundary_samples"], 100)
+        tight = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "tight-cocone", "--boundaries")
+        self.assertIn("boundary_samples", tight)
         pieces = self.facts("surface", points, "-o", self.path("out.ply"), "--method", "cocone", "--pieces", "4")
         self.assertEqual((pieces["faces"], pieces["internals"]["unmatched"]), (3996, 0))
         self.assertGreaterEqual(pieces["pieces"], 4)

@@ -2,16 +2,17 @@
  *
  * Where the walls of a thing are a spacing thick, the nearest points of a sample are on both of its sides, and they
  * scatter about a plane as noise does. But noise is most where the surface is, and between two sheets is nothing. Two
- * figures tell: how much of the variance of the heights two layers explain (of 24 points with Gaussian noise 0.68 +- 0.05,
- * with uniform noise 0.75, of two exact sheets 0.87 to 0.98), and how many heights are near 0 (of all: 0.23, 0.18, and
- * under 0.15 even where each sheet has a noise of 0.3 spacings and the other is one spacing away).
+ * figures tell: how much of the variance of the heights two layers explain (of 24 points with Gaussian noise 0.68 +-
+ * 0.05, with uniform noise 0.75, of two exact sheets 0.87 to 0.98), and how many heights are near 0 (of all: 0.23,
+ * 0.18, and under 0.15 even where each sheet has a noise of 0.3 spacings and the other is one spacing away).
  *
  * Based on: Fisher. On grouping for maximum homogeneity. JASA 1958 (the cut of sorted numbers in two). */
 #include "reconstruct/noise/two_layers.h"
 #include <math.h>
 #include <stdlib.h>
 
-/* LEAST_POINTS, of each layer; a layer has at least one of PARTS parts of the points. Chosen. CENTRAL: as the header says. */
+/* LEAST_POINTS, of each layer; a layer has at least one of PARTS parts of the points. Chosen. CENTRAL: as the header
+ * says. */
 enum { LEAST_POINTS = 2, PARTS = 5 };
 static const double CENTRAL = 0.3;
 

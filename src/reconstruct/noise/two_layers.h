@@ -13,8 +13,8 @@ typedef struct {
     double central; /* the share of the points whose height is under 0.3 times the spread */
 } brio_two_layers;
 
-/** Splits points in two layers by their heights, so that the middles of the layers explain as much of the variance as they
- *  can. A fifth of the points or more is in each.   n  the weights are overwritten.
+/** Splits points in two layers by their heights, so that the middles of the layers explain as much of the variance as
+ *  they can. A fifth of the points or more is in each.   n  the weights are overwritten.
  *  Returns false if the points are on a line. */
 bool brio_split_layers(brio_neighbourhood *n, brio_two_layers *out);
 

@@ -1,23 +1,23 @@
 /* Which triangles of a closed surface span what no sample shows.
  *
- * To keep a triangle costs its area, in squares of the usual radius, times what its own radius says: twice the logarithm
- * of how often it is BRIDGE times the usual radius, between -1 and 20. So triangles that samples carry gain, and wide ones
- * cost. A triangle that looks another way than its samples costs more: it is the back of a sheet, close behind it, or
- * a step between two sheets. A rim costs its length. The triangles that stay are those of least cost: one minimum cut, exact. It judges a hole
- * as a whole, with the short triangles at its rim, and leaves no shards of a lid. Rims along folds are free: where a
- * surface turns back on itself, a back that nobody saw comes apart from its front.
+ * To keep a triangle costs its area, in squares of the usual radius, times what its own radius says: twice the
+ * logarithm of how often it is BRIDGE times the usual radius, between -1 and 20. So triangles that samples carry gain,
+ * and wide ones cost. A triangle that looks another way than its samples costs more: it is the back of a sheet, close
+ * behind it, or a step between two sheets. A rim costs its length. The triangles that stay are those of least cost: one
+ * minimum cut, exact. It judges a hole as a whole, with the short triangles at its rim, and leaves no shards of a lid.
+ * Rims along folds are free: where a surface turns back on itself, a back that nobody saw comes apart from its front.
  *
- * Triangles that go and meet across edges make a hole. Random samples of a closed surface have gaps, too: the widest of a
- * million circles is about 6 times the lower quarter, and a few are wider where samples happen to lie close beside the
- * gap. So the holes have to prove that the surface is open: one by a circle and an area that chance does not make, or all
- * by their area together. If they do, gaps that are merely unlikely stay open, too; otherwise all are filled. Wrong labels
- * make wide triangles, too: a hole counts as proof only if it is very large or the samples end at its rim (hole_rim.c), and none
- * does where walls are so thin that labels cannot be trusted.
+ * Triangles that go and meet across edges make a hole. Random samples of a closed surface have gaps, too: the widest of
+ * a million circles is about 6 times the lower quarter, and a few are wider where samples happen to lie close beside
+ * the gap. So the holes have to prove that the surface is open: one by a circle and an area that chance does not make,
+ * or all by their area together. If they do, gaps that are merely unlikely stay open, too; otherwise all are filled.
+ * Wrong labels make wide triangles, too: a hole counts as proof only if it is very large or the samples end at its rim
+ * (hole_rim.c), and none does where walls are so thin that labels cannot be trusted.
  *
  * Based on: Boykov, Kolmogorov. An experimental comparison of min-cut/max-flow algorithms for energy minimization in
  *           vision. IEEE PAMI 2004 (the cut).
- *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.4 (holes left open where large balls
- *           bulge out of the surface). */
+ *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.4 (holes left open where large
+ *           balls bulge out of the surface). */
 #include "reconstruct/open_surface/hole_cut.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -33,26 +33,26 @@
 /* Chosen on scans of models that nothing else was measured on; flat between 2 and 3 (BRIDGE) and between 0 and 1 (RIM). */
 static const double BRIDGE = 2.5, RIM = 0.3, LEAST_COST = -1, MOST_COST = 20;
 
-/* A triangle costs AWAY times as much more as the mean cosine between its normal and what its samples take for the outside is
- * under FACING. Holes of over SIDEWAYS_AREA squares of the usual radius whose mean is under SIDEWAYS stay open, if the
- * surface is open. Chosen on scans of models that nothing else was measured on. */
+/* A triangle costs AWAY times as much more as the mean cosine between its normal and what its samples take for the
+ * outside is under FACING. Holes of over SIDEWAYS_AREA squares of the usual radius whose mean is under SIDEWAYS stay
+ * open, if the surface is open. Chosen on scans of models that nothing else was measured on. */
 static const double AWAY = 4, FACING = 0.4, SIDEWAYS = 0.5, SIDEWAYS_AREA = 5;
 
 /* The cosine between normals across an edge from which on the edge is a fold. Chosen. */
 static const double FOLD = -0.7;
 
-/* A circle SURE times the usual one, over SURE_AREA squares of the usual radius, is a hole, if the surface is open. It is if
- * one hole has a circle PROOF times the usual, over PROOF_AREA, or if all holes together have PROOF_SHARE of the area:
- * random samples of closed models reached 0.4 %. Chosen on these and on the scans. */
+/* A circle SURE times the usual one, over SURE_AREA squares of the usual radius, is a hole, if the surface is open. It
+ * is if one hole has a circle PROOF times the usual, over PROOF_AREA, or if all holes together have PROOF_SHARE of the
+ * area: random samples of closed models reached 0.4 %. Chosen on these and on the scans. */
 static const double SURE = 5, SURE_AREA = 50, PROOF = 8, PROOF_AREA = 100, PROOF_SHARE = 0.05;
 
-/* Holes under LARGE squares of the usual radius prove nothing where over BEYOND times as many samples are beyond the rim as
- * before it. Holes of scans show 0.02 to 0.15, those that wrong labels made 0.2 to 0.7. */
+/* Holes under LARGE squares of the usual radius prove nothing where over BEYOND times as many samples are beyond the
+ * rim as before it. Holes of scans show 0.02 to 0.15, those that wrong labels made 0.2 to 0.7. */
 static const double LARGE = 1000, BEYOND = 0.2;
 
-/* In an open surface, holes of under PROOF_AREA may be chance where samples are at random. They stay open only if their circle
- * is CHANCE times as wide as all but a hundredth of those outside of holes. Of random samples that is 6.5 times the usual
- * radius, as wide as their gaps were. Chosen. */
+/* In an open surface, holes of under PROOF_AREA may be chance where samples are at random. They stay open only if their
+ * circle is CHANCE times as wide as all but a hundredth of those outside of holes. Of random samples that is 6.5 times
+ * the usual radius, as wide as their gaps were. Chosen. */
 static const double CHANCE = 2.2, MOST = 0.99;
 
 /* A cost of 1 in the units of the flow. Chosen: fine enough for rims of a hundredth of the usual radius. */
@@ -175,13 +175,14 @@ static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *e
     return hole;
 }
 
-/* Returns whether the triangles of a hole look another way than the samples at its rim: it is a step between sheets, one
- * behind the other, and no gap in a sheet. */
+/* Returns whether the triangles of a hole look another way than the samples at its rim: it is a step between sheets,
+ * one behind the other, and no gap in a sheet. */
 static bool is_sideways(const brio_hole *h) {
     return h->facing < SIDEWAYS && h->usual_area > SIDEWAYS_AREA;
 }
 
-/* Measures what is beyond the rims of the holes that might prove that the surface is open.   end  of each hole in the queue. */
+/* Measures what is beyond the rims of the holes that might prove that the surface is open.   end  of each hole in the
+ * queue. */
 static brio_status look_beyond(const cutting *c, const size_t *end) {
     brio_status status = BRIO_OK;
     brio_hole_list *l = c->holes;

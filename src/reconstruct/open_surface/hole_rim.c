@@ -1,13 +1,13 @@
 /* Whether the samples end where a hole begins.
  *
  * Where a scan ends, its samples end: a sample at the rim has neighbours along the surface on one side of it alone.
- * Where labels are wrong, a surface goes astray, and what it spans has samples in front of it and behind, but is as wide as
- * a hole. There the sheet that the surface left goes on beyond the rim. So the neighbours of samples at the rim are counted,
- * as far as they are near the tangent plane of the triangles that stay: those in the direction of the hole, within 60
- * degrees, and those in the opposite direction.
+ * Where labels are wrong, a surface goes astray, and what it spans has samples in front of it and behind, but is as
+ * wide as a hole. There the sheet that the surface left goes on beyond the rim. So the neighbours of samples at the rim
+ * are counted, as far as they are near the tangent plane of the triangles that stay: those in the direction of the
+ * hole, within 60 degrees, and those in the opposite direction.
  *
- * Based on: Bendels, Schnabel, Klein. Detecting holes in point set surfaces. WSCG 2006 (a sample is at a boundary if a half of
- *           the disc round it is empty). */
+ * Based on: Bendels, Schnabel, Klein. Detecting holes in point set surfaces. WSCG 2006 (a sample is at a boundary if a
+ *           half of the disc round it is empty). */
 #include "reconstruct/open_surface/hole_rim.h"
 #include "base/memory.h"
 #include "base/sort.h"

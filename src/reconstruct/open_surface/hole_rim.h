@@ -19,8 +19,8 @@ typedef struct {
 brio_status brio_rim_view_new(const brio_triangle_net *n, const double *usual, brio_rim_view *out);
 void brio_rim_view_free(brio_rim_view *v);
 
-/** Counts the neighbours of the samples at the rim of a hole that are beyond the rim, along the surface, against those on
- *  the other side: 0 where the samples end, about 1 where they go on.
+/** Counts the neighbours of the samples at the rim of a hole that are beyond the rim, along the surface, against those
+ *  on the other side: 0 where the samples end, about 1 where they go on.
  *  hole     the triangles of the hole, `count` of them.
  *  in_hole  #F: whether a triangle belongs to a hole, this or another.
  *  beyond   receives the ratio.
