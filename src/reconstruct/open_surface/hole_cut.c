@@ -36,7 +36,7 @@ static const double BRIDGE = 2.5, RIM = 0.3, LEAST_COST = -1, MOST_COST = 20;
 /* A triangle costs AWAY times as much more as the mean cosine between its normal and what its samples take for the outside is
  * under FACING. Holes of over SIDEWAYS_AREA squares of the usual radius whose mean is under SIDEWAYS stay open, if the
  * surface is open. Chosen on scans of models that nothing else was measured on. */
-static const double AWAY = 4, FACING = 0.4, SIDEWAYS = 0.5, SIDEWAYS_AREA = 5;
+static const double AWAY = 4, FACING = 0.5, SIDEWAYS = 0.5, SIDEWAYS_AREA = 5;
 
 /* A triangle costs BLIND times as much more as the cosine under which its scanners see it is under GRAZING: no scanner
  * measures under less than 6 degrees, nor from behind. Chosen. */
