@@ -7,6 +7,7 @@
 #include "points.h"
 #include "reconstruct/labeled_delaunay/simple_flips.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
+#include "reconstruct/labeled_delaunay/vote_cut.h"
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include <math.h>
 #include <string.h>
@@ -23,7 +24,9 @@ typedef struct {
     uint8_t *label;
 } scene;
 
-static brio_status set_up(scene *s, brio_context *ctx, void (*make)(uint64_t, size_t, double *)) {
+/* own  #P, or NULL: as of brio_vote_graph_new. */
+static brio_status set_up_with(scene *s, brio_context *ctx, void (*make)(uint64_t, size_t, double *),
+                               const float *own) {
     brio_status status = BRIO_OK;
     s->ctx = ctx;
     s->graph.ctx = ctx;
@@ -31,10 +34,14 @@ static brio_status set_up(scene *s, brio_context *ctx, void (*make)(uint64_t, si
     BRIO_TRY(brio_delaunay(ctx, s->points, NULL, SAMPLES, NULL, &s->delaunay));
     BRIO_TRY(brio_sample_spacing(ctx, s->delaunay, s->points, SAMPLES, s->spacing, NULL));
     BRIO_TRY(brio_pole_vectors_find(ctx, s->delaunay, s->points, SAMPLES, 0.39, &s->dual));
-    BRIO_TRY(brio_vote_graph_new(ctx, &s->dual, s->spacing, 0, NULL, &s->graph));
+    BRIO_TRY(brio_vote_graph_new(ctx, &s->dual, s->spacing, 0, own, &s->graph));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->label, s->dual.t.count + SAMPLES));
 done:
     return status;
+}
+
+static brio_status set_up(scene *s, brio_context *ctx, void (*make)(uint64_t, size_t, double *)) {
+    return set_up_with(s, ctx, make, NULL);
 }
 
 static void tear_down(scene *s) {
@@ -441,7 +448,44 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(flip_and_mend);
 }
 
+/* --- beyond the hull --- */
+
+static double whole_energy(const scene *s) {
+    double energy = NAN;
+    EXPECT(brio_vote_energy(&s->graph, s->label, &energy) == BRIO_OK);
+    return energy;
+}
+
+static void turn_over(scene *s) {
+    for (size_t i = 0; i < s->dual.t.count + SAMPLES; i++) s->label[i] = (uint8_t)brio_other_label(s->label[i]);
+}
+
+/* Samples without evidence cannot tell labels from the opposite ones. What decides is the hull. */
+static void the_hull_is_outside_where_no_sample_tells(void) {
+    static const float own[SAMPLES] = {0};
+    scene *s = calloc(1, sizeof *s);
+    brio_vote_cut cut;
+    size_t hull, inner = 0;
+    double energy;
+    EXPECT(set_up_with(s, new_context(), sphere_points, own) == BRIO_OK);
+    hull = s->dual.t.count - s->dual.num_finite;
+    for (size_t i = 0; i < s->dual.t.count + SAMPLES; i++)
+        s->label[i] = i < s->dual.num_finite ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+    energy = whole_energy(s);
+    turn_over(s);
+    EXPECT(fabs(whole_energy(s) - energy - (double)hull * BRIO_HULL_VOTE * BRIO_VOTE_UNIT) < 1e-6 * energy);
+    for (size_t t = 0; t < s->dual.t.count; t++)
+        for (int k = 0; k < 4; k++) s->graph.vote[t][k] = s->graph.facet[t][k] = 0;
+    EXPECT(brio_vote_cut_new(&s->graph, NULL, &cut) == BRIO_OK);
+    EXPECT(brio_vote_cut_find(&cut, -BRIO_HULL_VOTE / 2, s->label, s->label) == BRIO_OK);
+    for (size_t t = s->dual.num_finite; t < s->dual.t.count; t++) inner += s->label[t] == BRIO_LABEL_INNER;
+    EXPECT(hull > 100 && inner == 0, "%zu of %zu", inner, hull);
+    brio_vote_cut_free(&cut);
+    free_scene(s);
+}
+
 SUITE(test_label_flips) {
+    RUN(the_hull_is_outside_where_no_sample_tells);
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
     RUN(small_regions_are_those_of_a_walk);

@@ -56,20 +56,22 @@ static int class_of(float cosine) {
     return class < CLASSES ? class : CLASSES - 1;
 }
 
-/* Writes the direction that the evidence of a sample gives; zero where there is none. */
-static void direction(const weighing *w, size_t p, double to[3]) {
-    const brio_sample_evidence *e = w->e;
+/* Writes the direction from a sample at x to its scanner; zero where its place is not known. */
+static void towards_scanner(const brio_sample_evidence *e, size_t p, const double x[3], double to[3]) {
     const brio_evidence *given = &e->given;
     size_t point = e->order[p];
-    const double *x = w->c->dual->points + 3 * p;
-    to[0] = to[1] = to[2] = 0;
-    if (w->kind == BRIO_EVIDENCE_NORMALS) {
-        for (size_t k = 0; k < 3; k++) to[k] = given->normals[3 * point + k];
-        return;
-    }
     size_t at = given->origin_of ? given->origin_of[point] : given->num_origins == 1 ? 0 : point;
+    to[0] = to[1] = to[2] = 0;
     for (size_t k = 0; k < 3 && at < given->num_origins; k++)
         to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
+}
+
+/* Writes the direction that the evidence of a sample gives; zero where there is none. */
+static void direction(const weighing *w, size_t p, double to[3]) {
+    if (w->kind == BRIO_EVIDENCE_NORMALS)
+        for (size_t k = 0; k < 3; k++) to[k] = w->e->given.normals[3 * (size_t)w->e->order[p] + k];
+    else
+        towards_scanner(w->e, p, w->c->dual->points + 3 * p, to);
 }
 
 static void find_cosines(void *user, size_t begin, size_t end, int thread) {
@@ -187,6 +189,32 @@ brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidenc
         if ((*own)[p] != 0) turned[p] = (*own)[p] < 0;
 done:
     return status;
+}
+
+typedef struct {
+    const brio_sample_evidence *e;
+    const double *points;
+    float (*out)[3];
+} looking;
+
+static void find_directions(void *user, size_t begin, size_t end, int thread) {
+    const looking *l = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
+        double to[3], length;
+        towards_scanner(l->e, p, l->points + 3 * p, to);
+        length = hypot(hypot(to[0], to[1]), to[2]);
+        for (int k = 0; k < 3; k++) l->out[p][k] = length > 0 && length < INFINITY ? (float)(to[k] / length) : 0;
+    }
+}
+
+brio_status brio_scanner_directions(brio_context *ctx, const brio_sample_evidence *e, const double *points,
+                                    size_t num_points, float (**out)[3]) {
+    looking l = {e, points, NULL};
+    brio_status status = BRIO_ALLOC(ctx, *out, num_points);
+    l.out = *out;
+    if (status != BRIO_OK) return status;
+    return brio_for(ctx, brio_threads(ctx, num_points, SAMPLES_A_THREAD), num_points, find_directions, &l);
 }
 
 double brio_evidence_agreement(const float *own, const uint8_t *turned, size_t num_points, size_t *told) {

@@ -31,6 +31,13 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e
 brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c,
                                     uint8_t *turned, float **own, unsigned *used);
 
+/** Finds the directions from the samples to their scanners.
+ *  points  #P by 3: the samples.
+ *  out     #P, owned by the caller (brio_release): unit vectors, zero where no place is known.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
+brio_status brio_scanner_directions(brio_context *ctx, const brio_sample_evidence *e, const double *points,
+                                    size_t num_points, float (**out)[3]);
+
 /** Returns the share of the samples with evidence whose axes have the signs that it tells.   told  receives their number. */
 double brio_evidence_agreement(const float *own, const uint8_t *turned, size_t num_points, size_t *told);
 

@@ -348,13 +348,21 @@ done:
 
 /* Leaves holes open, and finds what the samples do not show of the rest. */
 static brio_status cut_holes(reconstruction *r, brio_unseen *u) {
+    brio_status status = BRIO_OK;
     const brio_surface_options *o = r->options;
-    brio_sample_points samples = {r->ctx, r->points, r->num_points, r->own ? (const float(*)[3])r->outside : NULL};
+    float(*scanner)[3] = NULL;
+    if (r->stats.evidence & BRIO_EVIDENCE_ORIGINS)
+        BRIO_TRY(brio_scanner_directions(r->ctx, &r->evidence, r->points, r->num_points, &scanner));
+    brio_sample_points samples = {r->ctx, r->points, r->num_points, r->own ? (const float(*)[3])r->outside : NULL,
+                                  (const float(*)[3])scanner};
     brio_hole_rule rule = {.choice = o->holes == BRIO_HOLES_AUTO ? BRIO_HOLES_SEEN : BRIO_HOLES_FILL,
                            .proven = r->is_open,
                            .layered = r->is_layered && !r->own};
     if (o->open > 0) rule = (brio_hole_rule){.choice = BRIO_HOLES_WIDER, .most = o->open};
-    return brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &r->of_faces, u);
+    BRIO_TRY(brio_open_surface(&samples, &rule, r->faces, &r->num_faces, &r->of_faces, u));
+done:
+    brio_release(r->ctx, scanner);
+    return status;
 }
 
 /* Finds what the samples do not show, and leaves holes open on request. */

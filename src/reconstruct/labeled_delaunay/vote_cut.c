@@ -85,7 +85,7 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
     for (size_t i = begin; i < end; i++) {
         uint32_t v = tet_at(t->c, i);
         const brio_tetrahedron *tet = &g->dual->t.tet[v];
-        int32_t outer = t->bias;
+        int32_t outer = t->bias + whole(brio_hull_vote(g, v));
         for (int k = 0; k < 4; k++) {
             uint32_t other = brio_tet_of(tet->mate[k]);
             int32_t vote = whole(g->vote[v][k]);

@@ -229,7 +229,7 @@ void brio_vote_graph_free(brio_vote_graph *g) {
 /* Sums |weight| over the violated edges of a tetrahedron, those across a facet only to tetrahedra of higher number. */
 static double violated_at(const brio_vote_graph *g, const uint8_t *label, uint32_t tet) {
     const brio_tetrahedron *t = &g->dual->t.tet[tet];
-    double sum = 0;
+    double sum = label[tet] == BRIO_LABEL_INNER ? (double)brio_hull_vote(g, tet) : 0;
     for (int i = 0; i < 4; i++) {
         uint32_t other = brio_tet_of(t->mate[i]);
         float vote = g->vote[tet][i];

@@ -9,6 +9,9 @@
 /** The weight of an edge of one log-odds: so no weight is over 1. */
 #define BRIO_VOTE_UNIT (1 / 21.0)
 
+/** In log-odds. Chosen: the least that decides between votes that cancel; six times as much changes nothing more. */
+#define BRIO_HULL_VOTE 1.0
+
 /** Labels are those of the nodes: node t < #T is tetrahedron t. Node #T + p is sample p: its label is that of the side to
  *  which its axis points. */
 typedef struct {
@@ -26,6 +29,13 @@ typedef struct {
 /** Returns what evidence wants for a sample: the weight for outer, negative for inner, or 0. */
 static inline float brio_own_vote(const brio_vote_graph *g, size_t sample) {
     return g->own ? g->own[sample] : 0;
+}
+
+/** Returns what speaks for outer before any sample votes: BRIO_HULL_VOTE for tetrahedra beyond the hull, 0 for others. Where
+ *  no sample tells, what is beyond the hull is outside: flat tetrahedra within a side of the hull tell next to nothing, and
+ *  those beyond it would else take the label of what is behind the side. */
+static inline float brio_hull_vote(const brio_vote_graph *g, size_t tet) {
+    return tet < g->dual->num_finite ? 0 : (float)(BRIO_HULL_VOTE * BRIO_VOTE_UNIT);
 }
 
 /** Builds the graph. A tetrahedron and a sample of it share an edge: its weight is the log-odds that the tetrahedron is

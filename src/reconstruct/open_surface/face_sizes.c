@@ -9,7 +9,11 @@
  *      strays, take the size of the surface that they hang on.
  *   3. Along an edge a size grows by at most GROWTH times its length: the far end of a membrane, where no surface is, is not
  *      excused by sizes that only the membrane has.
- *   4. A triangle's usual radius is the middle of the sizes of its three samples.
+ *   4. A triangle's usual radius is the middle of the sizes of its three samples. Where a dense scan of one side meets a coarse
+ *      scan of the next, two of the three are often dense, and are on the other side. They tell nothing of this one. So if
+ *      a triangle lies along the sheets of only one or two of its samples, the coarsest of these counts. If it lies along
+ *      all three, so may a gap in the sheet; the coarsest counts only if the places of scanners are known, which tell from
+ *      behind (hole_cut.c).
  *
  * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure the
  *           sampling). */
@@ -24,6 +28,10 @@
 
 /* Chosen on scans of models that nothing else was measured on. */
 static const double LOWER = 0.25, AMONG_NEIGHBOURS = 0.7, GROWTH = 0.35;
+
+/* A triangle lies along the sheet of a sample if the cosine between its normal and what the sample takes for the outside is
+ * over TANGENT. Chosen on scans of models that nothing else was measured on. */
+static const double TANGENT = 0.7;
 
 /* Chosen. SWEEPS: limits travel along most edges in two. */
 enum { SWEEPS = 16, ITEMS_A_THREAD = 1 << 12 };
@@ -117,12 +125,23 @@ static double middle_of(double a, double b, double c) {
     return fmax(fmin(a, b), fmin(fmax(a, b), c));
 }
 
+/* Returns what is usual for a triangle. */
+static double usual_of(const sizing *s, size_t f) {
+    const brio_triangle_net *n = s->net;
+    const uint32_t *v = n->faces + 3 * f;
+    double normal[3], coarsest = 0, usual = middle_of(s->size[v[0]], s->size[v[1]], s->size[v[2]]);
+    int along = 0;
+    if (!n->outside) return usual;
+    brio_net_normal(n, f, normal);
+    for (size_t i = 0; i < 3; i++)
+        if (brio_net_facing_at(n, normal, 3 * f + i) > TANGENT) along++, coarsest = fmax(coarsest, s->size[v[i]]);
+    return along < 3 || n->scanner ? fmax(usual, coarsest) : usual;
+}
+
 static void measure_usual(void *user, size_t begin, size_t end, int thread) {
     const sizing *s = user;
-    const uint32_t *v = s->net->faces;
     (void)thread;
-    for (size_t f = begin; f < end; f++)
-        s->usual[f] = middle_of(s->size[v[3 * f]], s->size[v[3 * f + 1]], s->size[v[3 * f + 2]]);
+    for (size_t f = begin; f < end; f++) s->usual[f] = usual_of(s, f);
 }
 
 brio_status brio_face_sizes(const brio_triangle_net *n, double *radius, double *usual) {

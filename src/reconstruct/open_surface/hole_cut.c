@@ -36,7 +36,11 @@ static const double BRIDGE = 2.5, RIM = 0.3, LEAST_COST = -1, MOST_COST = 20;
 /* A triangle costs AWAY times as much more as the mean cosine between its normal and what its samples take for the
  * outside is under FACING. Holes of over SIDEWAYS_AREA squares of the usual radius whose mean is under SIDEWAYS stay
  * open, if the surface is open. Chosen on scans of models that nothing else was measured on. */
-static const double AWAY = 4, FACING = 0.4, SIDEWAYS = 0.5, SIDEWAYS_AREA = 5;
+static const double AWAY = 4, FACING = 0.5, SIDEWAYS = 0.5, SIDEWAYS_AREA = 5;
+
+/* A triangle costs BLIND times as much more as the cosine under which its scanners see it is under GRAZING: no scanner
+ * measures under less than 6 degrees, nor from behind. Chosen. */
+static const double BLIND = 10, GRAZING = 0.1;
 
 /* The cosine between normals across an edge from which on the edge is a fold. Chosen. */
 static const double FOLD = -0.7;
@@ -87,7 +91,8 @@ static double cost_of(const cutting *c, size_t f) {
     const brio_triangle_net *n = c->net;
     double area = area_of(n, f);
     double evidence = fmax(LEAST_COST, 2 * log(c->radius[f] / bridge_of(c, f)));
-    if (c->rule->choice == BRIO_HOLES_SEEN) evidence += AWAY * fmax(0, FACING - brio_net_facing(n, f));
+    if (c->rule->choice == BRIO_HOLES_SEEN)
+        evidence += AWAY * fmax(0, FACING - brio_net_facing(n, f)) + BLIND * fmax(0, GRAZING - brio_net_viewing(n, f));
     return fmin(evidence, MOST_COST) * (area / c->usual[f] / c->usual[f]);
 }
 
@@ -161,6 +166,7 @@ static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *e
         if (ratio > hole.ratio) hole.ratio = ratio, hole.widest = g;
         hole.area += area;
         hole.facing += area * brio_net_facing(c->net, g);
+        hole.viewing += area * brio_net_viewing(c->net, g);
         hole.usual_area += area / c->usual[g] / c->usual[g];
         hole.open |= c->rule->choice == BRIO_HOLES_WIDER && c->radius[g] > c->rule->most;
         for (uint32_t k = 0; k < 3; k++) {
@@ -172,13 +178,14 @@ static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *e
         }
     }
     hole.facing = hole.area > 0 ? hole.facing / hole.area : 1;
+    hole.viewing = hole.area > 0 ? hole.viewing / hole.area : 1;
     return hole;
 }
 
 /* Returns whether the triangles of a hole look another way than the samples at its rim: it is a step between sheets,
  * one behind the other, and no gap in a sheet. */
 static bool is_sideways(const brio_hole *h) {
-    return h->facing < SIDEWAYS && h->usual_area > SIDEWAYS_AREA;
+    return (h->facing < SIDEWAYS || h->viewing < 0) && h->usual_area > SIDEWAYS_AREA;
 }
 
 /* Measures what is beyond the rims of the holes that might prove that the surface is open.   end  of each hole in the

@@ -17,9 +17,10 @@ typedef struct {
     double ratio;      /* the radius of that circle by the usual one */
     double usual_area; /* in squares of the usual radius */
     double area;
-    double facing; /* the mean of brio_net_facing over the area */
-    double beyond; /* as brio_rim_beyond finds it; 0 of holes that need not show it */
-    bool unlikely; /* samples of a surface would hardly leave such a gap */
+    double facing;  /* the mean of brio_net_facing over the area */
+    double viewing; /* the mean of brio_net_viewing over the area */
+    double beyond;  /* as brio_rim_beyond finds it; 0 of holes that need not show it */
+    bool unlikely;  /* samples of a surface would hardly leave such a gap */
     bool open;
 } brio_hole;
 

@@ -136,6 +136,7 @@ brio_status brio_open_surface(const brio_sample_points *points, const brio_hole_
     *facts = (brio_triangle_facts){NULL, NULL};
     BRIO_TRY(brio_triangle_net_new(ctx, points->points, points->num_points, faces, *num_faces, &net));
     net.outside = points->outside;
+    net.scanner = points->scanner;
     BRIO_TRY(BRIO_ALLOC(ctx, radius, *num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, usual, *num_faces));
     BRIO_TRY(BRIO_ALLOC(ctx, part, *num_faces));

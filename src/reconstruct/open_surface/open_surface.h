@@ -10,6 +10,7 @@ typedef struct {
     const double *points; /* #P by 3 */
     size_t num_points;
     const float (*outside)[3]; /* #P: unit vectors from the samples to the outside, or NULL */
+    const float (*scanner)[3]; /* #P: unit vectors from the samples to their scanners, or zero; or NULL */
 } brio_sample_points;
 
 /** What of a surface the samples do not show. */

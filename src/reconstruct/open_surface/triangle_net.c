@@ -3,6 +3,7 @@
 #include "base/places.h"
 #include "base/vector.h"
 #include "mesh/twins.h"
+#include <math.h>
 #include <string.h>
 
 brio_status brio_triangle_net_new(brio_context *ctx, const double *points, size_t num_points, const uint32_t *faces,
@@ -55,11 +56,30 @@ void brio_net_normal(const brio_triangle_net *n, size_t face, double normal[3]) 
     for (int k = 0; k < 3; k++) normal[k] = length > 0 ? normal[k] / length : 0;
 }
 
+/* Returns the cosine between two unit vectors. */
+static double along(const double normal[3], const float to[3]) {
+    return normal[0] * (double)to[0] + normal[1] * (double)to[1] + normal[2] * (double)to[2];
+}
+
+double brio_net_facing_at(const brio_triangle_net *n, const double normal[3], size_t half_edge) {
+    return n->outside ? along(normal, n->outside[n->faces[half_edge]]) : 1;
+}
+
 double brio_net_facing(const brio_triangle_net *n, size_t face) {
     double normal[3], sum = 0;
     if (!n->outside) return 1;
     brio_net_normal(n, face, normal);
-    for (size_t i = 0; i < 3; i++)
-        for (size_t k = 0; k < 3; k++) sum += normal[k] * (double)n->outside[n->faces[3 * face + i]][k];
+    for (size_t i = 0; i < 3; i++) sum += along(normal, n->outside[n->faces[3 * face + i]]);
     return sum / 3;
+}
+
+double brio_net_viewing(const brio_triangle_net *n, size_t face) {
+    double normal[3], most = -2;
+    if (!n->scanner) return 1;
+    brio_net_normal(n, face, normal);
+    for (size_t i = 0; i < 3; i++) {
+        const float *to = n->scanner[n->faces[3 * face + i]];
+        if (to[0] != 0 || to[1] != 0 || to[2] != 0) most = fmax(most, along(normal, to));
+    }
+    return most < -1.5 ? 1 : most;
 }
