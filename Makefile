@@ -125,10 +125,14 @@ bench: all
 	/usr/bin/python3 bench/plot.py out/bench.csv out
 
 # Judges surfaces of models of known topology, of generated solids, and of every shared set: docs/measured/quality.md.
-# QUALITY="--parts corpus --samplings even" measures less: docs/measured/benchmarks.md.
+# QUALITY="--parts corpus --samplings even" measures less: docs/measured/benchmarks.md. RIVALS=1 installs Open3D and CGAL and
+# gives them the open scans, too.
 quality: all
 	@sh scripts/setup.sh quality
-	/usr/bin/python3 bench/quality/quality.py $(BRIO) docs/measured $(QUALITY)
+	@[ -z "$(RIVALS)" ] || sh scripts/setup.sh rivals
+	@[ -z "$(RIVALS)" ] || cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_PEERS=ON
+	@[ -z "$(RIVALS)" ] || cmake --build build-bench -j $(JOBS) --target cgal_advancing_front || true
+	/usr/bin/python3 bench/quality/quality.py $(BRIO) docs/measured $(if $(RIVALS),--rivals) $(QUALITY)
 
 # The tables of src/reconstruct/labeled_delaunay/vote_weight.c, from generated solids with odd seeds: out/votes.txt.
 votes: all

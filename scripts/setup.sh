@@ -68,7 +68,7 @@ missing() {
         has_coverage || echo clang llvm libclang-rt-dev
         [ -x $python ] || echo python3
     fi
-    if [ "$1" = bench ] || [ "$1" = crosscheck ]; then
+    if [ "$1" = bench ] || [ "$1" = crosscheck ] || [ "$1" = rivals ]; then
         has g++ || echo g++
         has_python_with numpy || echo python3-numpy
     fi
@@ -140,6 +140,7 @@ missing_peers() {
         return 0
     fi
     [ -d /usr/include/CGAL ] || echo libcgal-dev
+    [ "$1" != rivals ] || return 0
     [ -d /usr/include/libqhull_r ] || echo libqhull-dev
     [ -d /usr/include/voro++ ] || echo voro++-dev
     if [ "$1" = crosscheck ]; then
@@ -198,6 +199,16 @@ install_poisson() {
     has_pymeshlab || echo "setup: PyMeshLab could not be installed from PyPI: no Poisson reconstruction" >&2
 }
 
+# Open3D, which make quality RIVALS=1 compares with, in an environment of its own and in the version that was measured.
+install_open3d() {
+    environment=out/open3d-env
+    has_open3d() { "$environment/bin/python" -c 'import open3d' >/dev/null 2>&1; }
+    has_open3d && return 0
+    echo "setup: installing Open3D in $environment"
+    $python -m venv "$environment" >/dev/null 2>&1 && "$environment/bin/pip" install -q open3d-cpu==0.19.0 >/dev/null 2>&1 || true
+    has_open3d || echo "setup: Open3D could not be installed from PyPI: it is left out" >&2
+}
+
 # An environment of the tests' own for the Python packages of tests/requirements.txt: CMake looks for its Python.
 make_tests_environment() {
     environment=out/tests-env
@@ -222,9 +233,9 @@ packages)
     install_tests_packages
     exit 0
     ;;
-build | check | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | thesis | machines | deb) ;;
+build | check | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|thesis|machines|deb" >&2
+    echo "usage: setup.sh build|check|packages|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|deb" >&2
     exit 1
     ;;
 esac
@@ -239,6 +250,7 @@ if [ -n "$packages" ] && may_install; then
 fi
 if [ -z "$packages" ]; then
     [ "$purpose" != quality ] || install_poisson
+    [ "$purpose" != rivals ] || install_open3d
     [ "$purpose" != check ] || make_tests_environment
     exit 0
 fi

@@ -3,11 +3,13 @@
 
     quality.py BRIO DOCS [--parts PART ...] [--only NAME ...] [--methods NAME ...] [--samplings NAME ...]
                [--solids FOLDER] [--poisson PYTHON] [--processes N]
+               [--rivals] [--scans NAME ...] [--evidence KIND ...] [--every N]
 
 Parts:
   corpus  models of known topology beside the project, sampled in five ways: quality-corpus.csv
   solids  the same on generated solids with even seeds, which make_corpus.py makes first: quality-corpus.csv
   shared  the samples beside the project, and their judge: quality.csv
+  scans   partial scans of these models, and their judge: quality-scans.csv (open_scans.py)
   page    nothing is measured; the page is written in any case
 What is missing is skipped, and named. With --parts, --only, --methods or --samplings all other lines of the CSV files stay
 as they are. After each model the corpus' lines are written: a run may be cut off, and the rest be measured with --only.
@@ -22,12 +24,13 @@ import sys
 
 import corpus
 import corpus_tables
+import open_scans
 import shared_sets
 from sampling import SAMPLINGS
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 OUT = os.path.join(HERE, '..', '..', 'out')
-PARTS = ['corpus', 'solids', 'shared', 'page']
+PARTS = ['corpus', 'solids', 'shared', 'scans', 'page']
 SEEDS = '1-120'  # 60 to judge by, half of each kind
 # The vertices of generated solids are those of a grid: no sampling that anybody has.
 SOLID_SAMPLINGS = [way for way in SAMPLINGS if way != 'vertices']
@@ -105,6 +108,19 @@ def measure_shared(options):
     return write_rows(path, shared_sets.COLUMNS, [done[task] for task in tasks if task in done])
 
 
+def measure_scans(options):
+    reason = open_scans.reason_to_skip()
+    if reason:
+        return skip('scans', reason)
+    path = os.path.join(options.docs, 'quality-scans.csv')
+    done = rows_of(path, open_scans.KEY)
+    for rows in open_scans.run_all(options):
+        done.update({tuple(row[column] for column in open_scans.KEY): row for row in rows})
+        write_rows(path, open_scans.COLUMNS, [done[key] for key in sorted(done)])
+    print('\n'.join(open_scans.program_table(list(done.values()))), flush=True)
+    return None
+
+
 # --- the page ---
 
 def write_page(docs):
@@ -113,6 +129,7 @@ def write_page(docs):
     for row in rows_of(os.path.join(docs, 'quality-corpus.csv'), corpus.KEY).values():
         of_corpus[row['corpus']].append(row)
     page = HEAD + ''.join(corpus_tables.section(title, of_corpus[name], intro) for name, title, intro in CORPORA)
+    page += open_scans.section(list(rows_of(os.path.join(docs, 'quality-scans.csv'), open_scans.KEY).values()))
     with open(os.path.join(docs, 'quality.md'), 'w', encoding='utf-8') as f:
         f.write(page + shared_sets.sections(shared))
 
@@ -143,17 +160,25 @@ def read_arguments():
     parser.add_argument('docs')
     parser.add_argument('--parts', nargs='+', choices=PARTS, default=PARTS)
     parser.add_argument('--only', nargs='+', metavar='NAME', help='models and sets')
-    parser.add_argument('--methods', nargs='+', metavar='NAME', choices=list(dict.fromkeys([*corpus.METHODS, *shared_sets.METHODS])))
+    parser.add_argument('--methods', nargs='+', metavar='NAME', 
+                        choices=list(dict.fromkeys([*corpus.METHODS, *shared_sets.METHODS, *open_scans.DEFAULT_EVIDENCE, 'evidence'])))
     parser.add_argument('--samplings', nargs='+', metavar='NAME', choices=SAMPLINGS)
     parser.add_argument('--solids', default=os.path.join(OUT, 'solids-judge'), metavar='FOLDER')
     parser.add_argument('--poisson', default=os.path.join(OUT, 'quality-env', 'bin', 'python'), metavar='PYTHON')
+    parser.add_argument('--rivals', action='store_true', help='other programs on the scans, too')
+    parser.add_argument('--scans', nargs='+', metavar='NAME', choices=open_scans.SCANS)
+    parser.add_argument('--evidence', nargs='+', metavar='KIND', choices=list(open_scans.KINDS))
+    parser.add_argument('--every', type=int, default=open_scans.EVERY, help='models of the scans: each of so many')
+    parser.add_argument('--peers', default=os.path.join(HERE, '..', '..', 'build-bench'), metavar='FOLDER')
+    parser.add_argument('--open3d', default=os.path.join(OUT, 'open3d-env', 'bin', 'python'), metavar='PYTHON')
     parser.add_argument('--processes', type=int, default=2)
     return parser.parse_args()
 
 
 def main():
     options = read_arguments()
-    for part, measure in [('corpus', measure_shared_corpus), ('solids', measure_solids), ('shared', measure_shared)]:
+    for part, measure in [('corpus', measure_shared_corpus), ('solids', measure_solids), ('shared', measure_shared),
+                          ('scans', measure_scans)]:
         if part in options.parts:
             measure(options)
     write_page(options.docs)

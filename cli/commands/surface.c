@@ -276,6 +276,19 @@ static void report_orientation(run *r, const brio_surface_stats *s) {
     static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
     cli_fact_text(&r->facts, "orientation", by[s->evidence & 3]);
     if (s->evidence) cli_fact_real(&r->facts, "agreement", s->agreement);
+    const struct {
+        const char *name, *words;
+        unsigned kind;
+        size_t told;
+        double share;
+    } kinds[] = {{"normals_agreement", "normals", BRIO_EVIDENCE_NORMALS, s->normals, s->normals_agreement},
+                 {"origins_agreement", "scanners' places", BRIO_EVIDENCE_ORIGINS, s->origins, s->origins_agreement}};
+    for (int k = 0; k < 2; k++) {
+        bool aside = !(s->evidence & kinds[k].kind);
+        if (!kinds[k].told) continue;
+        cli_fact_real(&r->facts, kinds[k].name, kinds[k].share);
+        if (aside) cli_warn(r, WARNING_ASIDE, kinds[k].words, 100 * kinds[k].share);
+    }
 }
 
 /* Warns of bridges over a share of the area, and of guesses. */

@@ -49,6 +49,7 @@
     "%g, "                                                                                                             \
     "%g across; --open auto leaves out what was not seen"
 #define WARNING_UNSEEN   "%.1f %% of the area is where no point is near: %zu bridges, the largest at %g %g %g, %g across"
+#define WARNING_ASIDE    "the %s of the points are of no use: they agree with the surface at %.0f %% of these"
 #define WARNING_LEFT_OUT "%zu of %zu points are farther than two spacings from the surface"
 #define WARNING_MORE_FACES                                                                                             \
     "%zu faces are left, more than the %zu asked for: borders and topology stay, and no faces may come to cross"

@@ -48,15 +48,17 @@ def read_header(data):
     return elements, end
 
 
-def read_faces(data, at, count, size_type, index_type):
-    """Triangles of the polygons of a list property, each cut into a fan."""
-    size, index = np.dtype("<" + size_type), np.dtype("<" + index_type)
+def read_faces(data, at, count, columns):
+    """Triangles of the polygons of a list property, which comes first, each cut into a fan; the polygon of each triangle; and the
+    other properties of polygons by name."""
+    size, index = (np.dtype("<" + TYPES[kind]) for kind in columns[0][1:3])
+    rest = np.dtype([(c[1], "<" + TYPES[c[0]]) for c in columns[1:]])
     corners = np.empty(count, np.int64)
     starts = np.empty(count, np.int64)
     for f in range(count):
         n = data[at] if size.itemsize == 1 else int.from_bytes(data[at:at + size.itemsize], "little")
         starts[f], corners[f] = at + size.itemsize, n
-        at += size.itemsize + n * index.itemsize
+        at += size.itemsize + n * index.itemsize + rest.itemsize
     raw = np.frombuffer(data, np.uint8)
 
     def corner(face, number):
@@ -65,11 +67,17 @@ def read_faces(data, at, count, size_type, index_type):
 
     fan = np.repeat(np.arange(count), corners - 2)
     step = np.arange(len(fan)) - np.repeat(np.cumsum(corners - 2) - (corners - 2), corners - 2)
-    return np.stack([corner(fan, 0), corner(fan, step + 1), corner(fan, step + 2)], axis=1)
+    triangles = np.stack([corner(fan, 0), corner(fan, step + 1), corner(fan, step + 2)], axis=1)
+    if not columns[1:]:
+        return triangles, fan, {}
+    tail = raw[(starts + corners * index.itemsize)[:, None] + np.arange(rest.itemsize)]
+    table = np.ascontiguousarray(tail).view(rest)[:, 0]
+    return triangles, fan, {name: table[name] for name in rest.names}
 
 
 def read_ply(path):
-    """Vertices (n, 3), other properties by name, triangles (m, 3)."""
+    """Vertices (n, 3), other properties by name, triangles (m, 3). A property of polygons has a value a triangle, and "face "
+    before its name."""
     data = open(path, "rb").read()
     elements, at = read_header(data)
     vertices, properties, triangles = None, {}, np.empty((0, 3), np.int64)
@@ -81,7 +89,8 @@ def read_ply(path):
             vertices = np.stack([table[k] for k in "xyz"], axis=1).astype(float)
             properties = {c[1]: table[c[1]] for c in columns if c[1] not in "xyz"}
         elif name == "face":
-            triangles = read_faces(data, at, count, TYPES[columns[0][1]], TYPES[columns[0][2]])
+            triangles, fan, of_faces = read_faces(data, at, count, columns)
+            properties = {**properties, **{"face " + name: values[fan] for name, values in of_faces.items()}}
             break
     return vertices, properties, triangles
 

@@ -218,8 +218,11 @@ struct brio_surface_stats {
     unsigned evidence;      /* bits BRIO_EVIDENCE_NORMALS, BRIO_EVIDENCE_ORIGINS: what was of use; 0: inside and outside
                                are a guess */
     unsigned reserved;
-    size_t told;          /* samples of which evidence tells the outside */
-    double agreement;     /* the share of these whose side in the result is what evidence tells */
+    size_t told;              /* samples of which evidence tells the outside */
+    double agreement;         /* the share of what evidence tells of these that is so in the result */
+    size_t normals, origins;  /* samples with a normal, and with a place of the scanner, be they of use or not */
+    double normals_agreement; /* the shares of these whose side in the result is what the normal, or the place, tells */
+    double origins_agreement;
     size_t strays;        /* samples that lie alone, far from all others: left out, unless noise is BRIO_NOISE_KEEP */
     size_t holes;         /* left open */
     size_t bridges;       /* gaps of the samples that the surface spans: triangles several times larger than usual */

@@ -360,6 +360,69 @@ static PyObject *mesh_distance(PyObject *module, PyObject *args) {
                          d.hausdorff, "normal_consistency", d.normal_consistency, "diagonal", d.diagonal);
 }
 
+/* mesh_signed_distances(mesh, points, out, threads, progress): writes a distance a point. */
+static PyObject *mesh_signed_distances(PyObject *module, PyObject *args) {
+    PyObject *object, *points, *out, *progress, *result = NULL;
+    int threads;
+    call c;
+    brio_status status;
+    input p = {.held = 0}, distance = {.held = 0};
+    if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &out, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (m && !input_open(&p, points, "points", 'd', 3) && !output_open(&distance, out, "out", 'd', 0) &&
+        !input_has_rows(&distance, "out", p.rows) && !call_begin(&c, state_of(module), threads, progress)) {
+        CALL(c, status, brio_mesh_signed_distances(c.ctx, m, p.data, p.rows, distance.data));
+        if (!call_end(&c, status)) result = Py_NewRef(Py_None);
+    }
+    input_close(&p);
+    input_close(&distance);
+    return result;
+}
+
+/* mesh_coverage(mesh, points, bridge, threads, progress): a dict; writes whether each face is of a bridge. */
+static PyObject *mesh_coverage(PyObject *module, PyObject *args) {
+    PyObject *object, *points, *out, *progress, *result = NULL;
+    int threads;
+    call c;
+    brio_status status;
+    brio_coverage k = {.size = sizeof k};
+    input p = {.held = 0}, bridge = {.held = 0};
+    if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &out, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (m && !input_open(&p, points, "points", 'd', 3) && !output_open(&bridge, out, "out", 'B', 0) &&
+        !input_has_rows(&bridge, "out", m->num_faces) && !call_begin(&c, state_of(module), threads, progress)) {
+        CALL(c, status, brio_mesh_coverage(c.ctx, m, p.data, p.rows, bridge.data, &k));
+        if (!call_end(&c, status))
+            result = Py_BuildValue("{s:d,s:n,s:d,s:d,s:(ddd),s:n}", "far_share", k.far_share, "bridges",
+                                   (Py_ssize_t)k.bridges, "bridge_share", k.bridge_share, "bridge_radius",
+                                   k.bridge_radius, "bridge_centre", k.bridge_centre[0], k.bridge_centre[1],
+                                   k.bridge_centre[2], "left_out", (Py_ssize_t)k.left_out);
+    }
+    input_close(&p);
+    input_close(&bridge);
+    return result;
+}
+
+/* mesh_left_out(mesh, points, out, threads, progress): writes whether the surface leaves each point. */
+static PyObject *mesh_left_out(PyObject *module, PyObject *args) {
+    PyObject *object, *points, *out, *progress, *result = NULL;
+    int threads;
+    call c;
+    brio_status status;
+    size_t count;
+    input p = {.held = 0}, chosen = {.held = 0};
+    if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &out, &threads, &progress)) return NULL;
+    const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
+    if (m && !input_open(&p, points, "points", 'd', 3) && !output_open(&chosen, out, "out", 'B', 0) &&
+        !input_has_rows(&chosen, "out", p.rows) && !call_begin(&c, state_of(module), threads, progress)) {
+        CALL(c, status, brio_mesh_left_out(c.ctx, m, p.data, p.rows, chosen.data, &count));
+        if (!call_end(&c, status)) result = Py_NewRef(Py_None);
+    }
+    input_close(&p);
+    input_close(&chosen);
+    return result;
+}
+
 PyMethodDef mesh_methods[] = {
     {"mesh", mesh, METH_VARARGS,
      "mesh(vertices, offsets, corners, tetrahedra, edges, properties, steps, face_properties)"},
@@ -370,6 +433,10 @@ PyMethodDef mesh_methods[] = {
     {"mesh_self_intersections", mesh_self_intersections, METH_VARARGS,
      "mesh_self_intersections(mesh, threads, progress)"},
     {"mesh_distance", mesh_distance, METH_VARARGS, "mesh_distance(a, b, samples, seed, threads, progress)"},
+    {"mesh_signed_distances", mesh_signed_distances, METH_VARARGS,
+     "mesh_signed_distances(mesh, points, out, threads, progress)"},
+    {"mesh_coverage", mesh_coverage, METH_VARARGS, "mesh_coverage(mesh, points, bridge, threads, progress)"},
+    {"mesh_left_out", mesh_left_out, METH_VARARGS, "mesh_left_out(mesh, points, out, threads, progress)"},
     {"mesh_merged_vertices", mesh_merged_vertices, METH_VARARGS, "mesh_merged_vertices(mesh, distance, progress)"},
     {"mesh_kept_components", mesh_kept_components, METH_VARARGS, "mesh_kept_components(mesh, largest, least_faces)"},
     {"mesh_subdivided", mesh_subdivided, METH_VARARGS, "mesh_subdivided(mesh, levels, progress)"},

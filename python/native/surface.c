@@ -145,8 +145,8 @@ static void close_evidence(evidence_input *e) {
 
 /* Makes the surface. Its property "sample" goes to an array, where one is given, and not to the interpreter. */
 static brio_status make_surface(brio_context *ctx, const surface_call *s, const brio_surface_options *o,
-                                uint32_t *samples, brio_mesh **mesh) {
-    brio_status status = brio_surface(ctx, s->p.data, s->p.rows, o, mesh, NULL);
+                                uint32_t *samples, brio_mesh **mesh, brio_surface_stats *stats) {
+    brio_status status = brio_surface(ctx, s->p.data, s->p.rows, o, mesh, stats);
     if (status != BRIO_OK) return status;
     const brio_property *property = brio_mesh_property(*mesh, "sample");
     for (size_t v = 0; samples && v < (*mesh)->num_vertices; v++)
@@ -155,11 +155,41 @@ static brio_status make_surface(brio_context *ctx, const surface_call *s, const 
     return BRIO_OK;
 }
 
+/* Makes a dict of what the surface is worth, by the names that the command line's report has. */
+static PyObject *report_of(const brio_surface_stats *s) {
+    static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
+#define COUNT(name) #name, (Py_ssize_t)s->name
+    PyObject *bridges = Py_BuildValue("{s:n,s:d,s:d,s:(ddd)}", "number", (Py_ssize_t)s->bridges, "area_share",
+                                      s->bridge_share, "largest_radius", s->bridge_radius, "largest_centre",
+                                      s->bridge_centre[0], s->bridge_centre[1], s->bridge_centre[2]);
+    PyObject *report = Py_BuildValue("{s:d,s:N,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:N,s:d,s:d,s:s}", "noise", s->noise,
+                                     "smoothed", PyBool_FromLong((long)s->smoothed), COUNT(unused), COUNT(undecided),
+                                     COUNT(specks), COUNT(relabeled), COUNT(handles), COUNT(strays), COUNT(holes),
+                                     COUNT(left_out), "bridges", bridges, "far_area_percent", 100 * s->far_share,
+                                     "uncertain_share", s->uncertain_share, "orientation", by[s->evidence & 3]);
+#undef COUNT
+    const struct {
+        const char *name;
+        size_t told;
+        double share;
+    } agreement[] = {{"agreement", s->told, s->agreement},
+                     {"normals_agreement", s->normals, s->normals_agreement},
+                     {"origins_agreement", s->origins, s->origins_agreement}};
+    for (int k = 0; report && k < 3; k++) {
+        PyObject *share = agreement[k].told ? PyFloat_FromDouble(agreement[k].share) : Py_NewRef(Py_None);
+        if (!share || PyDict_SetItemString(report, agreement[k].name, share)) Py_CLEAR(report);
+        Py_XDECREF(share);
+    }
+    return report;
+}
+
+/* Returns a handle of the mesh and a report. */
 static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     surface_call s;
     evidence_input e = {.taken = {0}};
     call c;
     brio_status status;
+    brio_surface_stats stats = {0};
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
     brio_surface_options o = {0};
@@ -169,10 +199,10 @@ static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
         {NULL, INT, NULL}};
     o.evidence = &e.taken;
     if (!open_surface_call(&s, args, input_open, 'I', 0) && !open_evidence(&e, s.options, s.p.rows))
-        RUN_SURFACE(table, make_surface(c.ctx, &s, &o, s.out.data, &mesh));
+        RUN_SURFACE(table, make_surface(c.ctx, &s, &o, s.out.data, &mesh, &stats));
     close_evidence(&e);
     close_surface_call(&s);
-    return result;
+    return result ? Py_BuildValue("NN", result, report_of(&stats)) : NULL;
 }
 
 /* The power crust, and its offset: polygons, unless triangles are asked for. */
@@ -192,7 +222,7 @@ static PyObject *crust(PyObject *module, PyObject *args, brio_surface_method met
     if (!open_surface_call(&s, args, input_open, 'd', 3)) {
         o.normals = s.out.data;
         o.distance = s.number;
-        RUN_SURFACE(table, (o.polygons = !triangulate && !o.simplify, make_surface(c.ctx, &s, &o, NULL, &mesh)));
+        RUN_SURFACE(table, (o.polygons = !triangulate && !o.simplify, make_surface(c.ctx, &s, &o, NULL, &mesh, NULL)));
     }
     close_surface_call(&s);
     return result;
@@ -244,7 +274,7 @@ static PyObject *cocone(PyObject *module, PyObject *args) {
     if (!open_surface_call(&s, args, input_open, 'd', 3) && !open_evidence(&e, s.options, s.p.rows)) {
         if (e.taken.normals || e.taken.origins) o.evidence = &e.taken;
         RUN_SURFACE(table, (o.method = tight ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE,
-                            make_surface(c.ctx, &s, &o, NULL, &mesh)));
+                            make_surface(c.ctx, &s, &o, NULL, &mesh, NULL)));
     }
     close_evidence(&e);
     close_surface_call(&s);

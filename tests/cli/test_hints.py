@@ -7,6 +7,7 @@ do. The sources are searched: a sentence without a row fails the test, and so do
 
 import glob
 import os
+import random
 import re
 import shlex
 import shutil
@@ -125,6 +126,7 @@ ROWS = {
     "WARNING_BRIDGES": ("surface half.xyz --closed -o out.ply", 0, [Silent("surface half.xyz --open auto -o out.ply")]),
     "WARNING_UNSEEN": ("check capped.ply --samples half.xyz", 0, [Silent("check part.ply --open --samples half.xyz")]),
     "WARNING_LEFT_OUT": ("check oct.off --samples scan.ply", 0, [Silent("check capped.ply --samples half.xyz")]),
+    "WARNING_ASIDE": ("surface lots.xyz -o out.ply", 0, [Silent("surface lots.xyz --ignore-normals -o out.ply")]),
     "WARNING_MORE_FACES": ("simplify open.off --faces 2 -o out.ply", 0, [Silent("simplify oct.off --faces 8 -o out.ply")]),
     "WARNING_THETA": ("surface scan.ply --method cocone --theta 0.1 -o out.ply", 0,
                       [Silent("surface scan.ply --method cocone --theta 0.3 -o out.ply")]),
@@ -258,6 +260,9 @@ class Hints(CliTest):
         self.xyz("half.xyz", [p for p in self.sphere(2000) if p[2] > 0]), self.cloud("clusters.ply", 300, "clusters")
         self.expect(0, "surface", "half.xyz", "--closed", "-o", "capped.ply", "--quiet")
         self.expect(0, "surface", "half.xyz", "-o", "part.ply", "--quiet")
+        lots = random.Random(5)
+        signed = [(p, lots.choice((-1, 1))) for p in self.sphere(2000)]
+        self.file("lots.xyz", "# x y z nx ny nz\n" + "".join("%r %r %r %r %r %r\n" % (*p, *(s * x for x in p)) for p, s in signed))
         self.xyz("vast.xyz", [[1.79e308 * x for x in p] for p in self.sphere(300)])
         self.xyz("pair.xyz", [(i % 40, i // 40, i * i % 7) for i in range(3000)] + [(0.3, 0.3, 0.3), (0.3 + 1e-12, 0.3, 0.3)])
         self.ball_map("ball.map", 12)

@@ -428,6 +428,16 @@ class PowerCrust(CliTest):
         self.assertGreaterEqual(len(faces), facts["faces"])
 
 
+    def test_simplified_crusts_and_offsets_do_not_cross(self):
+        """Noise bends them back beside themselves: without a look at each collapse 16 and 3 pairs crossed."""
+        for seed, arguments in ((6, ["surface", "--method", "power-crust"]), (3, ["offset", "--distance", "0.02"])):
+            points = self.path("noisy.ply")
+            self.expect(0, "generate", "scan", "-n", "1500", "--noise", "1", "--seed", str(seed), "-o", points, "--quiet")
+            self.expect(0, arguments[0], points, *arguments[1:], "--simplify", "-o", self.path("out.ply"), "--quiet")
+            facts = self.facts("check", self.path("out.ply"), "--self-intersections")
+            self.assertEqual(facts["certificate"]["self_intersections"], 0, arguments)
+
+
 class Cocone(CliTest):
     def test_cocone(self):
         points = self.cloud("a.ply", 2000, "sphere")

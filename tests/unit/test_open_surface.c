@@ -68,18 +68,28 @@ static bool is_ground(const double *p) {
     return p[2] < 0.5;
 }
 
-static void signs_agree_along_sheets(void) {
+/* Tells of every eighth axis that outside is below, and of a third of these the contrary. */
+static void tell_downwards(const brio_pole_vectors *v, float *told) {
+    for (size_t p = 0; p < num_scene; p++)
+        told[p] = p % 8 ? 0 : (v->plane[4 * p + 2] < 0) == (p % 3 != 0) ? 1.0f : -1.0f;
+}
+
+/* Signs the axes of the scene, as is told or not. */
+static void expect_signs_along_sheets(bool is_told) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
     brio_pole_vectors v;
     double *spacing = malloc(MANY * sizeof *spacing);
     uint8_t *turned = malloc(MANY), *alone = malloc(MANY);
+    float *told = malloc(MANY * sizeof *told);
     size_t down[2] = {0}, all[2] = {0};
     make_scene();
     EXPECT(brio_delaunay(ctx, scene, NULL, num_scene, NULL, &t) == BRIO_OK);
     EXPECT(brio_sample_spacing(ctx, t, scene, num_scene, spacing, NULL) == BRIO_OK);
     EXPECT(brio_pole_vectors_find(ctx, t, scene, num_scene, 0.39, &v) == BRIO_OK);
-    EXPECT(brio_sign_sheets(ctx, &v, spacing, 0, turned, alone) == BRIO_OK);
+    tell_downwards(&v, told);
+    brio_sheet_samples samples = {spacing, 0, is_told ? told : NULL};
+    EXPECT(brio_sign_sheets(ctx, &v, &samples, turned, alone) == BRIO_OK);
     for (size_t p = 0; p < num_scene; p++) {
         bool ground = is_ground(scene + 3 * p);
         all[ground]++;
@@ -88,12 +98,21 @@ static void signs_agree_along_sheets(void) {
     for (int i = 0; i < 2; i++) {
         size_t few = down[i] < all[i] - down[i] ? down[i] : all[i] - down[i];
         EXPECT(all[i] > 500 && few * 50 < all[i], "%zu of %zu look down", down[i], all[i]);
+        EXPECT(!is_told || few < down[i], "%zu of %zu look down, as all should", down[i], all[i]);
     }
     brio_pole_vectors_free(ctx, &v);
     brio_triangulation_free(t);
-    free(spacing), free(turned), free(alone);
+    free(spacing), free(turned), free(alone), free(told);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
+}
+
+static void signs_agree_along_sheets(void) {
+    expect_signs_along_sheets(false);
+}
+
+static void sheets_look_where_most_of_what_is_told_points(void) {
+    expect_signs_along_sheets(true);
 }
 
 static void axes_of_a_circle_and_of_an_edge_agree(void) {
@@ -177,6 +196,7 @@ static void every_failed_allocation_is_a_status(void) {
 
 SUITE(test_open_surface) {
     RUN(signs_agree_along_sheets);
+    RUN(sheets_look_where_most_of_what_is_told_points);
     RUN(axes_of_a_circle_and_of_an_edge_agree);
     RUN(sheets_one_behind_the_other_look_one_way_each);
     RUN(every_failed_allocation_is_a_status);

@@ -108,6 +108,27 @@ static void normals_drawn_by_lot_change_nothing(void) {
     brio_context_free(ctx);
 }
 
+/* As those that were once turned over as a whole, or wall by wall, by a program that spreads signs from point to point: each
+ * agrees with its neighbours. Alone they are believed. */
+static void normals_that_contradict_the_scanner_lose(void) {
+    static const double middle[3] = {2.5, 2, 1.5};
+    static double normals[3 * MANY];
+    brio_context *ctx = new_context();
+    brio_surface_stats s = {0};
+    brio_evidence e = {0};
+    e.normals = normals, e.origins = middle, e.num_origins = 1;
+    for (size_t half = 0; half < 2; half++) {
+        for (size_t i = 0; i < 3 * MANY; i++) normals[i] = half && i / 3 % 6 < 3 ? inwards[i] : -inwards[i];
+        EXPECT(volume_of(ctx, &e, &s) < -57 && s.evidence == BRIO_EVIDENCE_ORIGINS, "%u", s.evidence);
+        EXPECT(s.agreement > 0.99 && s.origins_agreement > 0.99 && s.origins > MANY * 9 / 10 && s.normals == s.origins);
+        EXPECT(fabs(s.normals_agreement - 0.5 * (double)half) < 0.02, "%g", s.normals_agreement);
+    }
+    flip(10, normals);
+    EXPECT(volume_of(ctx, &e, &s) < -57 && s.evidence == (BRIO_EVIDENCE_NORMALS | BRIO_EVIDENCE_ORIGINS));
+    EXPECT(fabs(s.agreement - 0.95) < 0.02 && fabs(s.normals_agreement - 0.9) < 0.02, "%g", s.agreement);
+    brio_context_free(ctx);
+}
+
 static void places_by_table_by_point_and_alone_are_the_same(void) {
     static const double places[6] = {100, 100, 100, 2.5, 2, 1.5};
     static double each[3 * MANY];
@@ -155,6 +176,7 @@ SUITE(test_sample_evidence) {
     RUN(a_co_cone_looks_inwards);
     RUN(wrong_normals_lose_to_the_rest);
     RUN(normals_drawn_by_lot_change_nothing);
+    RUN(normals_that_contradict_the_scanner_lose);
     RUN(places_by_table_by_point_and_alone_are_the_same);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();

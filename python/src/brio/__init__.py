@@ -7,7 +7,7 @@ from ._files import Conversion, build_info, convert, read, write
 from ._halfspaces import HalfspaceIntersection
 from ._hull import ConvexHull
 from ._interpolate import LinearNDInterpolator, NaturalNeighbourInterpolator, griddata
-from ._mesh import Certificate, Distance, Mesh, simplify
+from ._mesh import Certificate, Coverage, Distance, Mesh, simplify
 from ._points import outliers, thin
 from ._reconstruct import Surface, medial_axis, offset, oriented_normals, reconstruct
 from ._spherical import SphericalVoronoi
@@ -16,7 +16,7 @@ from ._voronoi import Voronoi
 from .errors import *  # noqa: F403
 
 __all__ = [
-    "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Delaunay", "Distance",
+    "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Delaunay", "Distance",
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "SphericalVoronoi", "Surface",
     "Voronoi", "__version__", "alpha_complex", "build_info", "convert", "errors", "griddata", "medial_axis",
     "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "thin", "write",

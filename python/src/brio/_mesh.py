@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._arrays import (Floats, as_array, as_count, as_number, as_path, as_rows, as_text, freeze_all, frozen,
                       refuse_masked)
-from ._calls import Progress, reporting
+from ._calls import Progress, of_points, reporting
 from ._points import nearest
 from ._properties import (Properties, as_properties, carry, colors_of, for_means, from_means, normals_of,
                           scalars)
@@ -55,6 +55,26 @@ class Distance:
     hausdorff: float
     normal_consistency: float
     diagonal: float
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """What of a surface points do not show, and what of the points it leaves.
+
+    Lengths are in spacings of the points there. ``far_share``: of the area, what is farther than five spacings from all points.
+    ``bridges``: sets of faces that span gaps: over 2.5 spacings away somewhere, one of them over 5. ``bridge_share``: of the
+    area, that of the bridges. ``bridge_radius``: of the largest one, how far it is from all points, and ``bridge_centre``:
+    where; both in the unit of the coordinates. ``left_out``: how many points are farther than two spacings from the surface.
+    ``bridge``: of each polygon, whether it is part of a bridge.
+    """
+
+    far_share: float
+    bridges: int
+    bridge_share: float
+    bridge_radius: float
+    bridge_centre: tuple[float, float, float]
+    left_out: int
+    bridge: NDArray[np.bool_]
 
 
 def as_indices(values: Any, name: str, columns: int) -> Indices:
@@ -429,6 +449,81 @@ class Mesh:
         start = as_count(seed, "seed", most=2**64 - 1)
         with reporting(progress) as report:
             return Distance(**_native.mesh_distance(self._handle, there, count, start, threads, report))
+
+    def signed_distances(self, points: Any, *, threads: int = 0,
+                         progress: bool | Progress | None = None) -> Floats:
+        """Measures how far points are from the nearest point of the faces; points inside, or behind the faces, have negative
+        distances.
+
+        Of a closed surface the side is exact, whichever way its faces look. Of any other one it is that of the triangles at
+        the nearest point; where these disagree, of their normals, weighted by angles.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 3)
+
+        Returns
+        -------
+        ndarray of float64, shape (n,)
+
+        Examples
+        --------
+        >>> import brio
+        >>> square = brio.Mesh([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0]], [[0, 1, 2], [0, 2, 3]])
+        >>> square.signed_distances([[1, 1, 3], [1, 1, -1], [2, 6, 3]]).tolist()
+        [3.0, -1.0, 5.0]
+        """
+        rows = as_rows(points, "points")
+        out = np.empty(len(rows))
+        of_points(lambda p, w, t, report: _native.mesh_signed_distances(self._handle, p, out, t, report), rows, None,
+                  threads, progress)
+        return frozen(out)
+
+    def coverage(self, points: Any, *, threads: int = 0, progress: bool | Progress | None = None) -> Coverage:
+        """Compares the surface, of any origin, with the points that it is to go through.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 3)
+
+        Returns
+        -------
+        Coverage
+
+        Examples
+        --------
+        A sheet over a grid of points whose middle is missing:
+
+        >>> import brio, numpy as np
+        >>> grid = np.array([[x, y, 0] for x in range(30) for y in range(30) if abs(x - 15) > 8 or abs(y - 15) > 8])
+        >>> lid = brio.Mesh([[0, 0, 0], [29, 0, 0], [29, 29, 0], [0, 29, 0], [15, 15, 0]],
+        ...                 [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+        >>> lid.subdivide(4).coverage(grid).bridges
+        1
+        """
+        rows = as_rows(points, "points")
+        bridge = np.empty(len(self.face_offsets) - 1, np.uint8)
+        facts = of_points(lambda p, w, t, report: _native.mesh_coverage(self._handle, p, bridge, t, report), rows, None,
+                          threads, progress)
+        return Coverage(**facts, bridge=frozen(bridge.astype(bool)))
+
+    def left_out(self, points: Any, *, threads: int = 0,
+                 progress: bool | Progress | None = None) -> NDArray[np.bool_]:
+        """Finds the points that the surface leaves: those farther than two spacings away, which coverage counts.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 3)
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+        """
+        rows = as_rows(points, "points")
+        out = np.empty(len(rows), np.uint8)
+        of_points(lambda p, w, t, report: _native.mesh_left_out(self._handle, p, out, t, report), rows, None, threads,
+                  progress)
+        return frozen(out.astype(bool))
 
     def _copy(self, properties: Properties, face_properties: Properties | None = None) -> Any:
         """Returns an object of the library with what this mesh has now, and with these properties."""

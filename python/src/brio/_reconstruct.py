@@ -30,10 +30,14 @@ class Surface(Mesh):
         The samples.
     samples : ndarray of int64, shape (nvertices,), or None
         The sample that each vertex is, maybe moved; None where vertices are no samples.
+    report : dict
+        Of "labeled-delaunay": what the surface is worth, by the names of ``brio surface --json``: `holes`, `bridges`,
+        `far_area_percent`, `uncertain_share`, `orientation`, `agreement` and others. None where nothing was told. Of other methods: empty.
     """
 
     points: Floats
     samples: NDArray[np.int64] | None = None
+    report: dict[str, Any]
 
 
 def _options(options: dict[str, Any]) -> dict[str, Any]:
@@ -53,8 +57,10 @@ def _run(function: Any, points: Floats, options: dict[str, Any], number: float, 
     def call(p: Floats, w: None, t: int, report: Any) -> Any:
         return function(p, _options(options), number, out, t, report)
 
-    surface: Surface = Surface._of(_calls.of_points(call, points, None, threads, progress))
-    surface.points = points
+    made = _calls.of_points(call, points, None, threads, progress)
+    handle, report = made if isinstance(made, tuple) else (made, {})
+    surface: Surface = Surface._of(handle)
+    surface.points, surface.report = points, report
     return surface
 
 
@@ -109,7 +115,8 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     method : str
         "labeled-delaunay" (default): a manifold, oriented surface of triangles of the samples; options `noise`
         ("auto", "keep", "smooth"), `open`, `confidence`, `simplify`, `seed`. `open`: "auto" (default) leaves holes open
-        where the samples end, 0 closes all, K > 0 leaves those open whose radii are over K spacings.
+        where the samples end, 0 closes all, K > 0 leaves those open whose radii are over K spacings. `confidence`: unless it
+        is 0, vertices and faces have the property `confidence`.
         "power-crust": closed, manifold, oriented, of polygons; options `noise`, `open`, `sharp`, `sampling_density`,
         `labeling`, `triangulate`, `simplify`, `seed`.
         "cocone": triangles of the samples, maybe open; options `theta`, `boundaries`, `density`, `pieces`,
@@ -146,7 +153,7 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     carried = {**carried, **as_properties({} if attributes is None else attributes, len(rows), "attribute", "point")}
     if name == "labeled-delaunay":
         samples = np.empty(len(rows), np.uint32)
-        surface = _run(_native.labeled_delaunay, rows, _holes(options), 0.0, samples, threads, progress)
+        surface = _run(_native.labeled_delaunay, rows, {"confidence": 1, **_holes(options)}, 0.0, samples, threads, progress)
         surface.samples = frozen(samples[: len(surface.vertices)].astype(np.int64))
     elif name == "power-crust":
         surface = _run(_native.power_crust, rows, options, 0.0, None, threads, progress)
@@ -210,7 +217,7 @@ def _of_mesh(mesh: Mesh, call: Any, progress: bool | Progress | None) -> Surface
     """What a function of the module makes of a closed mesh."""
     with reporting(progress) as report:
         surface: Surface = Surface._of(call(mesh._copy({}), report))
-    surface.points = mesh.vertices
+    surface.points, surface.report = mesh.vertices, {}
     return surface
 
 

@@ -7,7 +7,9 @@
  * less than steep ones, above all in noise, so r is measured for each class of the cosine between direction and axis. Signs
  * that are drawn by lot have A = 1/2 and weigh nothing.
  *
- * What A does not see are signs that are all wrong together. They turn the surface over: it is what they say.
+ * What A does not see are signs that are wrong together: of normals that all point inwards, or of a part of them that was
+ * turned as a whole. Alone they turn the surface over: it is what they say. Beside places of scanners they lose: these were
+ * measured, normals are computed. How often normals are right is told then by how often they agree with the places.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
  * Differs from the paper: scanners vote on the sides of samples, and these on tetrahedra. Lines of sight through
@@ -45,9 +47,10 @@ typedef struct {
     const brio_sample_evidence *e;
     const brio_cocones *c;
     unsigned kind;
+    double most;   /* the largest weight of a sample */
     float *cosine; /* #P: between the direction of the evidence and the axis; 0 where nothing is known */
     uint64_t agree[CLASSES], pairs[CLASSES];
-    double weight[CLASSES];
+    double weight[CLASSES], total; /* of each class, and of all together, before `most` */
     float *own;
 } weighing;
 
@@ -66,24 +69,24 @@ static void towards_scanner(const brio_sample_evidence *e, size_t p, const doubl
         to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
 }
 
-/* Writes the direction that the evidence of a sample gives; zero where there is none. */
-static void direction(const weighing *w, size_t p, double to[3]) {
-    if (w->kind == BRIO_EVIDENCE_NORMALS)
-        for (size_t k = 0; k < 3; k++) to[k] = w->e->given.normals[3 * (size_t)w->e->order[p] + k];
+/* Returns the cosine between an axis and the direction that the evidence of a sample at x gives; 0 where there is none. */
+static double cosine_to(const brio_sample_evidence *e, unsigned kind, size_t p, const double x[3],
+                        const double axis[3]) {
+    double to[3];
+    if (kind == BRIO_EVIDENCE_NORMALS)
+        for (size_t k = 0; k < 3; k++) to[k] = e->given.normals[3 * (size_t)e->order[p] + k];
     else
-        towards_scanner(w->e, p, w->c->dual->points + 3 * p, to);
+        towards_scanner(e, p, x, to);
+    double length = hypot(hypot(to[0], to[1]), to[2]), cosine = brio_dot(to, axis) / length;
+    return length > 0 && fabs(cosine) <= 2 ? cosine : 0;
 }
 
 static void find_cosines(void *user, size_t begin, size_t end, int thread) {
     const weighing *w = user;
+    const brio_pole_vectors *v = w->c->dual;
     (void)thread;
-    for (size_t p = begin; p < end; p++) {
-        double to[3], length;
-        direction(w, p, to);
-        length = hypot(hypot(to[0], to[1]), to[2]);
-        double cosine = brio_dot(to, w->c->dual->plane + 4 * p) / length;
-        w->cosine[p] = length > 0 && fabs(cosine) <= 2 ? (float)cosine : 0;
-    }
+    for (size_t p = begin; p < end; p++)
+        w->cosine[p] = (float)cosine_to(w->e, w->kind, p, v->points + 3 * p, v->plane + 4 * p);
 }
 
 /* Counts a pair of samples, if both see the surface about as steeply. */
@@ -120,6 +123,20 @@ static double log_odds(uint64_t agree, uint64_t pairs) {
     return fmin(log(rate / (1 - rate)), MOST);
 }
 
+/* Returns the log-odds that a normal is right, from how often it agrees with the places that w->own tells of. If these are
+ * right with probability o and normals with n, they agree with probability n o + (1 - n)(1 - o).   places  log-odds of o. */
+static double log_odds_beside(const weighing *w, double places) {
+    size_t both = 0, same = 0;
+    for (size_t p = 0; p < w->c->dual->num_points; p++) {
+        if (w->own[p] == 0 || w->cosine[p] == 0) continue;
+        both++;
+        same += (w->own[p] < 0) == (w->cosine[p] < 0);
+    }
+    if (both < FEW) return MOST;
+    double o = 1 / (1 + exp(-places)), n = ((double)(same + 1) / (double)(both + 2) + o - 1) / (2 * o - 1);
+    return n <= 0.5 ? 0 : n >= 1 ? MOST : fmin(log(n / (1 - n)), MOST);
+}
+
 /* Returns whether most directions are steep: normals that do not go with the shape, such as one normal for all points, are
  * not. Half of the directions drawn by lot are. */
 static bool is_steep(const weighing *w) {
@@ -135,42 +152,51 @@ static bool is_steep(const weighing *w) {
 static bool weigh_classes(weighing *w) {
     uint64_t agree = 0, pairs = 0;
     for (int i = 0; i < CLASSES; i++) agree += w->agree[i], pairs += w->pairs[i];
+    w->total = log_odds(agree, pairs);
     for (int i = 0; i < CLASSES; i++)
-        w->weight[i] = w->pairs[i] < FEW ? log_odds(agree, pairs) : log_odds(w->agree[i], w->pairs[i]);
+        w->weight[i] = fmin(w->pairs[i] < FEW ? w->total : log_odds(w->agree[i], w->pairs[i]), w->most);
     if (w->kind == BRIO_EVIDENCE_NORMALS && !is_steep(w)) return false;
-    return log_odds(agree, pairs) >= LEAST;
+    return fmin(w->total, w->most) >= LEAST;
 }
 
+/* Adds weights to those of the other kind. Where both tell the same the larger one counts: normals mostly have their signs from the
+ * scanner, and are wrong where its place is. */
 static void add_weights(void *user, size_t begin, size_t end, int thread) {
     const weighing *w = user;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
         double weight = w->weight[class_of(w->cosine[p])];
-        if (w->cosine[p] != 0) w->own[p] += (float)(w->cosine[p] > 0 ? weight : -weight);
+        double more = w->cosine[p] == 0 ? 0 : w->cosine[p] > 0 ? weight : -weight, own = (double)w->own[p];
+        w->own[p] = (float)(own * more <= 0 ? own + more : fabs(more) > fabs(own) ? more : own);
     }
+}
+
+static bool is_given(const brio_evidence *e, unsigned kind) {
+    return kind == BRIO_EVIDENCE_NORMALS ? e->normals : e->origins;
 }
 
 brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c, float **own,
                                 unsigned *used) {
+    static const unsigned KINDS[] = {BRIO_EVIDENCE_ORIGINS, BRIO_EVIDENCE_NORMALS};
     brio_status status = BRIO_OK;
     size_t n = c->dual->num_points, tets = c->dual->t.count;
     int threads = brio_threads(ctx, n, SAMPLES_A_THREAD);
     weighing w = {.e = e, .c = c};
     *own = NULL;
     *used = 0;
-    const brio_evidence *given = &e->given;
-    if (!given->normals && !given->origins) return BRIO_OK;
+    if (!e->given.normals && !e->given.origins) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(ctx, w.cosine, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, w.own, n));
-    for (unsigned kind = BRIO_EVIDENCE_NORMALS; kind <= BRIO_EVIDENCE_ORIGINS; kind <<= 1) {
-        if (!(kind == BRIO_EVIDENCE_NORMALS ? given->normals : given->origins)) continue;
-        w.kind = kind;
+    for (int k = 0; k < 2; k++) {
+        w.kind = KINDS[k];
+        if (!is_given(&e->given, w.kind)) continue;
         for (int i = 0; i < CLASSES; i++) w.agree[i] = w.pairs[i] = 0;
         BRIO_TRY(brio_for(ctx, threads, n, find_cosines, &w));
         BRIO_TRY(brio_for(ctx, brio_threads(ctx, tets, TETS_A_THREAD), tets, count_pairs, &w));
+        w.most = *used ? log_odds_beside(&w, w.total) : MOST;
         if (!weigh_classes(&w)) continue;
         BRIO_TRY(brio_for(ctx, threads, n, add_weights, &w));
-        *used |= kind;
+        *used |= w.kind;
     }
 done:
     brio_release(ctx, w.cosine);
@@ -217,12 +243,19 @@ brio_status brio_scanner_directions(brio_context *ctx, const brio_sample_evidenc
     return brio_for(ctx, brio_threads(ctx, num_points, SAMPLES_A_THREAD), num_points, find_directions, &l);
 }
 
-double brio_evidence_agreement(const float *own, const uint8_t *turned, size_t num_points, size_t *told) {
-    size_t agree = 0;
+double brio_evidence_agreement(const brio_sample_evidence *e, unsigned kinds, const double *points,
+                               const float (*outside)[3], size_t num_points, size_t *told) {
+    size_t agree = 0, all = 0;
     *told = 0;
-    for (size_t p = 0; p < num_points && own; p++) {
-        *told += own[p] != 0;
-        agree += own[p] != 0 && (own[p] < 0) == turned[p];
+    for (size_t p = 0; p < num_points; p++) {
+        const double axis[3] = {(double)outside[p][0], (double)outside[p][1], (double)outside[p][2]};
+        size_t before = all;
+        for (unsigned kind = BRIO_EVIDENCE_NORMALS; kind <= BRIO_EVIDENCE_ORIGINS; kind <<= 1) {
+            double cosine = kinds & kind && is_given(&e->given, kind) ? cosine_to(e, kind, p, points + 3 * p, axis) : 0;
+            agree += cosine > 0;
+            all += cosine != 0;
+        }
+        *told += all > before;
     }
-    return *told ? (double)agree / (double)*told : 0;
+    return all ? (double)agree / (double)all : 0;
 }

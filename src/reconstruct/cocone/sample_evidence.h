@@ -17,10 +17,11 @@ brio_status brio_take_evidence(brio_context *ctx, const brio_evidence *given, si
                                brio_sample_evidence *out);
 
 /** Weighs for each sample whether its axis points outwards. Outside is where the normal points, and where the scanner
- *  stands. Evidence whose neighbours contradict each other as often as not weighs nothing.
+ *  stands. Evidence whose neighbours contradict each other as often as not weighs nothing, nor do normals that contradict the
+ *  places of the scanners as often as not.
  *  c     with its candidates.
  *  own   #P, owned by the caller (brio_release): log-odds; NULL if no evidence weighs anything.
- *  used  receives the set of kinds that weigh something, as in brio_labeled_delaunay_stats.evidence.
+ *  used  receives the set of kinds that weigh something, as in brio_surface_stats.evidence.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. Does not depend on the number of threads. */
 brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c, float **own,
                                 unsigned *used);
@@ -38,7 +39,11 @@ brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidenc
 brio_status brio_scanner_directions(brio_context *ctx, const brio_sample_evidence *e, const double *points,
                                     size_t num_points, float (**out)[3]);
 
-/** Returns the share of the samples with evidence whose axes have the signs that it tells.   told  receives their number. */
-double brio_evidence_agreement(const float *own, const uint8_t *turned, size_t num_points, size_t *told);
+/** Returns the share of what evidence tells of samples that is so in the result.
+ *  kinds    the set of kinds that count.
+ *  outside  of each sample: the direction to the outside; of any length, 0 where it has none.
+ *  told     receives the number of samples of which the evidence tells anything. */
+double brio_evidence_agreement(const brio_sample_evidence *e, unsigned kinds, const double *points,
+                               const float (*outside)[3], size_t num_points, size_t *told);
 
 #endif

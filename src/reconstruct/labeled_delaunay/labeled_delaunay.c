@@ -2,7 +2,8 @@
  *
  *   1. The samples in canonical order, scaled by a power of two to coordinates of at most 1.
  *   2. Their Delaunay triangulation, without strays (stray_samples.c); the axis of each sample, the spacing of the samples.
- *   3. A first orientation of the samples: whether their axes point outwards (sheet_signs.c).
+ *   3. A first orientation of the samples: whether their axes point outwards, by their sheets (sheet_signs.c) and by what the
+ *      file knows (cocone/sample_evidence.c).
  *   4. Labels of samples and tetrahedra of low energy: each sample votes on the side of its tetrahedra, and the area of the
  *      surface is weighed against the votes (vote_graph.c).
  *   5. Regions of a few tetrahedra are dropped. Labels change where the boundary is not one fan, at the least cost in
@@ -53,8 +54,8 @@ static const double LEAST_NOISE = 0.085, MOST_NOISE = 0.13;
  * rarer the larger k is, but the more there are in all, the larger is the largest. Chosen. */
 enum { SPECK = 2 };
 
-/* In log-odds, what the sign of a sample of an open surface weighs. Chosen on scans of models that nothing else was measured
- * on. */
+/* In log-odds, what the sign of a sample's sheet weighs, of an open surface or beside evidence. Chosen on scans of models that
+ * nothing else was measured on. */
 static const double SHEET = 3;
 
 /* Half the opening of the co-cones, for the first orientation: pi / 8 as in [Amenta Choi Dey Leekha 2000]. */
@@ -165,12 +166,24 @@ done:
     return status;
 }
 
-/* Gives signs to the axes, so that neighbours agree. */
-static brio_status sign_sheets(reconstruction *r) {
-    return brio_sign_sheets(r->ctx, &r->dual, r->spacing, r->left, r->turned, r->alone);
+/* Gives signs to the axes, so that neighbours agree.   told  of the samples, or NULL. */
+static brio_status sign_sheets(reconstruction *r, const float *told) {
+    brio_sheet_samples samples = {r->spacing, r->left, told};
+    return brio_sign_sheets(r->ctx, &r->dual, &samples, r->turned, r->alone);
 }
 
-/* Lets evidence sign the axes, if it tells anything. At the rims of sheets axes change then. */
+/* Writes the weight of each sample's vote: what evidence tells of it, and the sign of its sheet. Where places of scanners see the
+ * surface at a grazing angle their signs are wrong in patches; the sheet of a patch knows better. */
+static void add_sheets(const reconstruction *r) {
+    for (size_t p = 0; p < r->num_points; p++) {
+        double sheet = r->alone[p] ? 0 : r->turned[p] ? -SHEET : SHEET, all = (double)r->own[p] + sheet;
+        if (all != 0) r->turned[p] = all < 0;
+        r->own[p] = (float)(all * BRIO_VOTE_UNIT);
+    }
+}
+
+/* Lets evidence sign the axes, if it tells anything: each sheet by all that is told of it. At the rims of sheets axes change
+ * then. */
 static brio_status orient_by_evidence(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocones cocones = {0};
@@ -186,9 +199,9 @@ static brio_status orient_by_evidence(reconstruction *r) {
     brio_release(r->ctx, r->own);
     r->own = NULL;
     BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
-    BRIO_TRY(sign_sheets(r));
-    BRIO_TRY(brio_orient_by_evidence(r->ctx, &r->evidence, &cocones, r->turned, &r->own, used));
-    for (size_t p = 0; p < r->num_points && r->own; p++) r->own[p] *= (float)BRIO_VOTE_UNIT;
+    BRIO_TRY(brio_weigh_evidence(r->ctx, &r->evidence, &cocones, &r->own, used));
+    BRIO_TRY(sign_sheets(r, r->own));
+    if (r->own) add_sheets(r);
 done:
     brio_cocones_free(r->ctx, &cocones);
     return status;
@@ -198,10 +211,9 @@ done:
 static brio_status orient_by_sheets(reconstruction *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
-    BRIO_TRY(sign_sheets(r));
-    BRIO_TRY(BRIO_ALLOC(r->ctx, r->own, r->num_points));
-    for (size_t p = 0; p < r->num_points; p++)
-        r->own[p] = r->alone[p] ? 0 : (float)((r->turned[p] ? -SHEET : SHEET) * BRIO_VOTE_UNIT);
+    BRIO_TRY(sign_sheets(r, NULL));
+    BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->own, r->num_points));
+    add_sheets(r);
 done:
     return status;
 }
@@ -218,7 +230,7 @@ static brio_status orient(reconstruction *r) {
     if (r->is_open) {
         BRIO_TRY(orient_by_sheets(r));
     } else {
-        BRIO_TRY(sign_sheets(r));
+        BRIO_TRY(sign_sheets(r, NULL));
         BRIO_TRY(orient_by_evidence(r));
     }
     for (size_t p = 0; p < r->num_points; p++)
@@ -270,6 +282,17 @@ done:
     return status;
 }
 
+/* Tells how well the result agrees with evidence, be it of use or not. */
+static void compare_with_evidence(reconstruction *r) {
+    brio_surface_stats *s = &r->stats;
+    const float(*outside)[3] = (const float(*)[3])r->outside;
+    s->normals_agreement =
+        brio_evidence_agreement(&r->evidence, BRIO_EVIDENCE_NORMALS, r->points, outside, r->num_points, &s->normals);
+    s->origins_agreement =
+        brio_evidence_agreement(&r->evidence, BRIO_EVIDENCE_ORIGINS, r->points, outside, r->num_points, &s->origins);
+    s->agreement = brio_evidence_agreement(&r->evidence, s->evidence, r->points, outside, r->num_points, &s->told);
+}
+
 static brio_status label(reconstruction *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_settle_labels(&r->graph, r->label, &r->stats.undecided));
@@ -281,8 +304,7 @@ static brio_status label(reconstruction *r) {
     take_signs(r);
     for (size_t p = 0; p < r->num_points; p++)
         for (size_t k = 0; k < 3 && r->turned[p]; k++) r->outside[p][k] = -r->outside[p][k];
-    if (r->stats.evidence)
-        r->stats.agreement = brio_evidence_agreement(r->own, r->turned, r->num_points, &r->stats.told);
+    compare_with_evidence(r);
     lap(r, &r->stats.manifold_seconds);
     if (!r->options->confidence) brio_vote_graph_free(&r->graph);
 done:

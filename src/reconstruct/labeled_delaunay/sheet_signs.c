@@ -6,6 +6,9 @@
  * smooth place change nothing, and what is decided last, between large pieces, is decided by all ties of the seam
  * together. A spanning tree of the best links would decide it by one.
  *
+ * What is told of samples, by normals or places of scanners, adds up within a piece. Pieces stay apart that contradict each other
+ * more, in log-odds, than they are tied. In the end each looks where it is told to, or else where the hull does.
+ *
  * Poles are not asked: they tell that the back of a sheet sees the front of what is behind it, which makes one of the two
  * look away from the scanner. In a closed surface they would be right, but there neighbours tell enough.
  *
@@ -54,6 +57,7 @@ typedef struct {
     size_t count;
     uint32_t *up;   /* #P: 2 * parent, plus 1 if the parent's sign is opposite */
     uint32_t *best; /* #P: of roots, the greatest tie */
+    double *told;   /* #P, or NULL: of roots, the sum of what is told of their pieces */
 } signing;
 
 /* --- ties --- */
@@ -200,6 +204,16 @@ done:
     return status;
 }
 
+/* Returns how much of what is told of two pieces, in log-odds, is lost if they are joined, with opposite signs or not. */
+static double lost(const signing *s, uint32_t a, uint32_t b, bool opposite) {
+    if (!s->told) return 0;
+    return fabs(s->told[a]) + fabs(s->told[b]) - fabs(s->told[a] + (opposite ? -s->told[b] : s->told[b]));
+}
+
+static bool is_worth(const signing *s, uint32_t i) {
+    return abs(s->ties[i].weight) > UNIT * lost(s, s->ties[i].a, s->ties[i].b, s->ties[i].weight < 0);
+}
+
 static void offer(const signing *s, uint32_t root, uint32_t i) {
     uint32_t best = s->best[root];
     if (best == NO_TIE || abs(s->ties[i].weight) > abs(s->ties[best].weight)) s->best[root] = i;
@@ -210,13 +224,17 @@ static void offer(const signing *s, uint32_t root, uint32_t i) {
 static size_t join_pieces(const signing *s, double limit) {
     size_t joined = 0;
     for (size_t p = 0; p < s->v->num_points; p++) s->best[p] = NO_TIE;
-    for (uint32_t i = 0; i < s->count; i++) offer(s, s->ties[i].a, i), offer(s, s->ties[i].b, i);
+    for (uint32_t i = 0; i < s->count; i++)
+        if (is_worth(s, i)) offer(s, s->ties[i].a, i), offer(s, s->ties[i].b, i);
     for (size_t p = 0; p < s->v->num_points; p++) {
         if (s->best[p] == NO_TIE) continue;
         tie x = s->ties[s->best[p]];
         uint32_t a = find_root(s, x.a), b = find_root(s, x.b);
         if (abs(x.weight) < UNIT * limit || a >> 1 == b >> 1) continue;
-        s->up[b >> 1] = a ^ (b & 1) ^ (x.weight < 0);
+        uint32_t opposite = (a & 1) ^ (b & 1) ^ (x.weight < 0);
+        if (abs(x.weight) <= UNIT * lost(s, a >> 1, b >> 1, opposite)) continue;
+        s->up[b >> 1] = (a & ~UINT32_C(1)) ^ opposite;
+        if (s->told) s->told[a >> 1] += opposite ? -s->told[b >> 1] : s->told[b >> 1];
         joined++;
     }
     return joined;
@@ -248,16 +266,19 @@ static void count_outwards(const signing *s, int64_t *outwards) {
         }
 }
 
-brio_status brio_sign_sheets(brio_context *ctx, const brio_pole_vectors *v, const double *spacing, double noise,
+brio_status brio_sign_sheets(brio_context *ctx, const brio_pole_vectors *v, const brio_sheet_samples *samples,
                              uint8_t *turned, uint8_t *alone) {
     brio_status status = BRIO_OK;
+    const float *told = samples->told;
     size_t n = v->num_points;
-    signing s = {.ctx = ctx, .v = v, .spacing = spacing, .noise = noise};
+    signing s = {.ctx = ctx, .v = v, .spacing = samples->spacing, .noise = samples->noise};
     int64_t *outwards = NULL;
     BRIO_REQUIRE(ctx, n < UINT32_C(1) << 31, BRIO_ERR_TOO_LARGE, "%zu points; signs of axes take less than 2^31", n);
     BRIO_TRY(BRIO_ALLOC(ctx, s.up, n));
     BRIO_TRY(BRIO_ALLOC(ctx, s.best, n));
+    if (told) BRIO_TRY(BRIO_ALLOC(ctx, s.told, n));
     for (size_t p = 0; p < n; p++) s.up[p] = (uint32_t)(2 * p);
+    for (size_t p = 0; p < n && told; p++) s.told[p] = (double)told[p];
     BRIO_TRY(list_ties(&s));
     BRIO_TRY(join_all(&s));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, outwards, n));
@@ -265,7 +286,9 @@ brio_status brio_sign_sheets(brio_context *ctx, const brio_pole_vectors *v, cons
     memset(alone, 1, n);
     for (uint32_t p = 0; p < n; p++) {
         uint32_t root = find_root(&s, p);
-        turned[p] = (uint8_t)((root & 1) ^ (outwards[root >> 1] < 0));
+        bool is_told = s.told && s.told[root >> 1] != 0;
+        bool opposite = is_told ? s.told[root >> 1] < 0 : outwards[root >> 1] < 0;
+        turned[p] = (uint8_t)((root & 1) ^ opposite);
         if (root >> 1 != p) alone[p] = alone[root >> 1] = 0;
     }
 done:
@@ -273,5 +296,6 @@ done:
     brio_release(ctx, s.best);
     brio_release(ctx, s.ties);
     brio_release(ctx, outwards);
+    brio_release(ctx, s.told);
     return status;
 }

@@ -24,6 +24,7 @@ static brio_status simplify(brio_labeled_poles *l, size_t polygons, brio_mesh *m
     brio_collapse_options o = {.target_faces = polygons / 4,
                                .spacing = brio_mesh_property(mesh, "spacing")->data,
                                .longest = LONGEST_COLLAPSE,
+                               .embedded = true,
                                .tolerance = COLLAPSE_TOLERANCE};
     BRIO_TRY(brio_collapse_edges(l->ctx, mesh, &o));
     *seconds = brio_seconds() - start;

@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+"""Open3D's surfaces of points with normals, a program of its own: nothing of it is in brio's process.
+
+    open3d_surface.py poisson|pivoting IN OUT
+
+Needs Open3D from PyPI: scripts/setup.sh rivals installs it in out/open3d-env. Poisson reconstruction has depth 8, and the fifth
+of its vertices with the least density is cut off. Ball pivoting has balls of 1, 2 and 4 times the mean distance of nearest points."""
+import sys
+
+DEPTH, CUT = 8, 0.2
+RADII = [1, 2, 4]
+
+
+def poisson(o3d, np, cloud):
+    mesh, density = o3d.geometry.TriangleMesh.create_from_point_cloud_poisson(cloud, depth=DEPTH)
+    density = np.asarray(density)
+    mesh.remove_vertices_by_mask(density < np.quantile(density, CUT))
+    return mesh
+
+
+def pivoting(o3d, np, cloud):
+    spacing = float(np.mean(cloud.compute_nearest_neighbor_distance()))
+    radii = o3d.utility.DoubleVector([factor * spacing for factor in RADII])
+    return o3d.geometry.TriangleMesh.create_from_point_cloud_ball_pivoting(cloud, radii)
+
+
+def main():
+    way, source, out = sys.argv[1:]
+    import numpy as np
+    import open3d as o3d
+    cloud = o3d.io.read_point_cloud(source)
+    mesh = {'poisson': poisson, 'pivoting': pivoting}[way](o3d, np, cloud)
+    return 0 if o3d.io.write_triangle_mesh(out, mesh, write_vertex_normals=False) else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main())
