@@ -45,7 +45,7 @@ static void report(run *r, const brio_curve_stats *s) {
     cli_fact_count(f, "gaps", s->gaps);
 }
 
-/* Edges of a Delaunay triangulation do not cross. */
+/* Certifies a curve. Edges of a Delaunay triangulation do not cross. */
 static brio_status certify(run *r, const brio_mesh *curve, const brio_curve_stats *s) {
     facts *f = &r->facts;
     brio_curve_certificate c = {0};
