@@ -55,8 +55,8 @@ static void report_dropped(run *r, const component_options *options, const size_
 
 /* --- the command --- */
 
-/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone is
- * given; of points in a plane, curves. */
+/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone
+ * is given; of points in a plane, curves. */
 enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, CURVES, NO_LABELING = -1 };
 
 typedef struct arguments {

@@ -171,8 +171,8 @@ static brio_status fill_row(run *r, void *user, size_t row, double *heights) {
     return BRIO_OK;
 }
 
-/* Lays a grid whose lines are at multiples of the cell over the points. A point that is beyond a line by rounding alone needs
- * no cell there. */
+/* Lays a grid whose lines are at multiples of the cell over the points. A point that is beyond a line by rounding alone
+ * needs no cell there. */
 static brio_status lay_grid(run *r, double cell, terrain *t) {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, cells[2];
     double share = cli_up_to(cell, cli_rounding(t->points)) / cell - 1; /* of a cell */

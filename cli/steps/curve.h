@@ -4,8 +4,9 @@
 
 #include "cli/run/run.h"
 
-/** Finds out whether `brio surface` makes curves of these points without being asked: they may be in a plane, are on no line, and more
- *  than three. A few points decide, so that it costs nothing where they are not; brio_curve then looks at all. */
+/** Sets *flat to whether `brio surface` makes curves of these points without being asked: they may be in a plane, are
+ *  on no line, and more than three. A few points decide, so that it costs nothing where they are not; brio_curve then
+ *  looks at all. */
 brio_status cli_may_be_flat(run *r, const brio_mesh *points, bool *flat);
 
 /** Makes curves, reports them with their certificate, and gives them the properties of the points.

@@ -15,7 +15,8 @@ enum { FITTING_ORDER = BRIO_ORDER_END };
 
 extern const option_choice cli_orders[];
 
-/** Rows of a command's option table whose struct has order_options as its member `field`; `usual` ends the help of --order. */
+/** Rows of a command's option table whose struct has order_options as its member `field`; `usual` ends the help of
+ *  --order. */
 #define ORDER_ROWS(type, field, usual)                                                                                 \
     {"order",   0, OPTION_CHOICE, offsetof(type, field.order), "NAME", "insertion order (default brio" usual ")",      \
      cli_orders},                                                                                                      \

@@ -1,6 +1,7 @@
 /* The certificate of polylines: what the edges of a mesh alone prove about the curves that they form.
  *
- * A union-find joins the ends of the edges; its sets are the components. Degrees tell ends, branches and closed curves. */
+ * A union-find joins the ends of the edges; its sets are the components. Degrees tell ends, branches and closed
+ * curves. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/union_find.h"

@@ -1,16 +1,16 @@
 /* Curves as chains of links, and where they have corners.
  *
- * A corner is where a curve turns by 40 degrees or more at a point while it turns by less than a third of that at the two
- * points beside it; or at a link whose two ends turn the same way by so much together, where the corner lies between two
- * points. Two ends that turn by nearly 180 degrees together, such as those of the short side of a strip, are two corners,
- * since lines that part meet in none. */
+ * A corner is where a curve turns by 40 degrees or more at a point while it turns by less than a third of that at the
+ * two points beside it; or at a link whose two ends turn the same way by so much together, where the corner lies
+ * between two points. Two ends that turn by nearly 180 degrees together, such as those of the short side of a strip,
+ * are two corners, since lines that part meet in none. */
 #include "base/memory.h"
 #include "curve/work.h"
 #include <stddef.h>
 #include <string.h>
 
-/* SHARP: the least turn of a corner. CALM: the share of it by which the points beside may turn. PARTING: from this turn on
- * the two ends of a link are two corners. Radians. Chosen. */
+/* SHARP: the least turn of a corner. CALM: the share of it by which the points beside may turn. PARTING: from this turn
+ * on the two ends of a link are two corners. Radians. Chosen. */
 static const double SHARP = 0.6981317007977318, CALM = 1.0 / 3, PARTING = 2.9670597283903604;
 
 /* --- chains --- */

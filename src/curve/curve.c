@@ -17,12 +17,12 @@
 #include "order/canonical_points.h"
 #include <math.h>
 
-/* Points off their plane by at most this share of their extent are taken for points of it: as single precision, or decimals
- * of a file, leave them. Chosen. */
+/* Points off their plane by at most this share of their extent are taken for points of it: as single precision, or
+ * decimals of a file, leave them. Chosen. */
 static const double THIN = 0x1p-20;
 
-/* From this share of fat links on the points lie on an area and not on curves. Measured: none along curves, 12 to 50 % of
- * points at random or on a shaken grid. */
+/* From this share of fat links on the points lie on an area and not on curves. Measured: none along curves, 12 to 50 %
+ * of points at random or on a shaken grid. */
 static const double MOST_FAT = 0.1;
 
 /* --- points to rows --- */
@@ -81,8 +81,8 @@ typedef struct {
     const brio_curve_chains *chains;
 } result;
 
-/* Marks the points that are vertices. Rows at the position of another one have no edges; where no row has, all are at one
- * position. */
+/* Marks the points that are vertices. Rows at the position of another one have no edges; where no row has, all are at
+ * one position. */
 static void mark_vertices(const result *r, uint32_t *vertex) {
     const uint32_t *start = r->work->start;
     for (size_t p = 0; p < r->num_points; p++)

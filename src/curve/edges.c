@@ -3,8 +3,8 @@
  * Each triangle, infinite ones included, gives its finite edges in its own direction. So each edge is listed once from
  * either of its ends, with the corner of the triangle to its left.
  *
- * Based on: Amenta, Bern, Eppstein. The crust and the beta-skeleton. GMIP 1998: the edges of a curve that is sampled densely
- * enough are Delaunay edges. */
+ * Based on: Amenta, Bern, Eppstein. The crust and the beta-skeleton. GMIP 1998: the edges of a curve that is sampled
+ * densely enough are Delaunay edges. */
 #include "base/memory.h"
 #include "curve/work.h"
 

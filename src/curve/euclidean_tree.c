@@ -1,8 +1,9 @@
 /* The Euclidean minimum spanning tree of points: the shortest edges of the Delaunay triangulation that join all points.
  *
- * Some minimum spanning tree consists of Delaunay edges, whatever the ties. They are taken by length, shortest first, each
- * that joins two trees [Kruskal 1956]. Lengths are compared exactly, and edges of one length by the positions of their ends.
- * The Delaunay triangulation is that of the points alone, so the tree is, too: the same for every order of the points.
+ * Some minimum spanning tree consists of Delaunay edges, whatever the ties. They are taken by length, shortest first,
+ * each that joins two trees [Kruskal 1956]. Lengths are compared exactly, and edges of one length by the positions of
+ * their ends. The Delaunay triangulation is that of the points alone, so the tree is, too: the same for every order of
+ * the points.
  *
  * A radix sort puts the edges in order by rounded lengths; only runs of nearly equal ones are compared exactly.
  *

@@ -1,22 +1,22 @@
 /* Where curves end: links that are long for their surroundings span gaps, and are taken out.
  *
- * A link is held against the links near it, up to eight along the curve on either side. It spans a gap if it is longer than
- * the longest of them times a limit. The limit is 2.25 where they are all alike, so that one missing point makes no gap. It
- * rises with their spread, since points at random leave wide gaps now and then. It falls by two fifths where the curve turns
- * back over the link, as between the ends of two parallel lines: a corner without a sample is bridged by a link shorter than
- * its neighbours. A link with no other one near it spans no gap.
+ * A link is held against the links near it, up to eight along the curve on either side. It spans a gap if it is longer
+ * than the longest of them times a limit. The limit is 2.25 where they are all alike, so that one missing point makes
+ * no gap. It rises with their spread, since points at random leave wide gaps now and then. It falls by two fifths where
+ * the curve turns back over the link, as between the ends of two parallel lines: a corner without a sample is bridged
+ * by a link shorter than its neighbours. A link with no other one near it spans no gap.
  *
  * After gaps were taken out, links near them are held against what is left, and points that became free wish again.
  *
- * Based on: Zeng, Nguyen, Yan, Li. A distance-based parameter-free algorithm for curve reconstruction. CAD 2008: a link is
- * held against the mean and the spread of those beside it.
- * Differs from the paper: more links than the two beside it, and the longest of them, so that an even and an uneven curve
- * are both closed. */
+ * Based on: Zeng, Nguyen, Yan, Li. A distance-based parameter-free algorithm for curve reconstruction. CAD 2008: a link
+ * is held against the mean and the spread of those beside it.
+ * Differs from the paper: more links than the two beside it, and the longest of them, so that an even and an uneven
+ * curve are both closed. */
 #include "base/memory.h"
 #include "curve/work.h"
 
-/* NEAR: links along the curve on either side. Chosen: of a thousand points at random on a circle, 0.1 gaps are expected to
- * be found. */
+/* NEAR: links along the curve on either side. Chosen: of a thousand points at random on a circle, 0.1 gaps are expected
+ * to be found. */
 enum { NEAR = 8 };
 
 /* The limit of even links, and what a link with right angles at both ends loses of it. Chosen. */

@@ -1,17 +1,18 @@
 /* Which Delaunay edges are links of the curve: those that both ends wish.
  *
- * A point wishes the two neighbours through which a curve passes it best: near ones, one in either direction. So a line is
- * followed past another one that is nearer than its own points, and both arms of a sharp corner reach its tip. Two points
- * that wish each other are linked. A point with two links is taken, and those that wished it wish again, among the
- * neighbours that are still free; so do points with one link. Each link takes a place of two points for good, and a point
- * wishes again only when a neighbour is taken: all is done in time linear in the edges.
+ * A point wishes the two neighbours through which a curve passes it best: near ones, one in either direction. So a line
+ * is followed past another one that is nearer than its own points, and both arms of a sharp corner reach its tip. Two
+ * points that wish each other are linked. A point with two links is taken, and those that wished it wish again, among
+ * the neighbours that are still free; so do points with one link. Each link takes a place of two points for good, and a
+ * point wishes again only when a neighbour is taken: all is done in time linear in the edges.
  *
- * Based on: Dey, Kumar. A simple provable algorithm for curve reconstruction. SODA 1999: an edge to the nearest point, and
- * one to the nearest point on its other side.
- *           Dey, Wenger. Fast reconstruction of curves with sharp corners. IJCGA 2002: the direction of an edge counts beside
+ * Based on: Dey, Kumar. A simple provable algorithm for curve reconstruction. SODA 1999: an edge to the nearest point,
+ * and one to the nearest point on its other side.
+ *           Dey, Wenger. Fast reconstruction of curves with sharp corners. IJCGA 2002: the direction of an edge counts
+ *           beside
  * its length, and both ends judge.
- * Differs from the papers: they take an edge by thresholds of its angle with the normal, which the Voronoi cell shows, and of
- * the length of its Voronoi edge; here edges compete for places, and no threshold decides. */
+ * Differs from the papers: they take an edge by thresholds of its angle with the normal, which the Voronoi cell shows,
+ * and of the length of its Voronoi edge; here edges compete for places, and no threshold decides. */
 #include "base/memory.h"
 #include "curve/work.h"
 #include <string.h>
@@ -19,12 +20,13 @@
 /* MOST: neighbours that a point looks at, the nearest ones. Chosen; bounds the time where a point has many. */
 enum { MOST = 16 };
 
-/* What a turn costs: the way counts 1/sin^4 times, of half the angle between the two directions, but at most so many times.
- * Chosen: beside a tip of 20 degrees, where the other arm is three times as near as the tip, the way to the tip is cheaper. */
+/* What a turn costs: the way counts 1/sin^4 times, of half the angle between the two directions, but at most so many
+ * times. Chosen: beside a tip of 20 degrees, where the other arm is three times as near as the tip, the way to the tip
+ * is cheaper. */
 static const double SHARPEST = 16;
 
-/* A way over so many times the distance of the nearest neighbour leads past it to something else: the nearest one is wished
- * alone. Chosen, as above. */
+/* A way over so many times the distance of the nearest neighbour leads past it to something else: the nearest one is
+ * wished alone. Chosen, as above. */
 static const double FAR_WAY = 8;
 
 /* A neighbour, its distance and its direction. */
@@ -114,7 +116,8 @@ static void link_wished(brio_curve_work *w, uint32_t p) {
     }
 }
 
-/* Lists the rows that are to wish again: those that were linked, from `first` on, and those whose neighbours were taken. */
+/* Lists the rows that are to wish again: those that were linked, from `first` on, and those whose neighbours were
+ * taken. */
 static size_t list_changed(brio_curve_work *w, size_t first, uint32_t *rows) {
     size_t count = 0;
     for (size_t i = first; i < w->num_changed; i++) {

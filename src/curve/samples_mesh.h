@@ -4,8 +4,8 @@
 
 #include "base/context.h"
 
-/** Makes a mesh of the points that stand for themselves, in their order, with the property "sample" (uint32), the index of the
- *  point.
+/** Makes a mesh of the points that stand for themselves, in their order, with the property "sample" (uint32), the index
+ *  of the point.
  *  vertex  #P: in, BRIO_INFINITE for points that are no vertices; out, the vertex of each other one.
  *  out     owned by the caller. */
 brio_status brio_samples_mesh(brio_context *ctx, const double *points, size_t num_points, uint32_t *vertex,

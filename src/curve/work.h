@@ -1,4 +1,5 @@
-/* The parts of a curve's reconstruction: Delaunay edges, which of them are links of the curve, and the chains of the links.
+/* The parts of a curve's reconstruction: Delaunay edges, which of them are links of the curve, and the chains of the
+ * links.
  *
  * Points are rows in a canonical order, so that nothing here depends on the order of the caller's points. A row at the
  * position of an earlier one has no edges. */
@@ -55,8 +56,8 @@ static inline double brio_curve_direction(const brio_curve_work *w, uint32_t p, 
     return length;
 }
 
-/** Returns the turn, in radians from 0 to pi, of a walk from row o over p to q; positive: 1 in *left for a turn to the left,
- *  else -1; `left` may be NULL. */
+/** Returns the turn, in radians from 0 to pi, of a walk from row o over p to q; positive: 1 in *left for a turn to the
+ *  left, else -1; `left` may be NULL. */
 double brio_curve_turn(const brio_curve_work *w, uint32_t o, uint32_t p, uint32_t q, int *left);
 
 /** Allocates and fills the Delaunay edges of the rows in the plane; allocates the links, none of which is made.
@@ -66,8 +67,8 @@ brio_status brio_curve_edges(brio_curve_work *w);
 /** Frees what brio_curve_edges allocated. */
 void brio_curve_work_free(brio_curve_work *w);
 
-/** Links rows that wish each other, until no two do.   rows  those to begin with: all rows, or those whose neighbours may
- *  have become free since the last call; workspace, as long as all rows. */
+/** Links rows that wish each other, until no two do.   rows  those to begin with: all rows, or those whose neighbours
+ *  may have become free since the last call; workspace, as long as all rows. */
 brio_status brio_curve_link(brio_curve_work *w, uint32_t *rows, size_t count);
 
 /** Removes links that span gaps, links what that frees, and so on until neither changes.

@@ -4,8 +4,8 @@
  *   2. The candidates, copied in an insertion order, by default a biased randomized one, are inserted one by one
  *      (polytope.c). Hulls so flat that doubles hold no point inside come from the Delaunay triangulation
  *      (delaunay_polytope.c).
- *   3. Triangles of one plane become one polygon between strictly extreme points (hull_faces.c). So the result depends on
- *      the points only, and not on the way to it.
+ *   3. Triangles of one plane become one polygon between strictly extreme points (hull_faces.c). So the result depends
+ *      on the points only, and not on the way to it.
  *   4. Polygons are cut into fans of triangles, unless the caller wants polygons.
  *
  * Based on: Clarkson, Shor. Applications of random sampling in computational geometry, II. DCG 1989.

@@ -42,7 +42,8 @@ double brio_closest_point(const brio_triangle_tree *tree, const double *p, doubl
 double brio_closest_within(const brio_triangle_tree *tree, const double *p, double bound, double *closest,
                            size_t *triangle);
 
-/** Returns whether a point of the triangles is nearer to p than the root of `bound`: faster than finding the nearest one.
+/** Returns whether a point of the triangles is nearer to p than the root of `bound`: faster than finding the nearest
+ *  one.
  *  triangle  looked at first; receives one that is so near, if there is one. */
 bool brio_is_within(const brio_triangle_tree *tree, const double *p, double bound, size_t *triangle);
 

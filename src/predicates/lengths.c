@@ -1,12 +1,12 @@
-/* Which of two segments is longer, exactly: doubles with a bound of their error; segments whose three differences are the same,
- * as on a grid; dyadic numbers for the rest. */
+/* Which of two segments is longer, exactly: doubles with a bound of their error; segments whose three differences are
+ * the same, as on a grid; dyadic numbers for the rest. */
 #include "predicates/lengths.h"
 #include "predicates/dyadic.h"
 #include <math.h>
 #include <stdbool.h>
 
-/* A difference is wrong by 2^-53 of itself, a square by 3, a sum of three by 5 of these units, all but their squares; the
- * difference of two such sums by 6 of their sum. */
+/* A difference is wrong by 2^-53 of itself, a square by 3, a sum of three by 5 of these units, all but their squares;
+ * the difference of two such sums by 6 of their sum. */
 static const double ERROR = 8 * 0x1p-53;
 
 static double squared(const double *a, const double *b) {

@@ -4,7 +4,8 @@
 
 #include <stdint.h>
 
-/** Returns the sign of |a - b| - |c - d|, for finite points of space.   exact  counts calls that doubles did not settle. */
+/** Returns the sign of |a - b| - |c - d|, for finite points of space.   exact  counts calls that doubles did not
+ *  settle. */
 int brio_compare_lengths(const double *a, const double *b, const double *c, const double *d, uint64_t *exact);
 
 #endif

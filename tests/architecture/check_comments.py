@@ -12,7 +12,7 @@ import pathlib
 import re
 import sys
 
-LATER = {"src/reconstruct/labeled_delaunay": 3, "src/reconstruct/labels": 2, "src/reconstruct/noise": 1,
+LATER = {"src/reconstruct/labeled_delaunay": 2, "src/reconstruct/labels": 2, "src/reconstruct/noise": 1,
          "src/reconstruct/power_crust": 2, "src/reconstruct/surface": 1}
 
 # The verb: its form for one function ends in s, and these words, which end so too, are none.
