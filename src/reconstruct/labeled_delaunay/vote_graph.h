@@ -31,9 +31,9 @@ static inline float brio_own_vote(const brio_vote_graph *g, size_t sample) {
     return g->own ? g->own[sample] : 0;
 }
 
-/** Returns what speaks for outer before any sample votes: BRIO_HULL_VOTE for tetrahedra beyond the hull, 0 for others. Where
- *  no sample tells, what is beyond the hull is outside: flat tetrahedra within a side of the hull tell next to nothing, and
- *  those beyond it would else take the label of what is behind the side. */
+/** Returns what speaks for outer before any sample votes: BRIO_HULL_VOTE for tetrahedra beyond the hull, 0 for others.
+ *  Where no sample tells, what is beyond the hull is outside: flat tetrahedra within a side of the hull tell next to
+ *  nothing, and those beyond it would else take the label of what is behind the side. */
 static inline float brio_hull_vote(const brio_vote_graph *g, size_t tet) {
     return tet < g->dual->num_finite ? 0 : (float)(BRIO_HULL_VOTE * BRIO_VOTE_UNIT);
 }

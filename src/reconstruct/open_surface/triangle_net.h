@@ -42,16 +42,16 @@ static inline bool brio_net_has_twin(const brio_triangle_net *n, size_t half_edg
 /** Writes the unit normal of a triangle, 0 if its corners are collinear. */
 void brio_net_normal(const brio_triangle_net *n, size_t face, double normal[3]);
 
-/** Returns the cosine between a triangle's normal and what its sample at corner i takes for the outside; 1 if it does not
- *  say. */
+/** Returns the cosine between a triangle's normal and what the sample where a half-edge starts takes for the outside; 1
+ *  if it does not say. */
 double brio_net_facing_at(const brio_triangle_net *n, const double normal[3], size_t half_edge);
 
 /** Returns the mean cosine between the normal of a triangle and what its samples take for the outside; 1 if they do not
  *  say. */
 double brio_net_facing(const brio_triangle_net *n, size_t face);
 
-/** Returns the largest cosine between the normal of a triangle and the directions from its samples to their scanners: under
- *  0, none of these saw this side of it. 1 if no scanner is known. */
+/** Returns the largest cosine between the normal of a triangle and the directions from its samples to their scanners:
+ *  under 0, none of these saw this side of it. 1 if no scanner is known. */
 double brio_net_viewing(const brio_triangle_net *n, size_t face);
 
 #endif
