@@ -11,47 +11,10 @@
 #include "cli/steps/hints.h"
 #include "cli/steps/power_crust.h"
 #include "cli/steps/properties.h"
+#include "cli/steps/selection.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* --- components --- */
-
-/* What a reconstructed surface gets before it is reported. */
-
-typedef struct component_options {
-    bool largest;
-    uint64_t least; /* faces */
-} component_options;
-
-/** Rows of a command's option table whose struct has component_options as its member `field`. */
-#define COMPONENT_ROWS(type, field)                                                                                    \
-    {                                                                                                                  \
-        "keep-largest",                                                                                                \
-        0,                                                                                                             \
-        OPTION_FLAG,                                                                                                   \
-        offsetof(type, field.largest),                                                                                 \
-        NULL,                                                                                                          \
-        "keep only the component of largest area",                                                                     \
-        0},                                                                                                            \
-    {                                                                                                                  \
-        "min-component", 0, OPTION_NATURAL, offsetof(type, field.least), "N", "drop components of fewer than N faces", \
-            0                                                                                                          \
-    }
-
-/* Drops components as the options say; nothing without options.   dropped  components and faces. */
-static brio_status keep_components(run *r, const component_options *options, brio_mesh *surface, size_t dropped[2]) {
-    dropped[0] = dropped[1] = 0;
-    if (!options->largest && !options->least) return cli_check_interrupt(r);
-    return brio_mesh_keep_components(surface, options->largest, options->least, &dropped[0], &dropped[1]);
-}
-
-/* Reports what was dropped, if the options ask for it. */
-static void report_dropped(run *r, const component_options *options, const size_t dropped[2]) {
-    if (!options->largest && !options->least) return;
-    cli_fact_count(&r->facts, "dropped_components", dropped[0]);
-    cli_fact_count(&r->facts, "dropped_faces", dropped[1]);
-}
 
 /* --- the command --- */
 
@@ -155,12 +118,14 @@ static brio_status complete(run *r, const brio_mesh *points, const uint32_t *sam
     if (a->vertex_normals || method == LABELED_DELAUNAY) FORWARD(brio_mesh_add_normals(surface));
     FORWARD(method == COCONE || method == TIGHT_COCONE ? cli_copy_properties(r, points, surface)
                                                        : cli_carry_properties(r, points, samples, surface));
-    FORWARD(keep_components(r, &a->components, surface, dropped));
+    FORWARD(cli_keep_components(r, &a->components, surface, dropped));
+    while (a->crust.triangulate && surface->num_face_properties > 0)
+        brio_mesh_remove_face_property(surface, surface->face_properties[0].name);
     cli_fact_text(&r->facts, "method", methods[method - 1].name);
     cli_fact_count(&r->facts, "samples", num_samples);
     cli_fact_count(&r->facts, "vertices", surface->num_vertices);
     cli_fact_count(&r->facts, "faces", surface->num_faces);
-    report_dropped(r, &a->components, dropped);
+    cli_report_dropped(r, &a->components, dropped);
     return BRIO_OK;
 }
 

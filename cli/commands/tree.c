@@ -2,6 +2,7 @@
 #include "cli/files/files.h"
 #include "cli/files/read_write.h"
 #include "cli/run/commands.h"
+#include "cli/steps/curve.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/plane.h"
 #include "cli/steps/properties.h"
@@ -19,8 +20,6 @@ static const option options[] = {
 };
 
 static const arguments defaults = {.plane = NO_PLANE};
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU,
-                                      BRIO_FORMAT_VTK, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
 
 /* Bytes of an edge of the triangulation, which has about eight a point. */
 static const double EDGE_BYTES = 32, EDGES = 8;
@@ -71,7 +70,8 @@ static brio_status spanning_tree(run *r) {
     brio_mesh *points = NULL, *result = NULL;
     double *projected = NULL, bytes;
     brio_status status = BRIO_OK;
-    TRY(cli_require_output(r, formats, true));
+    TRY(cli_require_output(r, cli_mesh_formats, true));
+    TRY(cli_require_edges(r));
     TRY(cli_read_points(r, r->operands[0], &points));
     TRY(cli_delaunay_bytes(r, points, NULL, &o, &bytes));
     TRY(cli_require_memory(r, bytes + EDGES * EDGE_BYTES * (double)points->num_vertices));

@@ -67,15 +67,12 @@ static brio_status certify(run *r, const brio_mesh *curve, const brio_curve_stat
     return BRIO_OK;
 }
 
-/* Refuses an output without edges. */
-static brio_status require_edges(run *r) {
+brio_status cli_require_edges(run *r) {
     brio_format format;
     if (!r->common.output) return BRIO_OK;
     FORWARD(cli_output_format(r, r->common.output, r->common.format, &format));
     if (brio_format_facts(format)->holds & BRIO_HOLDS_EDGES) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT,
-                    "%s cannot hold edges, and points in a plane make curves: .ply .vtp .vtu .vtk .glb can",
-                    r->common.output);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold edges: .ply .vtp .vtu .vtk .glb can", r->common.output);
 }
 
 brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed, brio_mesh **out) {
@@ -85,7 +82,7 @@ brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed,
     brio_status status = BRIO_OK;
     o.open = open;
     o.closed = closed;
-    TRY(require_edges(r));
+    TRY(cli_require_edges(r));
     TRY(cli_require_work(r, BRIO_OK, points, (uint64_t)(POINT_BYTES * (double)points->num_vertices)));
     TRY(brio_curve(r->ctx, points->vertices, points->num_vertices, &o, out, &s));
     samples = malloc((s.samples + 1) * sizeof *samples);

@@ -1,4 +1,4 @@
-/* brio surface of points in a plane: curves. */
+/* Curves and other edges: brio surface of points in a plane, and what brio tree needs of it. */
 #ifndef BRIO_CLI_CURVE_H
 #define BRIO_CLI_CURVE_H
 
@@ -8,6 +8,9 @@
  *  on no line, and more than three. A few points decide, so that it costs nothing where they are not; brio_curve then
  *  looks at all. */
 brio_status cli_may_be_flat(run *r, const brio_mesh *points, bool *flat);
+
+/** Refuses an output whose format holds no edges. */
+brio_status cli_require_edges(run *r);
 
 /** Makes curves, reports them with their certificate, and gives them the properties of the points.
  *  open  of brio_curve_options.   closed  the same. */

@@ -1,4 +1,4 @@
-/* Some of the points of a file, with their properties. */
+/* Some of the points of a file, with their properties, and some of the components of a surface. */
 #include "cli/steps/selection.h"
 #include <string.h>
 
@@ -31,4 +31,16 @@ brio_status cli_select_points(run *r, const brio_mesh *points, const uint8_t *ch
 done:
     brio_mesh_free(made);
     return status;
+}
+
+brio_status cli_keep_components(run *r, const component_options *options, brio_mesh *surface, size_t dropped[2]) {
+    dropped[0] = dropped[1] = 0;
+    if (!options->largest && !options->least) return cli_check_interrupt(r);
+    return brio_mesh_keep_components(surface, options->largest, options->least, &dropped[0], &dropped[1]);
+}
+
+void cli_report_dropped(run *r, const component_options *options, const size_t dropped[2]) {
+    if (!options->largest && !options->least) return;
+    cli_fact_count(&r->facts, "dropped_components", dropped[0]);
+    cli_fact_count(&r->facts, "dropped_faces", dropped[1]);
 }

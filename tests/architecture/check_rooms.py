@@ -30,7 +30,6 @@ NAMED = {
     "cli/commands/convert.c": "PLY",
     "cli/commands/delaunay.c": "NODE PLY VTK VTU",
     "cli/commands/medial.c": "PLY VTK VTP VTU XYZ",
-    "cli/commands/tree.c": "OBJ PLY VTK VTP VTU",
     "cli/steps/curve.c": "OFF STL",
     "cli/files/precision.c": "STL",
     "cli/files/read_write.c": "GLB LAS LAZ NODE NPY OBJ OFF PCD PLY STL VTK VTP VTU XYZ",

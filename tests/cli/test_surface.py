@@ -427,6 +427,15 @@ class PowerCrust(CliTest):
         faces = [line for line in body[2:] if line[0] == "3" and len(line) == 4]
         self.assertGreaterEqual(len(faces), facts["faces"])
 
+    def test_plain_triangles_have_no_properties(self):
+        # Small readers take a face for a count and three indices.
+        points, out = self.cloud("a.ply", 1500, "torus"), self.path("out.ply")
+        for options, plain in (((), False), (("--triangulate",), True)):
+            self.facts("surface", points, "-o", out, *options)
+            with open(out, "rb") as f:
+                header = f.read().split(b"end_header")[0].decode().split("element face")[1]
+            self.assertEqual(header.count("property") == 1, plain, header)
+
 
     def test_simplified_crusts_and_offsets_do_not_cross(self):
         """Noise bends them back beside themselves: without a look at each collapse 16 and 3 pairs crossed."""
