@@ -258,6 +258,8 @@ static void report_orientation(run *r, const brio_surface_stats *s) {
 
 /* Warns of bridges over a share of the area, and of guesses. */
 static void report_unseen(run *r, const brio_surface_stats *s) {
+    const power_crust_options *a = &((const arguments *)r->arguments)->crust;
+    bool automatic = !a->closed && (!a->open || strcmp(a->open, "auto") == 0);
     facts *f = &r->facts;
     cli_fact_count(f, "strays", s->strays);
     cli_fact_count(f, "holes", s->holes);
@@ -273,7 +275,8 @@ static void report_unseen(run *r, const brio_surface_stats *s) {
     cli_fact_real(f, "far_area_percent", 100 * s->far_share);
     if (s->bridge_share > MANY_GUESSES)
         cli_warn(r, WARNING_BRIDGES, 100 * s->bridge_share, s->bridges, s->bridge_centre[0], s->bridge_centre[1],
-                 s->bridge_centre[2], 2 * s->bridge_radius);
+                 s->bridge_centre[2], 2 * s->bridge_radius,
+                 automatic ? "K leaves out what is wider than K spacings" : "auto leaves out what was not seen");
 }
 
 static void report_labeled_delaunay(run *r, const brio_surface_stats *s) {

@@ -47,7 +47,7 @@
 #define WARNING_BRIDGES                                                                                                \
     "%.1f %% of the area spans gaps between the points, where nothing was seen: %zu bridges, the largest at %g %g "    \
     "%g, "                                                                                                             \
-    "%g across; --open auto leaves out what was not seen"
+    "%g across; --open %s"
 #define WARNING_UNSEEN   "%.1f %% of the area is where no point is near: %zu bridges, the largest at %g %g %g, %g across"
 #define WARNING_ASIDE    "the %s of the points are of no use: they agree with the surface at %.0f %% of these"
 #define WARNING_LEFT_OUT "%zu of %zu points are farther than two spacings from the surface"

@@ -42,7 +42,7 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
     {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
      "a quarter as many faces, as far as the shape allows; triangles", 0},                                             \
     {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
-     "plain triangles: faces without properties, for readers that expect none", 0},                                                                      \
+     "plain triangles: faces without properties, for readers that expect none", 0},                                    \
     {"normals", 0, OPTION_OUTPUT, offsetof(type, field.normals), "FILE",                                               \
      "also write the points with oriented normals", 0}
 

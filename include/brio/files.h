@@ -12,10 +12,10 @@ extern "C" {
 typedef struct brio_read_options brio_read_options;
 typedef struct brio_write_options brio_write_options;
 
-/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of vertices and polygons; skips other elements.
- *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads. A file
- *  compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or libzstd; messages
- *  then count lines and bytes of what was decompressed.
+/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of vertices and polygons; skips other
+ *  elements. What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in
+ *  threads. A file compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or
+ *  libzstd; messages then count lines and bytes of what was decompressed.
  *  path  "-" reads standard input.   options  NULL for the defaults.   out  owned by the caller; NULL on error.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (columns of a format that has none, or that lack x, y or z), BRIO_ERR_OPEN,
  *  BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was expected), BRIO_ERR_NOT_FINITE
@@ -26,20 +26,21 @@ BRIO_API brio_status brio_read(brio_context *ctx, const char *path, const brio_r
 /** Writes a mesh. Writes a temporary file beside the target, flushes it, and renames it to the target, so that no
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
- *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a descriptor
- *  of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The process
- *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
- *  texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
- *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
- *  several lines becomes several comments. Of several files (.node and those beside it) none gets its name before all are
- *  complete.
+ *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a
+ *  descriptor of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The
+ *  process receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
+ *  texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of
+ *  properties, formats that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a
+ *  coordinate; a comment of several lines becomes several comments. Of several files (.node and those beside it) none
+ *  gets its name before all are complete.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, an index is out of range, or three tetrahedra
  *  whose neighbours are asked for share a facet), BRIO_ERR_NOT_FINITE, before a file is opened, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
 
-/** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the format. */
+/** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the
+ *  format. */
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
     BRIO_FORMAT_PLY = 1,
@@ -143,8 +144,8 @@ struct brio_read_options {
 /** brio_read of a file's bytes in memory, compressed ones included. No file is opened: a .node file's tetrahedra, which
  *  are in another file, are not read.
  *  bytes  size of them, not kept.
- *  name   what messages call the file, "scan.ply"; its extension tells the format where the content does not. NULL is for
- *         none: then bytes in no known format are rows of numbers.
+ *  name   what messages call the file, "scan.ply"; its extension tells the format where the content does not. NULL is
+ *         for none: then bytes in no known format are rows of numbers.
  *  Returns what brio_read returns, but not BRIO_ERR_OPEN. */
 BRIO_API brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
                                       const brio_read_options *options, brio_mesh **out);
@@ -160,13 +161,13 @@ typedef struct brio_file_facts {
 /** Receives a part of a file. `block` is valid during the call. A result other than 0 cancels the reading. */
 typedef int (*brio_rows_fn)(const brio_mesh *block, void *user);
 
-/** Reads a file as brio_read does, and hands over its points in blocks of some 65,536, in the order of the file, each with
- *  its part of the properties: a file of any size needs the memory of a few blocks. All blocks have the same properties; a
- *  file without points is one empty block. Files with polygons or tetrahedra, and formats and orders that do not hold one
- *  point after the other (OBJ, OFF, VTU, NODE, STL, NPZ, NPY in Fortran's order), are one block.
+/** Reads a file as brio_read does, and hands over its points in blocks of some 65,536, in the order of the file, each
+ *  with its part of the properties: a file of any size needs the memory of a few blocks. All blocks have the same
+ *  properties; a file without points is one empty block. Files with polygons or tetrahedra, and formats and orders that
+ *  do not hold one point after the other (OBJ, OFF, VTU, NODE, STL, NPZ, NPY in Fortran's order), are one block.
  *  facts  NULL, or receives what the file is.
- *  Returns what brio_read returns; BRIO_ERR_CANCELLED if the callback asked for it; BRIO_ERR_FORMAT if a row of a text lacks
- *  a column that earlier blocks have. Earlier blocks were handed over when an error is found. */
+ *  Returns what brio_read returns; BRIO_ERR_CANCELLED if the callback asked for it; BRIO_ERR_FORMAT if a row of a text
+ *  lacks a column that earlier blocks have. Earlier blocks were handed over when an error is found. */
 BRIO_API brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_read_options *options,
                                       brio_rows_fn take, void *user, brio_file_facts *facts);
 
@@ -221,24 +222,25 @@ typedef struct brio_convert_stats {
 } brio_convert_stats;
 
 /** Converts a file to another format, or chooses among its points, or both. First come the points in the box, of these
- *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon, tetrahedron
- *  or edge stays if all its vertices stay. Merging comes last; the whole file is then in memory.
- *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text, NPY,
- *  PCD (uncompressed) and PTX to LAS, LAZ, PLY, text, NPY, PCD, E57 and PTX. The input is read twice or three times if the output
- *  must know all points before the first one (LAS, LAZ, E57 and PTX; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
- *  points are thinned. Outliers and thinning need the coordinates in memory: 24 bytes a point, and what brio_outliers and
- *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
- *  file is in memory.
- *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, "NAME of faces" for those of faces, the names of metadata ("crs" for a coordinate system), "faces of dropped points" if outliers or thinning take corners of faces, tetrahedra or edges,
- *  and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
- *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
- *  With options->crs an input without a coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written.
- *  Progress begins anew where a text is read again because late rows lack a column.
+ *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon,
+ *  tetrahedron or edge stays if all its vertices stay. Merging comes last; the whole file is then in memory.
+ *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text,
+ *  NPY, PCD (uncompressed) and PTX to LAS, LAZ, PLY, text, NPY, PCD, E57 and PTX. The input is read twice or three
+ *  times if the output must know all points before the first one (LAS, LAZ, E57 and PTX; PLY and NPY into a pipe, if
+ *  their number is not known), or if outliers are dropped or points are thinned. Outliers and thinning need the
+ *  coordinates in memory: 24 bytes a point, and what brio_outliers and brio_thin take. Where an input that must be read
+ *  again is no regular file, and for other formats and meshes, the whole file is in memory.
+ *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names
+ *  of properties, "NAME of faces" for those of faces, the names of metadata ("crs" for a coordinate system), "faces of
+ *  dropped points" if outliers or thinning take corners of faces, tetrahedra or edges, and "precision" if coordinates,
+ *  or whole numbers of a text, are rounded; and so is what brio does not read of the input, by the names of
+ *  brio_read_options.left_out. What is only renamed goes to options->renamed. With options->crs an input without a
+ *  coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written. Progress begins anew where a
+ *  text is read again because late rows lack a column.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.
- *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and BRIO_ERR_FORMAT if
- *  the input changed between two readings. */
+ *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and
+ *  BRIO_ERR_FORMAT if the input changed between two readings. */
 BRIO_API brio_status brio_convert(brio_context *ctx, const char *from, const char *to,
                                   const brio_convert_options *options, brio_convert_stats *stats);
 

@@ -115,7 +115,10 @@ class Json(CliTest):
     def test_warnings_and_hints(self):
         cube, out = self.cloud("a.ply", 1000, "cube"), self.path("out.ply")
         facts = self.facts("surface", cube, "-o", out)
-        self.assertRegex(facts["warnings"][0], r"\A[0-9.]+ % of the surface is a guess")
+        self.assertRegex("\n".join(facts["warnings"]), r"(?m)^[0-9.]+ % of the surface is a guess")
+        self.assertIn("--open K leaves out", facts["warnings"][0])
+        wider = self.facts("surface", cube, "-o", out, "--open", "1.5")
+        self.assertLess(wider["bridges"]["area_share"], facts["bridges"]["area_share"])
         flat = self.facts("surface", self.xyz("b.xyz", [(x, y, 0) for x in range(4) for y in range(4)]), "-o", out, code=3)
         self.assertIn("b.xyz: ", flat["error"])
         self.assertTrue(any("--plane" in hint for hint in flat["hints"]))

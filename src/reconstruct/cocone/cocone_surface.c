@@ -64,8 +64,8 @@ done:
     return status;
 }
 
-/* Finds the boundary samples. With BRIO_BOUNDARIES_AUTO there are none where many would be: then the samples are too few,
- * or too noisy, all over, and their cells tell nothing of boundaries. */
+/* Finds the boundary samples. With BRIO_BOUNDARIES_AUTO there are none where many would be: then the samples are too
+ * few, or too noisy, all over, and their cells tell nothing of boundaries. */
 static brio_status find_boundary(reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_cocone_surface *out = r->out;

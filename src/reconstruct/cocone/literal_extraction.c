@@ -2,8 +2,8 @@
  *
  * Candidates at sharp edges are removed recursively, whatever the votes of the samples say. What is left falls into
  * components, joined across edges. The walk on a component begins on the outside, at the component's last sample in
- * lexicographic order, from which nothing of the component lies in the direction of x. From each triangle it goes, across
- * each edge, to the next candidate round the edge on the outside.
+ * lexicographic order, from which nothing of the component lies in the direction of x. From each triangle it goes,
+ * across each edge, to the next candidate round the edge on the outside.
  *
  * On a dense sample of a smooth surface this is the surface (theorem 19). Elsewhere one hole lets the pruning unravel a
  * component, and the walk can come round to the other side of triangles; the faces are then no manifold.
@@ -125,9 +125,9 @@ static bool faces_x(const walk *w, uint32_t tet, uint32_t p) {
     return true;
 }
 
-/* Lists on the stack the tetrahedra of p that are joined to `tet` across facets at p which, with `bounded`, are not of the
- * component. Stops at a facet of the component with `bounded`, or at a tetrahedron that faces x without. Returns the
- * facet, or the tetrahedron. */
+/* Lists on the stack the tetrahedra of p that are joined to `tet` across facets at p which, with `bounded`, are not of
+ * the component. Stops at a facet of the component with `bounded`, or at a tetrahedron that faces x without. Returns
+ * the facet, or the tetrahedron. */
 static brio_status search_star(walk *w, uint32_t tet, uint32_t p, bool bounded, uint32_t *found) {
     brio_status status = BRIO_OK;
     w->height = 0;

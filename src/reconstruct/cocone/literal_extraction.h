@@ -4,8 +4,8 @@
 
 #include "reconstruct/cocone/cocone_candidates.h"
 
-/** Makes faces of the candidates: of all, of those left at no sharp edge, or of those that a walk on the outside of each
- *  component of these meets. A walk's faces are counterclockwise as seen from outside; others lie either way.
+/** Makes faces of the candidates: of all, of those left at no sharp edge, or of those that a walk on the outside of
+ *  each component of these meets. A walk's faces are counterclockwise as seen from outside; others lie either way.
  *  extraction  not BRIO_EXTRACTION_LABELS.   cocones  loses the candidates that are pruned.
  *  pruned      receives their number.
  *  faces       *num_faces by 3, owned by the caller (brio_release), on failure too.

@@ -1,11 +1,12 @@
 /* Axes of samples at the rims of open sheets.
  *
- * The Voronoi cell of a sample at a rim is endless on both sides of the sheet and beyond the rim. The sum of the normals of
- * its hull facets is then an accident: it often points along the sheet. Which side a scanner was on tells nothing about
- * such an axis. Where the nearest samples are nearly in a plane, the normal of that plane is the axis of the sheet.
- * Elsewhere, as at the edges of solids, the axis stays.
+ * The Voronoi cell of a sample at a rim is endless on both sides of the sheet and beyond the rim. The sum of the
+ * normals of its hull facets is then an accident: it often points along the sheet. Which side a scanner was on tells
+ * nothing about such an axis. Where the nearest samples are nearly in a plane, the normal of that plane is the axis of
+ * the sheet. Elsewhere, as at the edges of solids, the axis stays.
  *
- * Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH 1992. */
+ * Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH
+ * 1992. */
 #include "reconstruct/cocone/rim_axes.h"
 #include "base/memory.h"
 #include "base/team.h"
@@ -13,11 +14,12 @@
 #include "query/nearest_points.h"
 #include <math.h>
 
-/* NEAREST: samples that a plane is fitted to, the sample itself among them. SQUARINGS: of a matrix, each of which squares
- * the ratios of its eigenvalues. All chosen. */
+/* NEAREST: samples that a plane is fitted to, the sample itself among them. SQUARINGS: of a matrix, each of which
+ * squares the ratios of its eigenvalues. All chosen. */
 enum { NEAREST = 12, SQUARINGS = 10, SAMPLES_A_THREAD = 1 << 8 };
 
-/* FLAT: the least variance of the samples of a sheet, in the middle one. FAR: the cosine between axis and normal. Chosen. */
+/* FLAT: the least variance of the samples of a sheet, in the middle one. FAR: the cosine between axis and normal.
+ * Chosen. */
 static const double FLAT = 0.1, FAR = 0.8;
 
 typedef struct {

@@ -1,15 +1,16 @@
 /* What files know of the side from which samples were seen, as log-odds that the axis of a sample points outwards.
  *
- * A sample knows the axis of its surface up to sign, better than a normal that was estimated. A normal, or the direction
- * from the sample to its scanner, tells the sign. How often it is right is not known, but can be measured: two samples at
- * an edge of a candidate have axes whose signs are known relative to each other. If each tells its sign rightly with
- * probability r, the two agree with probability A = r^2 + (1 - r)^2, so r = (1 + sqrt(2 A - 1)) / 2. Flat views tell
- * less than steep ones, above all in noise, so r is measured for each class of the cosine between direction and axis. Signs
- * that are drawn by lot have A = 1/2 and weigh nothing.
+ * A sample knows the axis of its surface up to sign, better than a normal that was estimated. A normal, or the
+ * direction from the sample to its scanner, tells the sign. How often it is right is not known, but can be measured:
+ * two samples at an edge of a candidate have axes whose signs are known relative to each other. If each tells its sign
+ * rightly with probability r, the two agree with probability A = r^2 + (1 - r)^2, so r = (1 + sqrt(2 A - 1)) / 2. Flat
+ * views tell less than steep ones, above all in noise, so r is measured for each class of the cosine between direction
+ * and axis. Signs that are drawn by lot have A = 1/2 and weigh nothing.
  *
- * What A does not see are signs that are wrong together: of normals that all point inwards, or of a part of them that was
- * turned as a whole. Alone they turn the surface over: it is what they say. Beside places of scanners they lose: these were
- * measured, normals are computed. How often normals are right is told then by how often they agree with the places.
+ * What A does not see are signs that are wrong together: of normals that all point inwards, or of a part of them that
+ * was turned as a whole. Alone they turn the surface over: it is what they say. Beside places of scanners they lose:
+ * these were measured, normals are computed. How often normals are right is told then by how often they agree with the
+ * places.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009.
  * Differs from the paper: scanners vote on the sides of samples, and these on tetrahedra. Lines of sight through
@@ -69,7 +70,8 @@ static void towards_scanner(const brio_sample_evidence *e, size_t p, const doubl
         to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
 }
 
-/* Returns the cosine between an axis and the direction that the evidence of a sample at x gives; 0 where there is none. */
+/* Returns the cosine between an axis and the direction that the evidence of a sample at x gives; 0 where there is
+ * none. */
 static double cosine_to(const brio_sample_evidence *e, unsigned kind, size_t p, const double x[3],
                         const double axis[3]) {
     double to[3];
@@ -123,8 +125,9 @@ static double log_odds(uint64_t agree, uint64_t pairs) {
     return fmin(log(rate / (1 - rate)), MOST);
 }
 
-/* Returns the log-odds that a normal is right, from how often it agrees with the places that w->own tells of. If these are
- * right with probability o and normals with n, they agree with probability n o + (1 - n)(1 - o).   places  log-odds of o. */
+/* Returns the log-odds that a normal is right, from how often it agrees with the places that w->own tells of. If these
+ * are right with probability o and normals with n, they agree with probability n o + (1 - n)(1 - o).   places  log-odds
+ * of o. */
 static double log_odds_beside(const weighing *w, double places) {
     size_t both = 0, same = 0;
     for (size_t p = 0; p < w->c->dual->num_points; p++) {
@@ -137,8 +140,8 @@ static double log_odds_beside(const weighing *w, double places) {
     return n <= 0.5 ? 0 : n >= 1 ? MOST : fmin(log(n / (1 - n)), MOST);
 }
 
-/* Returns whether most directions are steep: normals that do not go with the shape, such as one normal for all points, are
- * not. Half of the directions drawn by lot are. */
+/* Returns whether most directions are steep: normals that do not go with the shape, such as one normal for all points,
+ * are not. Half of the directions drawn by lot are. */
 static bool is_steep(const weighing *w) {
     size_t told = 0, steep = 0;
     for (size_t p = 0; p < w->c->dual->num_points; p++) {
@@ -159,8 +162,8 @@ static bool weigh_classes(weighing *w) {
     return fmin(w->total, w->most) >= LEAST;
 }
 
-/* Adds weights to those of the other kind. Where both tell the same the larger one counts: normals mostly have their signs from the
- * scanner, and are wrong where its place is. */
+/* Adds weights to those of the other kind. Where both tell the same the larger one counts: normals mostly have their
+ * signs from the scanner, and are wrong where its place is. */
 static void add_weights(void *user, size_t begin, size_t end, int thread) {
     const weighing *w = user;
     (void)thread;

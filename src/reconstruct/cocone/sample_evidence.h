@@ -17,8 +17,8 @@ brio_status brio_take_evidence(brio_context *ctx, const brio_evidence *given, si
                                brio_sample_evidence *out);
 
 /** Weighs for each sample whether its axis points outwards. Outside is where the normal points, and where the scanner
- *  stands. Evidence whose neighbours contradict each other as often as not weighs nothing, nor do normals that contradict the
- *  places of the scanners as often as not.
+ *  stands. Evidence whose neighbours contradict each other as often as not weighs nothing, nor do normals that
+ *  contradict the places of the scanners as often as not.
  *  c     with its candidates.
  *  own   #P, owned by the caller (brio_release): log-odds; NULL if no evidence weighs anything.
  *  used  receives the set of kinds that weigh something, as in brio_surface_stats.evidence.

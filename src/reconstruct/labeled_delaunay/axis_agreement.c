@@ -1,15 +1,17 @@
 /* Log-odds that the axes of neighbouring samples have one sign, measured.
  *
- * Where a surface is smooth, the axes of neighbours are nearly parallel, and that tells their signs. Across an edge of the
- * surface they are not. But two points of a circle have normals that are mirror images across the plane between them, and so
- * do points on both sides of an edge, equally far from it. In noise the plane between close neighbours is an accident, and
- * the axes themselves tell more. So both cosines were measured, on scans of models that nothing else was measured on: by the
- * distance in spacings, how often the sign is that which makes the axes' cosine positive. The noise of the noisy scans
- * was 0.4 spacings along the line of sight, with registration errors of 0.3.
+ * Where a surface is smooth, the axes of neighbours are nearly parallel, and that tells their signs. Across an edge of
+ * the surface they are not. But two points of a circle have normals that are mirror images across the plane between
+ * them, and so do points on both sides of an edge, equally far from it. In noise the plane between close neighbours is
+ * an accident, and the axes themselves tell more. So both cosines were measured, on scans of models that nothing else
+ * was measured on: by the distance in spacings, how often the sign is that which makes the axes' cosine positive. The
+ * noise of the noisy scans was 0.4 spacings along the line of sight, with registration errors of 0.3.
  *
- * Based on: Xie, Wang, Hua, Qin, Kaufman. Piecewise C1 continuous surface reconstruction of noisy point clouds via local
+ * Based on: Xie, Wang, Hua, Qin, Kaufman. Piecewise C1 continuous surface reconstruction of noisy point clouds via
+ * local
  *           implicit quadric regression. IEEE Visualization 2003 (mirrored normals).
- *           Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH 1992. */
+ *           Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH
+ *           1992. */
 #include "reconstruct/labeled_delaunay/axis_agreement.h"
 #include <math.h>
 

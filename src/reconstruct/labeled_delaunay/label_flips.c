@@ -1,5 +1,5 @@
-/* Labels of tetrahedra that change one at a time. A flip changes the energy at the four facets of the tetrahedron and at
- * its samples: a sample with the votes a for outer and b for inner costs min(a, b). */
+/* Labels of tetrahedra that change one at a time. A flip changes the energy at the four facets of the tetrahedron and
+ * at its samples: a sample with the votes a for outer and b for inner costs min(a, b). */
 #include "reconstruct/labeled_delaunay/label_flips.h"
 #include "base/memory.h"
 #include "base/team.h"

@@ -40,7 +40,8 @@ typedef struct {
     int16_t part[BRIO_STAR_ROOM];
 } brio_star_parts;
 
-/** label  kept, read and written: of tetrahedra and samples.   out  freed with brio_label_flips_free, on failure too. */
+/** label  kept, read and written: of tetrahedra and samples.   out  freed with brio_label_flips_free, on failure
+ *  too. */
 brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_label_flips *out);
 void brio_label_flips_free(brio_label_flips *f);
 
@@ -53,11 +54,12 @@ int64_t brio_flip_cost(const brio_label_flips *f, uint32_t tet);
 /** Writes the samples' labels. */
 void brio_label_samples(const brio_label_flips *f);
 
-/** Lists the samples of the tetrahedra flipped[from .. to), each once.   sample  room for four a tetrahedron. Returns their
- *  number. Cost: quadratic. */
+/** Lists the samples of the tetrahedra flipped[from .. to), each once.   sample  room for four a tetrahedron. Returns
+ *  their number. Cost: quadratic. */
 size_t brio_list_samples(const brio_label_flips *f, size_t from, size_t to, uint32_t *sample);
 
-/** Finds the parts of the star of a sample. Writes f->place only: threads have copies of f that differ there. Returns false for a star of more than BRIO_STAR_ROOM tetrahedra. */
+/** Finds the parts of the star of a sample. Writes f->place only: threads have copies of f that differ there. Returns
+ *  false for a star of more than BRIO_STAR_ROOM tetrahedra. */
 bool brio_find_parts(brio_label_flips *f, uint32_t sample, brio_star_parts *out);
 
 /** Returns by how many the parts of a star are more than one outer and one inner part. */

@@ -4,9 +4,9 @@
  * connected across facets (cocone/manifold_stars.c). A part too many can be flipped, or joined to another part by flips
  * along a path through the star; or a single flip helps. Of all these the one is taken that lowers
  *     energy + price * surplus - HANDLE / 2 * Euler characteristic of the boundary
- * most. The surplus is the number of parts too many, at all samples that the flips touch; for the Euler characteristic, a
- * sample counts once for each fan. The price of a part rises from next to nothing, so that what the votes decide clearly is
- * decided first.
+ * most. The surplus is the number of parts too many, at all samples that the flips touch; for the Euler characteristic,
+ * a sample counts once for each fan. The price of a part rises from next to nothing, so that what the votes decide
+ * clearly is decided first.
  *
  * Every flip lowers the sum, so the work ends. Stars that no price mends are left to cocone/manifold_stars.c. */
 #include "reconstruct/labeled_delaunay/mending.h"
@@ -15,15 +15,16 @@
 #include "base/team.h"
 #include <string.h>
 
-/* MOST: tetrahedra that are flipped together. PRICES: the price is a quarter of a log-odds at first and doubles. SMALL: in
- * stars of more tetrahedra, single flips are not tried. All chosen. */
+/* MOST: tetrahedra that are flipped together. PRICES: the price is a quarter of a log-odds at first and doubles. SMALL:
+ * in stars of more tetrahedra, single flips are not tried. All chosen. */
 enum { MOST = 64, PRICES = 9, SMALL = 96 };
 
-/* Chosen. MOST_PLACES: threads that look at all samples: each has two bytes a tetrahedron, all together less than a flow. */
+/* Chosen. MOST_PLACES: threads that look at all samples: each has two bytes a tetrahedron, all together less than a
+ * flow. */
 enum { SAMPLES_A_THREAD = 1 << 11, MOST_PLACES = 16 };
 
-/* What joining two sheets that touch costs, which makes a handle if they belong to one component. Chosen on seven models
- * beside the project, where 64 and 256 agree and 16 makes a handle more on two. */
+/* What joining two sheets that touch costs, which makes a handle if they belong to one component. Chosen on seven
+ * models beside the project, where 64 and 256 agree and 16 makes a handle more on two. */
 static const int64_t HANDLE = 64 * BRIO_FLIP_UNIT;
 
 typedef struct {
@@ -231,9 +232,9 @@ static bool take_path(brio_mending *m, uint32_t sample, const brio_star_parts *s
     return x->size > 0;
 }
 
-/* Returns whether flipping one tetrahedron may leave fewer parts at one of its samples: a part of the tetrahedron's label
- * that is nothing else at the sample vanishes, or two facets to the other label join parts. Either way at most one of the
- * three facets at the sample leads to a tetrahedron of the same label. */
+/* Returns whether flipping one tetrahedron may leave fewer parts at one of its samples: a part of the tetrahedron's
+ * label that is nothing else at the sample vanishes, or two facets to the other label join parts. Either way at most
+ * one of the three facets at the sample leads to a tetrahedron of the same label. */
 static bool may_join(const brio_mending *m, uint32_t tet) {
     const brio_label_flips *f = m->flips;
     int alike = 0;

@@ -1,8 +1,8 @@
 /* Normals of the points that a surface was made from.
  *
- * A point that a vertex stands for takes the vertex's normal, and so do its duplicates. Every other point takes the normal
- * of the surface where the surface is nearest: the mean of the normals of a triangle's corners, weighted by how near the
- * corners are (barycentric coordinates). */
+ * A point that a vertex stands for takes the vertex's normal, and so do its duplicates. Every other point takes the
+ * normal of the surface where the surface is nearest: the mean of the normals of a triangle's corners, weighted by how
+ * near the corners are (barycentric coordinates). */
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/scale.h"

@@ -1,16 +1,17 @@
 /* Signs of axes that agree along the sheets of a surface.
  *
- * Two samples near each other are tied: their axes tell, by log-odds, whether they have one sign (axis_agreement.h). Every
- * sample is a piece at first. In rounds, each piece is joined with the one that it is tied to most, if that tie is over a
- * limit, which falls from round to round; then the ties between each two pieces are added up. So a few wrong ties in a
- * smooth place change nothing, and what is decided last, between large pieces, is decided by all ties of the seam
- * together. A spanning tree of the best links would decide it by one.
+ * Two samples near each other are tied: their axes tell, by log-odds, whether they have one sign (axis_agreement.h).
+ * Every sample is a piece at first. In rounds, each piece is joined with the one that it is tied to most, if that tie
+ * is over a limit, which falls from round to round; then the ties between each two pieces are added up. So a few wrong
+ * ties in a smooth place change nothing, and what is decided last, between large pieces, is decided by all ties of the
+ * seam together. A spanning tree of the best links would decide it by one.
  *
- * What is told of samples, by normals or places of scanners, adds up within a piece. Pieces stay apart that contradict each other
- * more, in log-odds, than they are tied. In the end each looks where it is told to, or else where the hull does.
+ * What is told of samples, by normals or places of scanners, adds up within a piece. Pieces stay apart that contradict
+ * each other more, in log-odds, than they are tied. In the end each looks where it is told to, or else where the hull
+ * does.
  *
- * Poles are not asked: they tell that the back of a sheet sees the front of what is behind it, which makes one of the two
- * look away from the scanner. In a closed surface they would be right, but there neighbours tell enough.
+ * Poles are not asked: they tell that the back of a sheet sees the front of what is behind it, which makes one of the
+ * two look away from the scanner. In a closed surface they would be right, but there neighbours tell enough.
  *
  * Based on: Hoppe, DeRose, Duchamp, McDonald, Stuetzle. Surface reconstruction from unorganized points. SIGGRAPH 1992.
  *           Boruvka. O jistem problemu minimalnim. 1926 (joining in rounds).
@@ -26,9 +27,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* FARTHEST: in spacings, of samples that are tied: the lesser of the two, so that a stray is tied to nothing. FIRST, LAST:
- * limits, in log-odds. ALONG: hull samples with a cosine under this tell nothing of the outside. UNIT: one log-odds.
- * All chosen on scans of models that nothing else was measured on; 4 spacings tie what lies one behind the other. */
+/* FARTHEST: in spacings, of samples that are tied: the lesser of the two, so that a stray is tied to nothing. FIRST,
+ * LAST: limits, in log-odds. ALONG: hull samples with a cosine under this tell nothing of the outside. UNIT: one
+ * log-odds. All chosen on scans of models that nothing else was measured on; 4 spacings tie what lies one behind the
+ * other. */
 static const double FARTHEST = 2.5, FIRST = 6, LAST = 1.5, ALONG = 0.5, UNIT = 1024;
 
 enum { TETS_A_THREAD = 1 << 12, MOST_WEIGHT = 1 << 30 };
@@ -78,8 +80,8 @@ static void neighbours_round_edge(const brio_tetrahedra *t, uint32_t tet, uint32
         if (x->vertex[k] != p && x->vertex[k] != q) beside[count++] = brio_tet_of(x->mate[k]);
 }
 
-/* Returns whether a tetrahedron is the first one of all round an edge: each edge is tied once. Most are not, which their
- * neighbours tell. */
+/* Returns whether a tetrahedron is the first one of all round an edge: each edge is tied once. Most are not, which
+ * their neighbours tell. */
 static bool is_first_round_edge(const brio_tetrahedra *t, uint32_t tet, uint32_t p, uint32_t q) {
     uint32_t beside[2], before = tet;
     neighbours_round_edge(t, tet, p, q, beside);
@@ -204,7 +206,8 @@ done:
     return status;
 }
 
-/* Returns how much of what is told of two pieces, in log-odds, is lost if they are joined, with opposite signs or not. */
+/* Returns how much of what is told of two pieces, in log-odds, is lost if they are joined, with opposite signs or
+ * not. */
 static double lost(const signing *s, uint32_t a, uint32_t b, bool opposite) {
     if (!s->told) return 0;
     return fabs(s->told[a]) + fabs(s->told[b]) - fabs(s->told[a] + (opposite ? -s->told[b] : s->told[b]));
@@ -219,8 +222,8 @@ static void offer(const signing *s, uint32_t root, uint32_t i) {
     if (best == NO_TIE || abs(s->ties[i].weight) > abs(s->ties[best].weight)) s->best[root] = i;
 }
 
-/* Joins each piece with the one that it is tied to most. Of ties that weigh the same the first one counts, so these make no
- * circles. Returns how many pieces vanish. */
+/* Joins each piece with the one that it is tied to most. Of ties that weigh the same the first one counts, so these
+ * make no circles. Returns how many pieces vanish. */
 static size_t join_pieces(const signing *s, double limit) {
     size_t joined = 0;
     for (size_t p = 0; p < s->v->num_points; p++) s->best[p] = NO_TIE;

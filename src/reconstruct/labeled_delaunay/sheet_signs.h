@@ -11,8 +11,8 @@ typedef struct {
     const float *told;     /* #P: log-odds that the axis points outwards; NULL: nothing is told */
 } brio_sheet_samples;
 
-/** Chooses the sign of each axis, so that neighbours agree. Each piece whose signs depend on each other is turned as is told of
- *  its samples together; where nothing is told, so that most of its samples on the hull look outwards.
+/** Chooses the sign of each axis, so that neighbours agree. Each piece whose signs depend on each other is turned as is
+ *  told of its samples together; where nothing is told, so that most of its samples on the hull look outwards.
  *  v        with its centres and planes.
  *  turned   #P, written: 1 if the outside is opposite to the axis.
  *  alone    #P, written: 1 if no other sample tells anything of this one's sign.

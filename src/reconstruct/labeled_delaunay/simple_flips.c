@@ -8,8 +8,8 @@
  *   three do, and the sample that they share leaves the boundary.
  * The facets of the boundary become more by 2, 0 and -2, its samples by 1, 0 and -1. So the Euler characteristic stays.
  *
- * Tetrahedra are flipped in any order in which they are ready. This may end before all are flipped, although another order
- * exists.
+ * Tetrahedra are flipped in any order in which they are ready. This may end before all are flipped, although another
+ * order exists.
  *
  * Based on: Bertrand, Malandain. A new characterization of three-dimensional simple points. Pattern Recognition Letters
  *           1994.
@@ -21,7 +21,8 @@ static bool is_regular(const brio_mending *m, uint32_t sample) {
     return m->surplus[sample] == 0 && first[1] - first[0] <= BRIO_STAR_ROOM;
 }
 
-/* Returns whether all tetrahedra round the edge between the samples in slots a and b of a tetrahedron have its label. */
+/* Returns whether all tetrahedra round the edge between the samples in slots a and b of a tetrahedron have its
+ * label. */
 static bool is_off_boundary(const brio_label_flips *f, uint32_t tet, int a, int b) {
     const brio_tetrahedra *t = &f->g->dual->t;
     uint32_t p = t->tet[tet].vertex[a], q = t->tet[tet].vertex[b], at = tet;

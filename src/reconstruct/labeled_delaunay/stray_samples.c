@@ -1,4 +1,5 @@
-/* Samples that lie alone, far from every surface: dust in the air, reflections, points between an edge and what is behind.
+/* Samples that lie alone, far from every surface: dust in the air, reflections, points between an edge and what is
+ * behind.
  *
  * A scanner's spacing grows with the distance from it, and slowly: by a few hundredths of the way from one place to
  * another. So the sampling round a sample allows it a spacing of
@@ -6,14 +7,15 @@
  *     min over all samples q of (spacing of q + GROWTH * distance to q),
  *
  * measured along Delaunay edges. Where two scans overlap the spacing jumps, but a sample of the coarser one still has
- * neighbours at its own spacing, on both sides along a surface. A sample is a stray if even its second nearest sample is
- * LONELY times as far away as that. The second, because strays come in pairs by chance. Where over MANY of the samples are
- * SUSPECT times as far, a scan has strays, and LIKELY is enough.
+ * neighbours at its own spacing, on both sides along a surface. A sample is a stray if even its second nearest sample
+ * is LONELY times as far away as that. The second, because strays come in pairs by chance. Where over MANY of the
+ * samples are SUSPECT times as far, a scan has strays, and LIKELY is enough.
  *
  * If over MOST of the samples were strays, there would be no surface for them to be far from: then none is.
  *
  * Based on: Breunig, Kriegel, Ng, Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
- * Differs from the paper: the density compared with is the highest in reach, not the mean of the neighbours, which among
+ * Differs from the paper: the density compared with is the highest in reach, not the mean of the neighbours, which
+ * among
  *                         strays are strays. */
 #include "reconstruct/labeled_delaunay/stray_samples.h"
 #include "base/memory.h"
@@ -51,8 +53,8 @@ static bool has_changed(const search *s, const uint32_t *v, int sweep) {
     return changed;
 }
 
-/* Passes over the edges of the tetrahedra at which something changed, at first of all, each edge as often as it has such
- * tetrahedra. Writes whether a limit changed. */
+/* Passes over the edges of the tetrahedra at which something changed, at first of all, each edge as often as it has
+ * such tetrahedra. Writes whether a limit changed. */
 static brio_status pass_over(brio_context *ctx, const search *s, int sweep, bool *changed) {
     brio_status status = BRIO_OK;
     *changed = false;

@@ -9,7 +9,7 @@
 #include "base/scale.h"
 #include "mesh/properties.h"
 #include "mesh/simplify.h"
-#include "reconstruct/labeled_delaunay/face_confidence.h"
+#include "reconstruct/labeled_delaunay/vote_confidence.h"
 #include <math.h>
 #include <string.h>
 

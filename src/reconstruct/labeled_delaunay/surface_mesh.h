@@ -23,8 +23,8 @@ typedef struct {
 } brio_sample_surface;
 
 /** Fills an empty mesh. The vertices are numbered in the caller's order.
- *  samples  NULL, or #P: receives for each vertex the index of its sample, ascending; of a simplified surface, the sample
- *           whose vertex it was before its edges collapsed.
+ *  samples  NULL, or #P: receives for each vertex the index of its sample, ascending; of a simplified surface, the
+ *           sample whose vertex it was before its edges collapsed.
  *  used     receives the number of samples that faces use.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_surface_mesh(brio_sample_surface *s, brio_mesh *mesh, uint32_t *samples, size_t *used);

@@ -13,4 +13,9 @@
 brio_status brio_vote_confidence(const brio_vote_graph *g, const uint8_t *label, const brio_facets *facets,
                                  float *confidence);
 
+/** Finds the probability that a triangle is right.
+ *  corners     the confidences of its vertices.
+ *  size        the radius of its circle, by the usual one there; INFINITY if its corners are collinear. */
+float brio_face_confidence(const float corners[3], float size);
+
 #endif

@@ -1,5 +1,5 @@
-/* The best labels of tetrahedra: a minimum cut. With the labels of the samples known, all other edges want one label, so a
- * minimum cut has the least energy.
+/* The best labels of tetrahedra: a minimum cut. With the labels of the samples known, all other edges want one label,
+ * so a minimum cut has the least energy.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009. */
 #include "reconstruct/labeled_delaunay/vote_cut.h"

@@ -4,11 +4,11 @@
  * opposite direction are on the other side. Which of the two sides is outside is unknown, too. So a wrong guess
  * about one sample does not spread: its tetrahedra have three other samples each.
  *
- * A flat tetrahedron within the surface tells next to nothing, whatever the direction of its Voronoi vertex. A thick one
- * tells much: hence the log-odds by direction and thickness. The four votes of a tetrahedron are counted as independent.
- * The area between the labels decides where nobody votes, and keeps single flat tetrahedra from sticking out. Area costs
- * little where the samples of a facet see its two tetrahedra in opposite directions, so that thin walls do not vanish to
- * save area.
+ * A flat tetrahedron within the surface tells next to nothing, whatever the direction of its Voronoi vertex. A thick
+ * one tells much: hence the log-odds by direction and thickness. The four votes of a tetrahedron are counted as
+ * independent. The area between the labels decides where nobody votes, and keeps single flat tetrahedra from sticking
+ * out. Area costs little where the samples of a facet see its two tetrahedra in opposite directions, so that thin walls
+ * do not vanish to save area.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009 (labels of
  *           Delaunay tetrahedra of least energy).
@@ -95,8 +95,8 @@ static void weigh_facet(const builder *b, uint32_t facet) {
     b->g->facet[brio_tet_of(mate)][brio_slot_of(mate)] = weight;
 }
 
-/* The three steps of building, for parts of the tetrahedra. Votes are cosines at first, between the axis of the sample in
- * a slot and the direction to the Voronoi vertex. */
+/* The three steps of building, for parts of the tetrahedra. Votes are cosines at first, between the axis of the sample
+ * in a slot and the direction to the Voronoi vertex. */
 
 static void find_cosines(void *user, size_t begin, size_t end, int thread) {
     const builder *b = user;

@@ -12,8 +12,8 @@
 /** In log-odds. Chosen: the least that decides between votes that cancel; six times as much changes nothing more. */
 #define BRIO_HULL_VOTE 1.0
 
-/** Labels are those of the nodes: node t < #T is tetrahedron t. Node #T + p is sample p: its label is that of the side to
- *  which its axis points. */
+/** Labels are those of the nodes: node t < #T is tetrahedron t. Node #T + p is sample p: its label is that of the side
+ *  to which its axis points. */
 typedef struct {
     brio_context *ctx;
     const brio_pole_vectors *dual;
@@ -39,13 +39,13 @@ static inline float brio_hull_vote(const brio_vote_graph *g, size_t tet) {
 }
 
 /** Builds the graph. A tetrahedron and a sample of it share an edge: its weight is the log-odds that the tetrahedron is
- *  on the side to which the sample's axis points (vote_weight.h). Two neighbours share an edge that wants one label: its
- *  weight is the area of their facet.
+ *  on the side to which the sample's axis points (vote_weight.h). Two neighbours share an edge that wants one label:
+ *  its weight is the area of their facet.
  *  dual     kept: it must outlive the graph. Its centres, planes and poles are freed (brio_pole_vectors_drop).
  *  spacing  #P: of the samples.
  *  noise    of the samples, as brio_least_noise finds it.
- *  own      #P, kept, or NULL: what evidence wants for the samples. With evidence the infinite tetrahedra have labels to
- *           be found, too: scans of rooms are seen from inside.
+ *  own      #P, kept, or NULL: what evidence wants for the samples. With evidence the infinite tetrahedra have labels
+ *           to be found, too: scans of rooms are seen from inside.
  *  out      freed with brio_vote_graph_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, const double *spacing, double noise,

@@ -1,10 +1,10 @@
 /* Labels of low energy along the graph of votes.
  *
- * If the labels of the samples are known, the energy is submodular: all other edges want one label. Then one minimum cut
- * finds the best labels of all tetrahedra. If the labels of the tetrahedra are known, each sample's best label is that of
- * the majority. The two steps take turns until no sample changes; on dense samples once is enough. What remains are
- * places where several samples and their tetrahedra must change at once. They show by samples that contradict many of
- * their own votes: round these, roof duality frees samples and tetrahedra together.
+ * If the labels of the samples are known, the energy is submodular: all other edges want one label. Then one minimum
+ * cut finds the best labels of all tetrahedra. If the labels of the tetrahedra are known, each sample's best label is
+ * that of the majority. The two steps take turns until no sample changes; on dense samples once is enough. What remains
+ * are places where several samples and their tetrahedra must change at once. They show by samples that contradict many
+ * of their own votes: round these, roof duality frees samples and tetrahedra together.
  *
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009 (the cut).
  * Differs from the paper: samples are unknowns, too. */
@@ -16,7 +16,8 @@
 #include <math.h>
 #include <string.h>
 
-/* TURNS: most cuts; they end with one after which at most 1/FEW of the samples change. FIRST_BITS, PASSES: of the descent. All chosen on generated solids. */
+/* TURNS: most cuts; they end with one after which at most 1/FEW of the samples change. FIRST_BITS, PASSES: of the
+ * descent. All chosen on generated solids. */
 enum { TURNS = 4, FEW = 10000, FIRST_BITS = 9, PASSES = 3, NODES_A_THREAD = 1 << 12 };
 
 /* A sample is contested if its violated votes are over this share of its votes. Chosen on generated solids. */

@@ -4,8 +4,8 @@
 
 #include "reconstruct/labeled_delaunay/vote_graph.h"
 
-/** Finds labels by turns: the best labels of the tetrahedra, then those of the samples. Tetrahedra from g->num_free on are
- *  outer.
+/** Finds labels by turns: the best labels of the tetrahedra, then those of the samples. Tetrahedra from g->num_free on
+ *  are outer.
  *  turned     #P: 1 where the axis of a sample points inwards, a first guess.
  *  label      #nodes of the graph, written.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */

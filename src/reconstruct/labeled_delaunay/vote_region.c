@@ -30,8 +30,8 @@ static void list_edges(const brio_vote_graph *g, uint32_t node, brio_signed_edge
     for (int i = 0; i < 4; i++) edges[count++] = (brio_signed_edge){brio_tet_of(t->mate[i]), g->facet[node][i]};
 }
 
-/* Returns the number of edges of a free node: tetrahedra are free only if they are finite. Where there is evidence, samples
- * have an edge to it. */
+/* Returns the number of edges of a free node: tetrahedra are free only if they are finite. Where there is evidence,
+ * samples have an edge to it. */
 static size_t num_edges(const brio_vote_graph *g, uint32_t node) {
     size_t num_tets = g->dual->t.count;
     return node < num_tets ? EDGES : g->first[node - num_tets + 1] - g->first[node - num_tets] + (g->own != NULL);

@@ -1,10 +1,10 @@
 /* Log-odds of votes, measured.
  *
- * The Delaunay triangulations of samples of generated solids were compared with the solids: for each tetrahedron and each
- * of its samples, by the direction of the Voronoi vertex and the thickness of the tetrahedron, how much of it is on the
- * side to which the sample's axis points. Within each thickness both sides count equally, so that four votes do not count
- * four times what the thickness alone tells. Samples without noise and with noise of 0.3 spacings in each coordinate
- * were measured; between them the log-odds are interpolated. */
+ * The Delaunay triangulations of samples of generated solids were compared with the solids: for each tetrahedron and
+ * each of its samples, by the direction of the Voronoi vertex and the thickness of the tetrahedron, how much of it is
+ * on the side to which the sample's axis points. Within each thickness both sides count equally, so that four votes do
+ * not count four times what the thickness alone tells. Samples without noise and with noise of 0.3 spacings in each
+ * coordinate were measured; between them the log-odds are interpolated. */
 #include "reconstruct/labeled_delaunay/vote_weight.h"
 
 enum { DIRECTIONS = 20, THICKNESSES = 9 };

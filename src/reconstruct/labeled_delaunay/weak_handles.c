@@ -3,10 +3,11 @@
  * A false handle costs little energy to remove: that is what makes it suspicious. Candidates are found by minimum cuts
  * with a bias: what becomes outer when all votes lean a little to outer, or inner when they lean to inner, falls into
  * patches. Each patch is flipped by itself, and stars that this spoils are mended. The flips stay if the Euler
- * characteristic of the boundary grows by 2 for each HANDLE of energy, and if no component appeared: on either side of the
- * boundary, the tetrahedra next to the patch must still be connected, and nearby. A patch with nothing but the other
- * label about it is a crumb or a bubble, which counts as much as a handle. Otherwise the flips are taken back. A patch whose
- * flip is known to deform the boundary only (simple_flips.c) leaves the Euler characteristic, and is not weighed.
+ * characteristic of the boundary grows by 2 for each HANDLE of energy, and if no component appeared: on either side of
+ * the boundary, the tetrahedra next to the patch must still be connected, and nearby. A patch with nothing but the
+ * other label about it is a crumb or a bubble, which counts as much as a handle. Otherwise the flips are taken back. A
+ * patch whose flip is known to deform the boundary only (simple_flips.c) leaves the Euler characteristic, and is not
+ * weighed.
  *
  * The energy alone cannot do this, because it knows nothing of topology: it is a sum over tetrahedra and facets. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"
@@ -19,9 +20,9 @@
  * looked at until those next to a patch are connected. All chosen. */
 enum { BIASES = 3, MOST_PATCH = BRIO_MOST_SIMPLE, NEARBY = 4096 };
 
-/* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with it,
- * before samples are looked at. Chosen: on generated solids, raw scans and the models beside the project 8, 16 and 32 differ by
- * a run of 321 or two. */
+/* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with
+ * it, before samples are looked at. Chosen: on generated solids, raw scans and the models beside the project 8, 16 and
+ * 32 differ by a run of 321 or two. */
 static const double BIAS[BIASES] = {1, 2, 4};
 static const int64_t HANDLE = 16 * BRIO_FLIP_UNIT;
 

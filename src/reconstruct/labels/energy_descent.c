@@ -1,8 +1,8 @@
 /* Labels of low energy.
  *
  * Finding the least energy is as hard as a maximum cut, because edges that want different labels make the energy not
- * submodular. Roof duality finds part of an optimal labeling by one flow. On all nodes of a large graph the flow is slow
- * and may decide almost none of them. On a block of nodes, with the labels around it fixed, it is fast and decides
+ * submodular. Roof duality finds part of an optimal labeling by one flow. On all nodes of a large graph the flow is
+ * slow and may decide almost none of them. On a block of nodes, with the labels around it fixed, it is fast and decides
  * nearly all. So the method improves one block after the other, then blocks with other borders and of twice the size.
  * No step raises the energy.
  *

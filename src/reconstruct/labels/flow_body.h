@@ -1,4 +1,5 @@
-/* Maximum flow by two search trees that are kept between augmentations, for graphs whose arcs are kept in different ways.
+/* Maximum flow by two search trees that are kept between augmentations, for graphs whose arcs are kept in different
+ * ways.
  *
  * One tree grows from the source along arcs with residual capacity, the other grows from the sink against such arcs. An
  * arc between the trees closes an augmenting path. The flow along the path saturates arcs, and the node below a
@@ -7,17 +8,17 @@
  * of a tree keeps its distance from the terminal and the time of its last check. With these an orphan finds out quickly
  * which nodes are still connected to the terminal, and takes the nearest one as its parent.
  *
- * After a flow the terminals may change. The trees stay, except for nodes whose terminal is now another one or saturated,
- * so little is to be done if few terminals change. An arc can be closed: no tree and no flow uses it.
+ * After a flow the terminals may change. The trees stay, except for nodes whose terminal is now another one or
+ * saturated, so little is to be done if few terminals change. An arc can be closed: no tree and no flow uses it.
  *
  * Includers define first
- *   FLOW, FLOW_TERMINAL      the type of the workspace, with a member `trees` and the arrays node, terminal and side; the
- *                            type of the entries of `terminal`,
+ *   FLOW, FLOW_TERMINAL      the type of the workspace, with a member `trees` and the arrays node, terminal and side;
+ *                            the type of the entries of `terminal`,
  *   FLOW_NODES(f)            the number of nodes,
  *   FLOW_NODE(f, i)          the i-th of them, and
  *   FLOW_FIRST(f, v), FLOW_END(f, v), FLOW_HEAD(f, arc), FLOW_MATE(f, arc), FLOW_RESIDUAL(f, arc)
- *                            the arcs that leave a node, the end of an arc, the same edge in the other direction, and its
- *                            residual capacity, which can be assigned, and
+ *                            the arcs that leave a node, the end of an arc, the same edge in the other direction, and
+ *                            its residual capacity, which can be assigned, and
  *   FLOW_IS_CLOSED(f, arc)   whether an arc is closed.
  * They get clear(f), which empties the trees of all nodes, plant(f), which makes the trees fit the terminals, and
  * push(f), which makes the flow maximal. The ring of orphans is in the entries orphan_base to orphan_base + room - 1 of

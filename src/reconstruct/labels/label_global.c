@@ -1,5 +1,6 @@
 /* Global labeling of poles: seeks labels of low energy. The energy is the sum of |weight| over the edges that the
- * labels contradict, with the balanced weights of the graph of poles. It starts from the greedy labels, which energy_descent.c improves. */
+ * labels contradict, with the balanced weights of the graph of poles. It starts from the greedy labels, which
+ * energy_descent.c improves. */
 #include "base/memory.h"
 #include "reconstruct/labels/labeling.h"
 #include <math.h>

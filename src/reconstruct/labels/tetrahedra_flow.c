@@ -1,10 +1,11 @@
-/* Maximum flow of tetrahedra: see flow_body.h. An arc is a facet handle: 4 t + i leads from tetrahedron t across its facet
- * i. So the triangulation has heads and mates, and a tetrahedron costs 41 bytes, a third of what lists of edges take.
+/* Maximum flow of tetrahedra: see flow_body.h. An arc is a facet handle: 4 t + i leads from tetrahedron t across its
+ * facet i. So the triangulation has heads and mates, and a tetrahedron costs 41 bytes, a third of what lists of edges
+ * take.
  *
- * The open tetrahedra are cut into parts of consecutive ones, which are near each other in space. At first the arcs between
- * parts are closed, and every part gets a maximum flow of its own, by any thread. Then one thread opens the arcs and goes on
- * from there: most flow is short, and only nodes at the borders are active. A closed arc holds the complement of its residual
- * capacity, a negative number. So a part reads nothing that another part writes.
+ * The open tetrahedra are cut into parts of consecutive ones, which are near each other in space. At first the arcs
+ * between parts are closed, and every part gets a maximum flow of its own, by any thread. Then one thread opens the
+ * arcs and goes on from there: most flow is short, and only nodes at the borders are active. A closed arc holds the
+ * complement of its residual capacity, a negative number. So a part reads nothing that another part writes.
  *
  * Based on: Liu, Sun. Parallel graph-cuts by adaptive bottom-up merging. CVPR 2010.
  * Differs from the paper: all parts merge at once. */

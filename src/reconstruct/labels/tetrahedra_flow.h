@@ -31,8 +31,8 @@ void brio_tet_flow_free(brio_tet_flow *f);
 
 /** Finds a maximum flow and the side of every tetrahedron that takes part.
  *
- *  Before the first call the caller sets `residual`, each less than 2^30: the capacity of a facet at both of its ends, 0
- *  at both ends where one of them does not take part. It also sets `terminal`: positive capacities from the source,
+ *  Before the first call the caller sets `residual`, each less than 2^30: the capacity of a facet at both of its ends,
+ *  0 at both ends where one of them does not take part. It also sets `terminal`: positive capacities from the source,
  *  negative ones to the sink; the sum of the magnitudes at a tetrahedron is less than 2^31.
  *  Before a further call, which begins from the flow of the last one, the caller adds the changes to `terminal`. Such a
  *  call is quick if few terminals changed. Runs in threads. The sides do not depend on the number of threads, nor on

@@ -1,12 +1,12 @@
-/* The arithmetic of a fit of a surface, in versions for several instruction sets. All versions compute in the same order,
- * and so compute the same bits. */
+/* The arithmetic of a fit of a surface, in versions for several instruction sets. All versions compute in the same
+ * order, and so compute the same bits. */
 #ifndef BRIO_RECONSTRUCT_LOCAL_SUMS_H
 #define BRIO_RECONSTRUCT_LOCAL_SUMS_H
 
 #include "reconstruct/noise/local_surface.h"
 
-/** Symmetric matrices, one a neighbourhood, and their eigenvectors in the columns of `vector`. The last index is that of
- *  the neighbourhood. */
+/** Symmetric matrices, one a neighbourhood, and their eigenvectors in the columns of `vector`. The last index is that
+ *  of the neighbourhood. */
 typedef struct {
     double matrix[3][3][BRIO_SURFACE_BATCH], vector[3][3][BRIO_SURFACE_BATCH];
 } brio_eigen_batch;
@@ -30,8 +30,8 @@ typedef struct {
     /** Computes the normal equations of the weighted heights over the plane of s->frame, in s->unit, and writes them to
      *  place `i`. */
     void (*equations)(const brio_neighbourhood *n, const brio_local_surface *s, brio_normal_equations *out, size_t i);
-    /** Solves the equations in place by Cholesky's method: b becomes the solution. solved[i] is false unless matrix i is
-     *  clearly positive definite. */
+    /** Solves the equations in place by Cholesky's method: b becomes the solution. solved[i] is false unless matrix i
+     *  is clearly positive definite. */
     void (*solve)(brio_normal_equations *e, bool *solved);
 } brio_local_sums;
 

@@ -30,8 +30,8 @@ static const brio_local_sums *sums(void) {
 
 /* --- planes --- */
 
-/* Takes the axes of plane i. frame[0] and frame[1] span the plane, frame[2] is its normal. Returns false if the points are
- * on a line. */
+/* Takes the axes of plane i. frame[0] and frame[1] span the plane, frame[2] is its normal. Returns false if the points
+ * are on a line. */
 static bool take_frame(const brio_eigen_batch *e, size_t i, double frame[3][3]) {
     int least = 0;
     for (int k = 1; k < 3; k++)
@@ -45,8 +45,8 @@ static bool take_frame(const brio_eigen_batch *e, size_t i, double frame[3][3]) 
     return fmin(e->matrix[a][a][i], e->matrix[b][b][i]) > 1e-10 * fmax(e->matrix[a][a][i], e->matrix[b][b][i]);
 }
 
-/* Fits planes to the neighbourhoods that are `fit`, and takes this back where the neighbours are on a line. Places without
- * a neighbourhood keep the zero matrix. */
+/* Fits planes to the neighbourhoods that are `fit`, and takes this back where the neighbours are on a line. Places
+ * without a neighbourhood keep the zero matrix. */
 static void fit_planes(const brio_neighbourhood *n, size_t count, brio_local_surface *s, bool *fit) {
     brio_eigen_batch e = {{{{0}}}, {{{0}}}};
     for (size_t i = 0; i < count; i++)

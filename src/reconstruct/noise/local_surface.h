@@ -30,9 +30,9 @@ typedef struct {
     double height; /* of the surface above the point, along the normal, in the unit of the points */
 } brio_local_surface;
 
-/** Fits a plane to the neighbours of each of `count` points, and a quadratic height over the plane, both by weighted least
- *  squares. The weights fall to 0 at the farthest neighbour. Where the neighbours do not determine the polynomial, it is a
- *  constant. The bits of a surface do not depend on the other surfaces of the batch.
+/** Fits a plane to the neighbours of each of `count` points, and a quadratic height over the plane, both by weighted
+ *  least squares. The weights fall to 0 at the farthest neighbour. Where the neighbours do not determine the
+ *  polynomial, it is a constant. The bits of a surface do not depend on the other surfaces of the batch.
  *  count   at most BRIO_SURFACE_BATCH.
  *  fitted  #count: false if the neighbours are fewer than 7, on a line, or at one position. */
 void brio_fit_local_surfaces(brio_neighbourhood *n, size_t count, brio_local_surface *out, bool *fitted);
@@ -45,7 +45,8 @@ void brio_move_onto(const brio_local_surface *s, double *point);
 double brio_local_spread(const brio_neighbourhood *n, const brio_local_surface *s);
 
 /** Finds the heights of the neighbours over the best plane through their mean.
- *  n  the weights are overwritten.   height  n->count, written: their sum is 0.   Returns false if they are on a line. */
+ *  n  the weights are overwritten.   height  n->count, written: their sum is 0.   Returns false if they are on a
+ *     line. */
 bool brio_plane_heights(brio_neighbourhood *n, double *height);
 
 /** Returns the standard deviation of the neighbours from the best plane through their mean, INFINITY if they are on a

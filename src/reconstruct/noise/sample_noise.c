@@ -2,8 +2,8 @@
  *
  * Measuring. At some samples, surfaces are fitted to few and to more nearest points. On a smooth or edged surface the
  * larger fit is the worse one, because the surface bends. Where points scatter about a surface, they scatter as much
- * about a large piece as about a small one. So a deviation that does not grow with the size of the piece is noise, unless
- * the points are on two sheets, one close behind the other (two_layers.c).
+ * about a large piece as about a small one. So a deviation that does not grow with the size of the piece is noise,
+ * unless the points are on two sheets, one close behind the other (two_layers.c).
  *
  * Reducing. Every sample moves along the normal of the surface fitted to its nearest points onto that surface, PASSES
  * times. The nearest points are found once, before the first pass. Noise shrinks with the square root of the number of
@@ -24,9 +24,9 @@
 #include <math.h>
 #include <string.h>
 
-/* FLAT: points that a plane is fitted to. FEW, MORE: points of the small and the large piece. NEAREST: distances in the mean that is the spacing. LOOKS,
- * LEAST_LOOKS: about how many samples are measured, and the fewest that count. PASSES: of smoothing. BLOCK: samples
- * between two calls of the progress callback. All chosen, with the shared models in view
+/* FLAT: points that a plane is fitted to. FEW, MORE: points of the small and the large piece. NEAREST: distances in the
+ * mean that is the spacing. LOOKS, LEAST_LOOKS: about how many samples are measured, and the fewest that count. PASSES:
+ * of smoothing. BLOCK: samples between two calls of the progress callback. All chosen, with the shared models in view
  * (docs/decisions/007-noise-is-smoothed.md). */
 enum {
     FLAT = 9,
@@ -51,8 +51,9 @@ enum { SPLITS = 3 };
 static const size_t SPLIT[SPLITS] = {16, 24, MORE};
 static const double LAYERED[SPLITS] = {0.88, 0.85, 0.85};
 
-/* If over half of the samples have points over APART spacings from their plane, and of these points less than EMPTY are near
- * the plane, two sheets are most of what there is. The shared models reach 0.186 where they are one sheet, uniform noise
+/* If over half of the samples have points over APART spacings from their plane, and of these points less than EMPTY are
+ * near the plane, two sheets are most of what there is. The shared models reach 0.186 where they are one sheet, uniform
+ * noise
  * 0.17; models with walls of one and two spacings 0.137, and 0.083. */
 static const double APART = 0.25, EMPTY = 0.16;
 
@@ -151,8 +152,8 @@ static bool spread_about(const double *p, const brio_point_boxes *boxes, const b
     return fitted;
 }
 
-/* Fits a plane to the FLAT nearest points, or to those of them that are on the sheet of p: of two layers, its own. Writes the
- * share of points near the planes of more. Returns the spread, INFINITY if a sheet has too few points. */
+/* Fits a plane to the FLAT nearest points, or to those of them that are on the sheet of p: of two layers, its own.
+ * Writes the share of points near the planes of more. Returns the spread, INFINITY if a sheet has too few points. */
 static double flat_spread(const double *p, const brio_point_boxes *boxes, const brio_near_point *near, double spacing,
                           float *central) {
     brio_neighbourhood n, own;

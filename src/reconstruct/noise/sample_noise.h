@@ -5,7 +5,8 @@
 #include "base/context.h"
 
 /** Estimates the standard deviation of the noise, in spacings of the samples. *level is 0 if the deviation from smooth
- *  surfaces is the shape of the surface or that of two sheets, one close behind the other, is under 0.1 spacings, or is over 0.5 spacings.
+ *  surfaces is the shape of the surface or that of two sheets, one close behind the other, is under 0.1 spacings, or is
+ *  over 0.5 spacings.
  *  points  count by 3.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_noise_level(brio_context *ctx, const double *points, size_t count, double *level);
@@ -18,8 +19,8 @@ typedef struct {
 } brio_least_scatter;
 
 /** Estimates the noise where there is least of it: at a tenth of the samples the standard deviation of the nearest
- *  points from a plane is lower, in spacings. Few points are near enough that shape hardly counts. Of two sheets, one close
- *  behind the other, each counts alone. Noise of 0.3 spacings in each coordinate gives about 0.11.
+ *  points from a plane is lower, in spacings. Few points are near enough that shape hardly counts. Of two sheets, one
+ *  close behind the other, each counts alone. Noise of 0.3 spacings in each coordinate gives about 0.11.
  *  points  count by 3.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_least_noise(brio_context *ctx, const double *points, size_t count, brio_least_scatter *out);

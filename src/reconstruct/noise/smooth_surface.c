@@ -1,8 +1,8 @@
-/* Smoothing of a surface: every vertex moves along the normal of the surface fitted to its neighbours onto that surface,
- * PASSES times. Vertices of the rim stay: beyond them the surface is not known, and it would shrink. The neighbours are
- * found along edges, breadth first, whole rings at a time until there are MORE: not in space, where a thin wall has its
- * other side. Rings reach round a limb or a rim, too: neighbours whose normals are not within 73 degrees of the vertex's
- * own do not count.
+/* Smoothing of a surface: every vertex moves along the normal of the surface fitted to its neighbours onto that
+ * surface, PASSES times. Vertices of the rim stay: beyond them the surface is not known, and it would shrink. The
+ * neighbours are found along edges, breadth first, whole rings at a time until there are MORE: not in space, where a
+ * thin wall has its other side. Rings reach round a limb or a rim, too: neighbours whose normals are not within 73
+ * degrees of the vertex's own do not count.
  *
  * A triangle that would look the other way than before holds its vertices back: they move half as far, after HALVINGS
  * not at all. A surface that was smoothed has no triangles inside out that it did not have before.
@@ -20,8 +20,8 @@
 /* MORE, PASSES: as for samples (sample_noise.c). The others are chosen, too. */
 enum { MORE = 36, PASSES = 2, HALVINGS = 3, VERTICES_A_THREAD = 256, FACES_A_THREAD = 1 << 12 };
 
-/* The least cosine between the normals of a vertex and of a neighbour that counts. Chosen on scans of models that nothing
- * else was measured on, where 0 and 0.3 are alike and -0.3 is worse. */
+/* The least cosine between the normals of a vertex and of a neighbour that counts. Chosen on scans of models that
+ * nothing else was measured on, where 0 and 0.3 are alike and -0.3 is worse. */
 static const double ALIKE = 0.3;
 
 enum { SLOT_BITS = 9, SLOTS = 1 << SLOT_BITS }; /* eight times BRIO_MOST_NEAR, so that few vertices share a slot */

@@ -4,9 +4,9 @@
 
 #include "base/context.h"
 
-/** Moves every vertex of a triangulated surface, twice, onto a quadratic surface through the middle of the vertices that
- *  are nearest to it along edges and look the same way. So the two sides of a thin wall do not mix, and no triangle looks
- *  the other way afterwards. Vertices of edges of one face stay. Faces may cross each other
+/** Moves every vertex of a triangulated surface, twice, onto a quadratic surface through the middle of the vertices
+ *  that are nearest to it along edges and look the same way. So the two sides of a thin wall do not mix, and no
+ *  triangle looks the other way afterwards. Vertices of edges of one face stay. Faces may cross each other
  *  afterwards: brio_back_off.
  *  points  #P by 3, read and written; points that are no vertices stay.   faces  #F by 3.
  *  Cost: 250 bytes a vertex.

@@ -1,21 +1,22 @@
 /* How large the triangles of a surface are, and how large they should be.
  *
- * The circle of a triangle along the surface holds no sample. So its radius says how far apart the samples are there, and
- * a triangle much larger than usual spans a place without samples. What is usual is read off the surface itself, so that
- * it follows a density that changes along the surface:
- *   1. A sample's size is the lower quarter of the radii round it, weighted by the angles of the triangles at the sample.
- *      At the rim of a hole, at least a quarter of the angle belongs to triangles that samples carry.
- *   2. A size is not larger than the 0.7 quantile of the sizes of its neighbours: samples with holes all round them, and
- *      strays, take the size of the surface that they hang on.
- *   3. Along an edge a size grows by at most GROWTH times its length: the far end of a membrane, where no surface is, is not
- *      excused by sizes that only the membrane has.
- *   4. A triangle's usual radius is the middle of the sizes of its three samples. Where a dense scan of one side meets a
- *      coarse scan of the next, two of the three are often dense, and are on the other side. They tell nothing of this
- *      one. So if a triangle lies along the sheets of only one or two of its samples, the coarsest of these counts. If it
- *      lies along all three, so may a gap in the sheet; the coarsest counts only if the places of scanners are known, which
- *      tell what nobody saw (hole_cut.c).
+ * The circle of a triangle along the surface holds no sample. So its radius says how far apart the samples are there,
+ * and a triangle much larger than usual spans a place without samples. What is usual is read off the surface itself, so
+ * that it follows a density that changes along the surface:
+ *   1. A sample's size is the lower quarter of the radii round it, weighted by the angles of the triangles at the
+ *      sample. At the rim of a hole, at least a quarter of the angle belongs to triangles that samples carry.
+ *   2. A size is not larger than the 0.7 quantile of the sizes of its neighbours: samples with holes all round them,
+ *      and strays, take the size of the surface that they hang on.
+ *   3. Along an edge a size grows by at most GROWTH times its length: the far end of a membrane, where no surface is,
+ *      is not excused by sizes that only the membrane has.
+ *   4. A triangle's usual radius is the middle of the sizes of its three samples. Where a dense scan of one side meets
+ *      a coarse scan of the next, two of the three are often dense, and are on the other side. They tell nothing of
+ *      this one. So if a triangle lies along the sheets of only one or two of its samples, the coarsest of these
+ *      counts. If it lies along all three, so may a gap in the sheet; the coarsest counts only if the places of
+ *      scanners are known, which tell what nobody saw (hole_cut.c).
  *
- * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure the
+ * Based on: Amenta, Bern. Surface reconstruction by Voronoi filtering. DCG 1999 (empty balls along the surface measure
+ * the
  *           sampling). */
 #include "reconstruct/open_surface/face_sizes.h"
 #include "base/memory.h"
@@ -29,8 +30,8 @@
 /* Chosen on scans of models that nothing else was measured on. */
 static const double LOWER = 0.25, AMONG_NEIGHBOURS = 0.7, GROWTH = 0.35;
 
-/* A triangle lies along the sheet of a sample if the cosine between its normal and what the sample takes for the outside
- * is over TANGENT. Chosen on scans of models that nothing else was measured on. */
+/* A triangle lies along the sheet of a sample if the cosine between its normal and what the sample takes for the
+ * outside is over TANGENT. Chosen on scans of models that nothing else was measured on. */
 static const double TANGENT = 0.7;
 
 /* Chosen. SWEEPS: limits travel along most edges in two. */

@@ -30,7 +30,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Chosen on scans of models that nothing else was measured on; flat between 2 and 3 (BRIDGE) and between 0 and 1 (RIM). */
+/* Chosen on scans of models that nothing else was measured on; flat between 2 and 3 (BRIDGE) and between 0 and 1
+ * (RIM). */
 static const double BRIDGE = 2.5, RIM = 0.3, LEAST_COST = -1, MOST_COST = 20;
 
 /* A triangle costs AWAY times as much more as the mean cosine between its normal and what its samples take for the

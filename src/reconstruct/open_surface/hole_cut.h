@@ -31,8 +31,8 @@ typedef struct {
     double proof; /* SEEN: how often the holes make up what proves that a surface is open */
 } brio_hole_list;
 
-/** The rule by which holes stay open. FILL: none does. SEEN: those too wide for the samples round them. WIDER: those with
- *  a circle whose radius is over `most`. */
+/** The rule by which holes stay open. FILL: none does. SEEN: those too wide for the samples round them. WIDER: those
+ *  with a circle whose radius is over `most`. */
 typedef struct {
     enum { BRIO_HOLES_FILL, BRIO_HOLES_SEEN, BRIO_HOLES_WIDER } choice;
     double most;

@@ -14,7 +14,8 @@
 #include "base/vector.h"
 #include <math.h>
 
-/* NEAR: neighbours of a sample. FLAT: usual radii from the tangent plane. Chosen; flat from 24 to 48 and from 1 to 1.5. */
+/* NEAR: neighbours of a sample. FLAT: usual radii from the tangent plane. Chosen; flat from 24 to 48 and from 1 to
+ * 1.5. */
 enum { NEAR = 24 };
 static const double FLAT = 1.5, WITHIN = 0.5 /* cosine of 60 degrees */;
 

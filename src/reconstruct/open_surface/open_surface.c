@@ -18,7 +18,8 @@
 #include <math.h>
 #include <string.h>
 
-/* FAR: usual radii, as the contract says. GRID: parts of each side of a triangle whose far share is measured; chosen. */
+/* FAR: usual radii, as the contract says. GRID: parts of each side of a triangle whose far share is measured;
+ * chosen. */
 static const double FAR = 5;
 enum { GRID = 12 };
 

@@ -1,8 +1,8 @@
 /* One fan of triangles at each sample.
  *
  * A part of a manifold is a manifold with boundary, except at samples with several fans of triangles. There all
- * fans except the longest go, too, until nothing changes. The surface may have a boundary before: where the sides of infinite
- * tetrahedra were left out of it, a sample of the hull can have several fans from the start. */
+ * fans except the longest go, too, until nothing changes. The surface may have a boundary before: where the sides of
+ * infinite tetrahedra were left out of it, a sample of the hull can have several fans from the start. */
 #include "reconstruct/open_surface/single_fans.h"
 #include "base/memory.h"
 #include "base/sort.h"

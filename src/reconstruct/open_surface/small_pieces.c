@@ -1,12 +1,13 @@
 /* Pieces of an opened surface that are too small to be more than a guess.
  *
  * The triangles that stay between holes are sheets of the surface, and crumbs: shards of membranes that happened to be
- * narrow, and tents over stray samples. Pieces are compared by their triangles, not by their area: a few strays far away
- * span more area than the surface. A scene has many objects, and a small one is no crumb. So a piece goes if it has
- *   - fewer triangles than SPECK for each doubling of their number in all, and under a hundredth of those of the largest
- *     piece: so are the specks judged that the labels make; or
- *   - under FEW of those of the largest piece, and it is as rough as samples in space are and a surface is not: on average
- *     across its edges, half of 1 less the cosine between the normals is over ROUGH. */
+ * narrow, and tents over stray samples. Pieces are compared by their triangles, not by their area: a few strays far
+ * away span more area than the surface. A scene has many objects, and a small one is no crumb. So a piece goes if it
+ * has
+ *   - fewer triangles than SPECK for each doubling of their number in all, and under a hundredth of those of the
+ *     largest piece: so are the specks judged that the labels make; or
+ *   - under FEW of those of the largest piece, and it is as rough as samples in space are and a surface is not: on
+ *     average across its edges, half of 1 less the cosine between the normals is over ROUGH. */
 #include "reconstruct/open_surface/small_pieces.h"
 #include "base/memory.h"
 #include "base/vector.h"

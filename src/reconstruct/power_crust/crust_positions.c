@@ -1,8 +1,8 @@
 /* Where the vertices of the crust are: at orthocentres, or at samples.
  *
- * A sample lies on the balls of all poles whose tetrahedra it is a corner of. Their cells meet at the sample. So in exact
- * arithmetic the vertices between these cells are one point, the sample. Rounding the balls scatters the vertices around
- * the sample, and rounding the vertices turns the tiny faces between them over, so that faces cross. Therefore:
+ * A sample lies on the balls of all poles whose tetrahedra it is a corner of. Their cells meet at the sample. So in
+ * exact arithmetic the vertices between these cells are one point, the sample. Rounding the balls scatters the vertices
+ * around the sample, and rounding the vertices turns the tiny faces between them over, so that faces cross. Therefore:
  *
  * - A vertex whose four balls go through one sample, and which is very close to the sample, moves onto the sample.
  * - If the four balls go through two samples, their cells meet along the line through both, and the orthocentre is an
@@ -18,13 +18,13 @@
 #include <string.h>
 
 /* How far a vertex may move off the segment between two samples of its balls, or onto a sample, as a share of the least
- * of its four radii. Chosen: vertices scatter over a share of 1e-9 or less; on dense samples those that belong elsewhere
- * are farther away than 1e-6. */
+ * of its four radii. Chosen: vertices scatter over a share of 1e-9 or less; on dense samples those that belong
+ * elsewhere are farther away than 1e-6. */
 static const double NEAR = 0x1p-20;
 
-/* Bounds of the error of |centre - sample|^2 - radius^2 for a sample that the ball should go through: shares of radius^2,
- * and of the radius times the largest coordinate. Derived: brio_centres errs by 2^-44 of the radius, which counts twice,
- * and rounds coordinates to 2^-53; the rest is room. */
+/* Bounds of the error of |centre - sample|^2 - radius^2 for a sample that the ball should go through: shares of
+ * radius^2, and of the radius times the largest coordinate. Derived: brio_centres errs by 2^-44 of the radius, which
+ * counts twice, and rounds coordinates to 2^-53; the rest is room. */
 static const double CENTRE_ERROR = 0x1p-42, ROUNDING = 0x1p-50;
 
 enum { MOST_SAMPLES = 16 }; /* corners of four tetrahedra */

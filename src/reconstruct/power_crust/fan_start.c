@@ -1,10 +1,10 @@
 /* The corner from which a face of the crust is cut into a fan of triangles.
  *
- * A face is a convex polygon in the plane midway between the powers of two balls, up to the rounding of its corners. Where
- * three corners are nearly on a line, rounding may turn their triangle over, and the triangle then crosses the neighbours
- * of the face. The fan from the middle one of the three corners has no such triangle. So the first corner is kept if the
- * normals of all triangles of its fan are within 60 degrees of the plane's normal; otherwise the corner is chosen whose
- * worst triangle is best. */
+ * A face is a convex polygon in the plane midway between the powers of two balls, up to the rounding of its corners.
+ * Where three corners are nearly on a line, rounding may turn their triangle over, and the triangle then crosses the
+ * neighbours of the face. The fan from the middle one of the three corners has no such triangle. So the first corner is
+ * kept if the normals of all triangles of its fan are within 60 degrees of the plane's normal; otherwise the corner is
+ * chosen whose worst triangle is best. */
 #include "reconstruct/power_crust/fan_start.h"
 #include "base/vector.h"
 #include <math.h>
@@ -14,8 +14,8 @@ static const double LEAST_COSINE = 0.5;
 /* Corners that are tried at most, so that the cost stays linear in the corners; chosen. */
 enum { MOST_STARTS = 64 };
 
-/* Returns twice the area of the triangle times the cosine of its angle with the plane less LEAST_COSINE, times the length
- * of the plane's normal. */
+/* Returns twice the area of the triangle times the cosine of its angle with the plane less LEAST_COSINE, times the
+ * length of the plane's normal. */
 static double agreement(const double *a, const double *b, const double *c, const double normal[3], double length) {
     double u[3], v[3], n[3];
     for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k];

@@ -5,7 +5,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Turns the list of a polygon's corners so that the fan of triangles from the first corner follows the polygon's plane.
+/** Turns the list of a polygon's corners so that the fan of triangles from the first corner follows the polygon's
+ *  plane.
  *  vertices  #V by 3.   corner  #size: indices of vertices.
  *  normal    of the polygon's plane, of any length, on the side from which the corners are counterclockwise. */
 void brio_turn_to_fan_start(const double *vertices, uint32_t *corner, size_t size, const double normal[3]);

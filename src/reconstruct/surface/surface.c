@@ -1,7 +1,8 @@
 /* A surface through points: the methods, which options each of them has, and one call for all.
  *
- * A method is a row of METHODS and a function that fills a mesh: from options whose defaults are filled in and that are all
- * its own. It adds the property "sample" and, where options.normals asks for them, writes the normals of the points. */
+ * A method is a row of METHODS and a function that fills a mesh: from options whose defaults are filled in and that are
+ * all its own. It adds the property "sample" and, where options.normals asks for them, writes the normals of the
+ * points. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rng.h"

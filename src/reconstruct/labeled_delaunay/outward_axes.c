@@ -1,0 +1,100 @@
+/* The axes of the samples, and the way to the outside along them.
+ *
+ * The axis of a sample is that of its Voronoi cell. Neighbours along a sheet agree on its sign (sheet_signs.c); normals
+ * of the points and places of scanners tell it for a whole sheet (../cocone/sample_evidence.c).
+ *
+ * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000. */
+#include "base/memory.h"
+#include "reconstruct/cocone/rim_axes.h"
+#include "reconstruct/labeled_delaunay/reconstruction.h"
+#include "reconstruct/labeled_delaunay/sheet_signs.h"
+
+/* In log-odds, what the sign of a sample's sheet weighs, of an open surface or beside evidence. Chosen on scans of
+ * models that nothing else was measured on. */
+static const double SHEET = 3;
+
+/* Half the opening of the co-cones, for the first orientation: pi / 8 as in [Amenta Choi Dey Leekha 2000]. */
+static const double THETA = 0.39269908169872414;
+
+/* Gives signs to the axes, so that neighbours agree.   told  of the samples, or NULL. */
+static brio_status sign_sheets(brio_reconstruction *r, const float *told) {
+    brio_sheet_samples samples = {r->spacing, r->left, told};
+    return brio_sign_sheets(r->ctx, &r->dual, &samples, r->turned, r->alone);
+}
+
+/* Writes the weight of each sample's vote: what evidence tells of it, and the sign of its sheet. Where places of
+ * scanners see the surface at a grazing angle their signs are wrong in patches; the sheet of a patch knows better. */
+static void add_sheets(const brio_reconstruction *r) {
+    for (size_t p = 0; p < r->num_points; p++) {
+        double sheet = r->alone[p] ? 0 : r->turned[p] ? -SHEET : SHEET, all = (double)r->own[p] + sheet;
+        if (all != 0) r->turned[p] = all < 0;
+        r->own[p] = (float)(all * BRIO_VOTE_UNIT);
+    }
+}
+
+/* Lets evidence sign the axes, if it tells anything: each sheet by all that is told of it. At the rims of sheets axes
+ * change then. */
+static brio_status orient_by_evidence(brio_reconstruction *r) {
+    brio_status status = BRIO_OK;
+    brio_cocones cocones = {0};
+    unsigned *used = &r->stats.evidence;
+    size_t candidates;
+    r->evidence.order = r->order;
+    r->evidence.exponent = r->exponent;
+    if (!r->evidence.given.normals && !r->evidence.given.origins) return BRIO_OK;
+    BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
+    BRIO_TRY(brio_cocones_select(r->ctx, &cocones, &candidates));
+    BRIO_TRY(brio_weigh_evidence(r->ctx, &r->evidence, &cocones, &r->own, used));
+    if (!r->own) goto done;
+    brio_release(r->ctx, r->own);
+    r->own = NULL;
+    BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
+    BRIO_TRY(brio_weigh_evidence(r->ctx, &r->evidence, &cocones, &r->own, used));
+    BRIO_TRY(sign_sheets(r, r->own));
+    if (r->own) add_sheets(r);
+done:
+    brio_cocones_free(r->ctx, &cocones);
+    return status;
+}
+
+/* Lets the samples of an open surface keep the signs of their sheets. */
+static brio_status orient_by_sheets(brio_reconstruction *r) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_mend_rim_axes(r->ctx, &r->dual));
+    BRIO_TRY(sign_sheets(r, NULL));
+    BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->own, r->num_points));
+    add_sheets(r);
+done:
+    return status;
+}
+
+brio_status brio_orient_axes(brio_reconstruction *r) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_pole_vectors_find(r->ctx, r->delaunay, r->points, r->num_points, THETA, &r->dual));
+    if (!r->turned) {
+        BRIO_TRY(BRIO_ALLOC(r->ctx, r->turned, r->num_points));
+        BRIO_TRY(BRIO_ALLOC(r->ctx, r->alone, r->num_points));
+        BRIO_TRY(BRIO_ALLOC(r->ctx, r->outside, r->num_points));
+    }
+    if (r->is_open) {
+        BRIO_TRY(orient_by_sheets(r));
+    } else {
+        BRIO_TRY(sign_sheets(r, NULL));
+        BRIO_TRY(orient_by_evidence(r));
+    }
+    for (size_t p = 0; p < r->num_points; p++)
+        for (size_t k = 0; k < 3; k++) r->outside[p][k] = (float)r->dual.plane[4 * p + k];
+    brio_lap(r, &r->stats.poles_seconds);
+done:
+    return status;
+}
+
+void brio_compare_with_evidence(brio_reconstruction *r) {
+    brio_surface_stats *s = &r->stats;
+    const float(*outside)[3] = (const float(*)[3])r->outside;
+    s->normals_agreement =
+        brio_evidence_agreement(&r->evidence, BRIO_EVIDENCE_NORMALS, r->points, outside, r->num_points, &s->normals);
+    s->origins_agreement =
+        brio_evidence_agreement(&r->evidence, BRIO_EVIDENCE_ORIGINS, r->points, outside, r->num_points, &s->origins);
+    s->agreement = brio_evidence_agreement(&r->evidence, s->evidence, r->points, outside, r->num_points, &s->told);
+}
