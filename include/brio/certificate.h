@@ -22,7 +22,7 @@ typedef struct brio_certificate {
     int64_t *genera; /* of each component, the component with the most faces first; owned by the certificate */
     size_t boundary_edges, boundary_loops;
     size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
-    int64_t self_intersections; /* -1: for the caller, who may store here what brio_mesh_self_intersections counts */
+    int64_t self_intersections; /* -1: not counted; a place for what brio_mesh_self_intersections counts */
     double area, volume;        /* volume is positive when the faces are seen counterclockwise from outside */
 } brio_certificate;
 

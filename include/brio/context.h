@@ -60,7 +60,8 @@ BRIO_API brio_status brio_context_new(const brio_allocator *allocator, brio_cont
 BRIO_API void brio_context_free(brio_context *ctx);
 
 /** Returns the sentence that explains the last failure in this context, such as "point 1842: y is NaN"; "" when there
- *  was none. A call that succeeds leaves the sentence as it was. Valid until the next call with the context. */
+ *  was none. A call that succeeds leaves the sentence as it was, so it tells
+ *  something after a failure only. Valid until the next call with the context. */
 BRIO_API const char *brio_message(const brio_context *ctx);
 
 /** Sets the greatest number of threads that a call uses, the calling thread included. 0 (default) means every processor

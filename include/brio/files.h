@@ -28,8 +28,9 @@ BRIO_API brio_status brio_read(brio_context *ctx, const char *path, const brio_r
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a
  *  descriptor of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The
- *  process receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
- *  texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of
+ *  process receives neither SIGPIPE nor SIGXFSZ. What a format cannot hold is left out: properties by STL, edges by all
+ *  but PLY, VTU, VTP, VTK and GLB, faces by texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners
+ *  by STL and GLB; brio_format_facts tells what a format holds. In the names of
  *  properties, formats that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a
  *  coordinate; a comment of several lines becomes several comments. Of several files (.node and those beside it) none
  *  gets its name before all are complete.
@@ -54,7 +55,7 @@ typedef enum brio_format {
     BRIO_FORMAT_LAZ = 9, /* LAS, compressed as by LASzip; written in formats 0 to 3 and 6 to 8 */
     BRIO_FORMAT_PCD = 10,
     BRIO_FORMAT_PTX = 11,
-    BRIO_FORMAT_STL = 12,      /* corners at the same position become one vertex */
+    BRIO_FORMAT_STL = 12,      /* single precision; where it is read, corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13,      /* NumPy: an array of rows of coordinates, or of records with names */
     BRIO_FORMAT_GLB = 14,      /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
     BRIO_FORMAT_E57 = 15,      /* read where brio was built with the library expat; written to files, not to pipes */

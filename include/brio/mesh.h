@@ -94,18 +94,19 @@ BRIO_API brio_status brio_mesh_set_edges(brio_mesh *mesh, const uint32_t *edges,
 BRIO_API brio_status brio_mesh_add_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
 /** Removes the property of that name, if there is one. */
 BRIO_API void brio_mesh_remove_property(brio_mesh *mesh, const char *name);
-/** Returns the property of that name, or NULL. */
+/** Returns the property of that name, or NULL. Valid until a property is added to the mesh or removed from it; its data
+ *  stay where they are until that property is removed, or vertices are. */
 BRIO_API const brio_property *brio_mesh_property(const brio_mesh *mesh, const char *name);
 /** Adds a property of the faces, as brio_mesh_add_property adds one of the vertices; names of the two do not meet. */
 BRIO_API brio_status brio_mesh_add_face_property(brio_mesh *mesh, const char *name, brio_scalar type, void **data);
 /** Removes the property of the faces of that name, if there is one. */
 BRIO_API void brio_mesh_remove_face_property(brio_mesh *mesh, const char *name);
-/** Returns the property of the faces of that name, or NULL. */
+/** Returns the property of the faces of that name, or NULL; valid as that of brio_mesh_property. */
 BRIO_API const brio_property *brio_mesh_face_property(const brio_mesh *mesh, const char *name);
 /** Adds metadata, or replaces that of the same name.   bytes  copied.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the name is empty, has over 63 bytes, or is no UTF-8), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_set_metadata(brio_mesh *mesh, const char *name, const void *bytes, size_t size);
-/** Returns the metadata of that name, or NULL. */
+/** Returns the metadata of that name, or NULL; valid until metadata is set. */
 BRIO_API const brio_metadata *brio_mesh_metadata(const brio_mesh *mesh, const char *name);
 /** Returns scalar i of a property as a double. */
 BRIO_API double brio_property_value(const brio_property *property, size_t i);
@@ -124,7 +125,8 @@ BRIO_API brio_status brio_mesh_add_normals(brio_mesh *mesh);
  *  points   whose properties are wanted; only its vertices and properties count.
  *  samples  NULL: each vertex takes the properties of the point nearest to it, of the lexicographically first one among
  *           points at equal distances (distances are rounded to doubles), and of the lowest index among coincident
- *           points. Or #V: for each vertex of the mesh the index of its point.
+ *           points. Or #V: for each vertex of the mesh the index of its point, such as the data of the property
+ *           "sample" that brio_surface adds. It has no such index for methods whose vertices are not points: NULL then.
  *  mesh     receives the properties. After a failure it has those that it had.
  *  Cost: with samples linear; else O(n log n) for the points and expected O(log n) a vertex, with all threads; 57 bytes
  *  a point and 4 a vertex.

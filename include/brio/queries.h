@@ -15,7 +15,7 @@ extern "C" {
 
 typedef struct brio_locator brio_locator;
 
-/** Makes a locator. It needs neither the triangulation nor the points afterwards.
+/** Makes a locator. It needs neither the triangulation nor the points afterwards; its answers are indices of them.
  *  points, weights, num_points  as they were given to brio_delaunay.
  *  out  owned by the caller, freed with brio_locator_free; NULL on error. Several threads, each with a context of its
  *       own, may query one locator.
@@ -38,9 +38,9 @@ BRIO_API void brio_locator_free(brio_locator *locator);
 
 /** Finds the tetrahedron that holds each query: the finite one of lowest index whose closure holds it. So a query on a
  *  facet, on an edge or at a vertex belongs to the first of the tetrahedra that share it.
- *  tetrahedra  #Q: indices of brio_triangulation_tetrahedra; BRIO_INFINITE for a query strictly outside the convex
- *              hull, and for every query if the points have dimension 2 or less. Queries on the hull's boundary are
- *              inside.
+ *  tetrahedra  #Q: indices of brio_triangulation_tetrahedra; none, which is UINT32_MAX as BRIO_INFINITE is, for a query
+ *              strictly outside the convex hull, and for every query if the points have dimension 2 or less. Queries on
+ *              the hull's boundary are inside.
  *  Cost: one walk; for a query on an edge, O(tetrahedra at that edge).
  *  Based on: [Devillers Pion Teillaud 2002]. */
 BRIO_API brio_status brio_locator_tetrahedra(brio_context *ctx, const brio_locator *locator, const double *queries,

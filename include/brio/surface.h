@@ -20,19 +20,20 @@ typedef struct brio_surface_options brio_surface_options;
 typedef struct brio_surface_stats brio_surface_stats;
 
 /** Makes a surface through points.
- *  points   #P by 3.   options  NULL for the defaults.   stats  NULL, or receives what was found, as far as it came to
- *           it.
- *  out      owned by the caller: triangles, counterclockwise seen from outside. The property "sample" (int32; float64
- *           from 2^31 points on) of a vertex is the index of its point, or -1 if it is none: all of POWER_CRUST and
- *           OFFSET. A vertex has the position of its point, unless points were smoothed. Below, methods go by the ends
- *           of their names. LABELED: vertices in the order of their points; with `simplify`, "sample" is that of the
- *           vertex before edges collapsed. Faces have the property "bridge" (uint8): 1 for those that span gaps of the
- *           points. With `confidence` vertices have "confidence" (float32), the probability that the surface is right
- *           there: a logistic regression on the votes round the vertex, measured on generated solids; vertices under
- *           0.7 are guesses (docs/algorithms.md tells how often those of real models were wrong). Faces have theirs,
- *           fitted to simulated scans. COCONE, TIGHT_COCONE: vertex v is point v, also where no face uses it. `density`
- *           adds "feature_size", the distance to the nearest pole, "r", an estimate of the sampling density, 0 at a
- *           point on no face, and with `boundaries` "boundary", 1 at a boundary point.
+ *  points   #P by 3.   options  NULL for the defaults.
+ *  stats    NULL, or receives what was found, also before a failure.
+ *  out      owned by the caller: triangles, counterclockwise seen from outside. Methods go by the ends of their names
+ *           here. The property "sample" (int32; float64 from 2^31 points on) of a vertex is the index of its point, by
+ *           which brio_mesh_carry_properties gives it the properties of that point; -1 for all vertices of POWER_CRUST
+ *           and OFFSET, which are no points. A vertex has the position of its point, unless points were smoothed or
+ *           edges collapsed (`simplify`); the vertex that two became keeps the point of one of them.
+ *           LABELED: vertices in the order of their points. Faces have the property "bridge" (uint8): 1 for those that
+ *           span gaps of the points. With `confidence` vertices have "confidence" (float32), the probability that the
+ *           surface is right there: a logistic regression on the votes round the vertex, measured on generated solids;
+ *           vertices under 0.7 are guesses (docs/algorithms.md tells how often those of real models were wrong). Faces
+ *           have theirs, fitted to simulated scans. COCONE, TIGHT_COCONE: vertex v is point v, also where no face uses
+ *           it. `density` adds "feature_size", the distance to the nearest pole, "r", an estimate of the sampling
+ *           density, 0 at a point on no face, and with `boundaries` "boundary", 1 at a boundary point.
  *           POWER_CRUST, OFFSET: vertices that only rounding keeps apart from a point are at the point, and the faces
  *           between them have no area.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, no triangle found, all of the surface spans holes, an inward
@@ -174,11 +175,11 @@ struct brio_surface_options {
     /* All but OFFSET: NULL, or receives #P by 3: the unit normal of the surface at each point, outwards. */
     double *normals;
     /* LABELED, POWER_CRUST: K > 0 leaves open the holes whose radius is over K spacings: for LABELED that of the widest
-     * empty circle along the surface, whatever `holes` is. POWER_CRUST leaves out faces whose two balls intersect at an
-     * angle over pi / 4 while the smaller ball's radius is that large. 0: LABELED goes by `holes`, POWER_CRUST is
-     * closed. */
+     * empty circle along the surface; `holes` then does not count. POWER_CRUST leaves out faces whose two balls
+     * intersect at an angle over pi / 4 while the smaller ball's radius is that large. 0: LABELED goes by `holes`,
+     * POWER_CRUST is closed. */
     double open;
-    brio_holes holes; /* LABELED */
+    brio_holes holes; /* LABELED; BRIO_HOLES_CLOSED is taken by all but COCONE, as they are closed */
     /* LABELED, POWER_CRUST, OFFSET, 1: about a quarter as many triangles, as far as the shape allows. Edges collapse
      * while the vertices stay within a tenth of a spacing of the planes of their triangles: edges of up to four
      * spacings of LABELED, and those much shorter than the spacing of the others. The surface stays the same as a

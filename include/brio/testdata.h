@@ -31,8 +31,7 @@ typedef struct brio_generate_options {
 } brio_generate_options;
 
 /** Makes n points of a kind; the same seed gives the same points. A scan has about n points, as many as its rays hit,
- *  and
- *  the property "view".   options  NULL for the defaults.   out  owned by the caller.
+ *  and the property "view".   options  NULL for the defaults.   out  owned by the caller.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (also where noise moves points of a scan farther than doubles can hold),
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,

@@ -1,4 +1,5 @@
-/* brio/triangulation.h: Delaunay and regular triangulations of points in space, and their checks. */
+/* brio/triangulation.h: Delaunay and regular triangulations of points in space, and their checks. Questions to them,
+ * such as which tetrahedron holds a position, are in queries.h. */
 #ifndef BRIO_TRIANGULATION_H
 #define BRIO_TRIANGULATION_H
 

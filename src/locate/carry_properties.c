@@ -124,7 +124,8 @@ static brio_status copy_property(const brio_mesh *points, size_t i, const uint32
 
 static brio_status check_samples(brio_context *ctx, const uint32_t *samples, size_t num_vertices, size_t num_points) {
     for (size_t v = 0; v < num_vertices; v++)
-        BRIO_EXPECT(ctx, samples[v] < num_points, BRIO_ERR_ARGUMENT, "vertex %zu: there is no point %u", v, samples[v]);
+        BRIO_EXPECT(ctx, samples[v] < num_points, BRIO_ERR_ARGUMENT, "vertex %zu: there is no point %d", v,
+                    (int)samples[v]);
     return BRIO_OK;
 }
 

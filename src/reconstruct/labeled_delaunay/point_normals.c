@@ -41,7 +41,7 @@ static brio_status list_known(point_set *s, const brio_mesh *mesh, const uint32_
     for (size_t p = 0; p < s->num_points; p++) s->vertex[p] = NO_VERTEX;
     for (uint32_t v = 0; v < mesh->num_vertices; v++) {
         uint32_t p = samples ? samples[v] : v;
-        BRIO_REQUIRE(s->ctx, p < s->num_points, BRIO_ERR_ARGUMENT, "vertex %u: there is no point %u", v, p);
+        BRIO_REQUIRE(s->ctx, p < s->num_points, BRIO_ERR_ARGUMENT, "vertex %u: there is no point %d", v, (int)p);
         if (!is_zero(s->of_vertex + 3 * (size_t)v)) s->vertex[p] = v;
     }
     for (uint32_t p = 0; p < s->num_points; p++)
