@@ -1,4 +1,4 @@
-// The advancing front surface of CGAL, for comparison: a program of its own, never linked with brio.
+// The advancing front surface of CGAL, for comparison: a separate program, never linked with brio.
 //   cgal_advancing_front IN OUT      PLY files: points, and the surface with all of them as vertices
 //   cgal_advancing_front --version
 #include <CGAL/Advancing_front_surface_reconstruction.h>

@@ -77,7 +77,7 @@ def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('brio', type=os.path.abspath)
     parser.add_argument('--of', nargs=3, metavar=('REPORT', 'IN', 'OUT'))
-    parser.add_argument('--every', type=int, default=4, help='models to take: each of so many')
+    parser.add_argument('--every', type=int, default=4, help='models to take: every N-th')
     parser.add_argument('--scans', default=','.join(open_scans.SCANS))
     parser.add_argument('--only', nargs='+', metavar='NAME')
     return parser.parse_args()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Open3D's surfaces of points with normals, a program of its own: nothing of it is in brio's process.
+"""Open3D's surfaces of points with normals, by a separate program: nothing of it is in brio's process.
 
     open3d_surface.py poisson|pivoting IN OUT
 

@@ -168,7 +168,7 @@ def read_arguments():
     parser.add_argument('--rivals', action='store_true', help='other programs on the scans, too')
     parser.add_argument('--scans', nargs='+', metavar='NAME', choices=open_scans.SCANS)
     parser.add_argument('--evidence', nargs='+', metavar='KIND', choices=list(open_scans.KINDS))
-    parser.add_argument('--every', type=int, default=open_scans.EVERY, help='models of the scans: each of so many')
+    parser.add_argument('--every', type=int, default=open_scans.EVERY, help='models of the scans: every N-th')
     parser.add_argument('--peers', default=os.path.join(HERE, '..', '..', 'build-bench'), metavar='FOLDER')
     parser.add_argument('--open3d', default=os.path.join(OUT, 'open3d-env', 'bin', 'python'), metavar='PYTHON')
     parser.add_argument('--processes', type=int, default=2)

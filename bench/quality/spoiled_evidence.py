@@ -43,7 +43,7 @@ def mirrored(points, origins, share, rng):
 
 
 def displaced(points, origins, share, rng):
-    """Each scanner is off by a share of the size of what it saw, in a direction of its own."""
+    """Each scanner is off by a share of the size of what it saw, each in another direction."""
     places, of = np.unique(origins, axis=0, return_inverse=True)
     off = rng.normal(size=places.shape)
     off *= share * np.linalg.norm(np.ptp(points, axis=0)) / np.linalg.norm(off, axis=1)[:, None]

@@ -38,7 +38,7 @@ typedef struct survey {
 static const char *const type_names[] = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
 
 static const option options[] = {{0}};
-static const char defaults = 0; /* info has no options of its own */
+static const char defaults = 0; /* info has no options but those of all commands */
 
 static void report_vector(facts *f, const char *name, const double v[3]) {
     cli_fact_open(f, name, FACT_LIST);

@@ -418,7 +418,7 @@ static brio_status check_method(run *r, int method) {
 /* Refuses gaps that are shorter than what they are held against. */
 static brio_status check_open_of_curves(run *r, double open) {
     if (isnan(open) || open == 0 || open >= 1) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "--open: %g is under 1; curves end at gaps over so many links", open);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "--open: %g is under 1; curves end at gaps over that many links", open);
 }
 
 /* Checks the options. A theta that voids the guarantee is worth a word. */

@@ -35,7 +35,7 @@ typedef struct glossary_line {
 /** The table, closed by a row without a key. */
 extern const glossary_line cli_glossary[];
 
-/** Returns whether a row is for this command and this parent. The members of an object without rows of its own need
+/** Returns whether a row is for this command and this parent. The members of an object that has no rows itself need
  *  none. */
 bool cli_glossary_fits(const glossary_line *line, const char *command, const char *parent);
 

@@ -8,7 +8,7 @@
 
 enum { TRIED = 64 }; /* points that decide at first whether all may be in a plane */
 
-/* A thickness of so many extents is none of a plane, whatever the rounding of the points. Chosen. */
+/* Points thicker than this share of their extent are in no plane, whatever the rounding of the points. Chosen. */
 static const double THICK = 1e-3;
 
 /* Bytes of a point during the work. Measured: 219 along a circle. */

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Returns the length of a name cut to at most so many bytes, between two characters of UTF-8. */
+/* Returns the length of a name cut to at most `most` bytes, between two characters of UTF-8. */
 static int cut_length(const char *name, size_t most) {
     if (strlen(name) <= most) return (int)strlen(name);
     while (most > 0 && ((unsigned char)name[most] & 0xc0) == 0x80) most--;

@@ -34,7 +34,7 @@ BRIO_API brio_status brio_estimate_tetrahedra(brio_context *ctx, const double *p
 BRIO_API uint64_t brio_estimate_delaunay2(size_t num_points, int weighted);
 
 /** Estimates the memory of brio_surface for num_points samples. Samples of 6.8 tetrahedra each are assumed. Where
- *  brio_estimate_tetrahedra finds more, ask for the number of samples that so many tetrahedra belong to. Where poles
+ *  brio_estimate_tetrahedra finds more, ask for the number of samples whose tetrahedra those are. Where poles
  *  coincide, as those of exact cylinders and tori do, power crusts need more.
  *  options  NULL for the defaults. Of them `method`, `polygons`, `simplify` and `pieces` count.
  *  Returns BRIO_OK or BRIO_ERR_ARGUMENT (no such method, or an impossible size). */

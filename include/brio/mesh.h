@@ -144,7 +144,7 @@ BRIO_API brio_status brio_mesh_carry_properties(brio_context *ctx, const brio_me
  *  dropped_components, dropped_faces  NULL, or receive what was dropped.
  *  Cost: near-linear; about 30 bytes a corner.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or the mesh has edges or tetrahedra), BRIO_ERR_NO_ANSWER
- *  (no component has so many faces; a mesh without any stays as it is), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. After a
+ *  (no component has as many faces; a mesh without any stays as it is), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. After a
  *  failure the mesh is as it was. */
 BRIO_API brio_status brio_mesh_keep_components(brio_mesh *mesh, int largest, size_t least_faces,
                                                size_t *dropped_components, size_t *dropped_faces);

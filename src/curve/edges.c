@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "curve/work.h"
 
-/* A Voronoi edge up to so many times as long as its link is short. Chosen: squares have 1, and two curves twice as far
+/* A Voronoi edge up to this many times as long as its link is short. Chosen: squares have 1, and two curves twice as far
  * apart as their points have 2. */
 static const double SHORT = 1.25;
 

@@ -20,12 +20,12 @@
 /* MOST: neighbours that a point looks at, the nearest ones. Chosen; bounds the time where a point has many. */
 enum { MOST = 16 };
 
-/* What a turn costs: the way counts 1/sin^4 times, of half the angle between the two directions, but at most so many
+/* What a turn costs: the way counts 1/sin^4 times, of half the angle between the two directions, but at most this many
  * times. Chosen: beside a tip of 20 degrees, where the other arm is three times as near as the tip, the way to the tip
  * is cheaper. */
 static const double SHARPEST = 16;
 
-/* A way over so many times the distance of the nearest neighbour leads past it to something else: the nearest one is
+/* A way over this many times the distance of the nearest neighbour leads past it to something else: the nearest one is
  * wished alone. Chosen, as above. */
 static const double FAR_WAY = 8;
 

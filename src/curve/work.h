@@ -72,7 +72,7 @@ void brio_curve_work_free(brio_curve_work *w);
 brio_status brio_curve_link(brio_curve_work *w, uint32_t *rows, size_t count);
 
 /** Removes links that span gaps, links what that frees, and so on until neither changes.
- *  open  a gap is over so many times as long as the links near it; 0: by how even these are. */
+ *  open  a gap is over that many times as long as the links near it; 0: by how even these are. */
 brio_status brio_curve_find_gaps(brio_curve_work *w, double open);
 
 /** Returns the number of links whose Voronoi edges are hardly longer than they: few along curves, many on an area. */

@@ -199,7 +199,7 @@ def cup(wall):
 
 
 def holes_of(size, points, count):
-    """Holes of so many spacings across, far apart."""
+    """Holes of a given number of spacings across, far apart."""
     angle = size * np.sqrt(4 * np.pi / points) / 2
     k = np.arange(count) + 0.5
     z, a = 1 - 2 * k / count, np.pi * (1 + 5 ** 0.5) * k
