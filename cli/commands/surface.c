@@ -20,7 +20,8 @@
 
 /* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone
  * is given; of points in a plane, curves. */
-enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, CURVES, NO_LABELING = -1 };
+typedef enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, CURVES } surface_method;
+enum { NO_LABELING = -1 };
 
 typedef struct arguments {
     int method;
@@ -103,7 +104,7 @@ static bool has_power_crust_options(const arguments *a) {
     return a->polygons || a->crust.labeling != NO_LABELING || a->crust.sampling_density != 0 || a->crust.sharp;
 }
 
-static int method_of(const arguments *a) {
+static surface_method method_of(const arguments *a) {
     if (a->curves) return CURVES;
     return a->method != NO_METHOD ? a->method : has_power_crust_options(a) ? POWER_CRUST : LABELED_DELAUNAY;
 }
@@ -474,15 +475,21 @@ static void suggest(run *r, brio_status status, const brio_mesh *points) {
     if (a->method != COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
 }
 
+/* No default: the compiler names the method that was forgotten. */
 static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, outcome *found) {
     switch (method_of(r->arguments)) {
     case POWER_CRUST:
         return power_crust(r, points, result);
     case LABELED_DELAUNAY:
         return labeled_delaunay(r, points, result, found);
-    default:
+    case COCONE:
+    case TIGHT_COCONE:
         return cocone(r, points, result);
+    case NO_METHOD:
+    case CURVES: /* try_curves */
+        break;
     }
+    return BRIO_ERR_ARGUMENT;
 }
 
 /* --- curves --- */

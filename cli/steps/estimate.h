@@ -15,8 +15,8 @@ brio_status cli_delaunay_bytes(run *r, const brio_mesh *mesh, const double *weig
                                double *bytes);
 
 /** Writes how many points have as many tetrahedra as the mesh's, if each has the usual number; never fewer than there
- *  are. What goes by the tetrahedra is estimated for that number of points. Without --max-memory, unless `asked`, it is the
- *  number of points. */
+ *  are. What goes by the tetrahedra is estimated for that number of points. Without --max-memory, unless `asked`, it is
+ *  the number of points. */
 brio_status cli_usual_points(run *r, const brio_mesh *mesh, const double *weights, bool asked, size_t *points);
 
 /** Estimate the commands that go beyond one triangulation.

@@ -12,9 +12,10 @@ extern "C" {
 
 typedef struct brio_curve_options {
     size_t size;
-    double open; /* a curve ends where the next point is over that many times as far as the longest of the eight links on
+    double
+        open;   /* a curve ends where the next point is over that many times as far as the longest of the eight links on
                     either side; 1 or more. 0: over 2.25 times where these are all alike, more where they vary */
-    int closed;  /* 1: curves end nowhere if they can be closed; `open` does not count */
+    int closed; /* 1: curves end nowhere if they can be closed; `open` does not count */
     int reserved_int;
 } brio_curve_options;
 

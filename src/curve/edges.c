@@ -8,8 +8,8 @@
 #include "base/memory.h"
 #include "curve/work.h"
 
-/* A Voronoi edge up to this many times as long as its link is short. Chosen: squares have 1, and two curves twice as far
- * apart as their points have 2. */
+/* A Voronoi edge up to this many times as long as its link is short. Chosen: squares have 1, and two curves twice as
+ * far apart as their points have 2. */
 static const double SHORT = 1.25;
 
 double brio_curve_turn(const brio_curve_work *w, uint32_t o, uint32_t p, uint32_t q, int *left) {

@@ -130,8 +130,12 @@ brio_status brio_estimate_surface(brio_context *ctx, size_t num_points, const br
     case BRIO_SURFACE_LABELED:
         *bytes = bytes_of(LABELED_BYTES_A_POINT * (double)num_points);
         break;
-    default:
+    case BRIO_SURFACE_COCONE:
+    case BRIO_SURFACE_TIGHT_COCONE:
         *bytes = bytes_of(cocone_bytes((double)num_points, (double)o.pieces));
+        break;
+    case BRIO_SURFACE_END: /* no default: the compiler names the method that was forgotten */
+        break;
     }
     return BRIO_OK;
 }

@@ -21,7 +21,7 @@ from count_house import SMALL as SMALL_LINES, files_of, single_headers, without_
 
 LINES, COLUMNS, FEWEST, MOST = 600, 120, 3, 30
 SMALL, SINGLE = 269, 98
-FOLDERS = {"src/base": 48, "src/io": 71, "src/mesh": 51, "src/plane": 33, "src/predicates": 31, "src/reconstruct/cocone": 38,
+FOLDERS = {"src/base": 48, "src/io": 52, "src/mesh": 51, "src/plane": 33, "src/predicates": 31, "src/reconstruct/cocone": 38,
            "src/reconstruct/labeled_delaunay": 36, "src/reconstruct/surface": 1, "src/testdata": 31, "src/triangulation": 68}
 WIDE = {"include": 12, "src/reconstruct": 19}
 LONG = {}
@@ -45,9 +45,10 @@ def check_sizes(root, files):
             yield "%s has %d lines, at most %d: what would a stranger look for in it? Make that a file of its own" % (name, lines, LINES)
         if not name.startswith("include/"):
             folders[path.parent] = folders.get(path.parent, 0) + 1
+    formats = (root / "src/io/format_table.c").read_text(encoding="utf-8").count("{sizeof(brio_format_info)")
     for folder, count in sorted(folders.items()):
         name = folder.relative_to(root).as_posix()
-        if name in FOLDERS and count <= FOLDERS[name]:
+        if name in FOLDERS and count <= FOLDERS[name] + (formats if name == "src/io" else 0):  # a file for each format
             continue
         if count > MOST:
             yield "%s has %d files, at most %d: it is two rooms; find the arrows between its parts" % (name, count, FOLDERS.get(name, MOST))

@@ -21,13 +21,14 @@ typedef brio_status method_fn(brio_context *ctx, const double *points, size_t nu
 static const struct {
     const char *name;
     method_fn *make;
-} METHODS[BRIO_SURFACE_END] = {
+} METHODS[] = {
     [BRIO_SURFACE_LABELED] = {"BRIO_SURFACE_LABELED", brio_labeled_delaunay},
     [BRIO_SURFACE_POWER_CRUST] = {"BRIO_SURFACE_POWER_CRUST", brio_power_crust},
     [BRIO_SURFACE_COCONE] = {"BRIO_SURFACE_COCONE", brio_cocone},
     [BRIO_SURFACE_TIGHT_COCONE] = {"BRIO_SURFACE_TIGHT_COCONE", brio_cocone},
     [BRIO_SURFACE_OFFSET] = {"BRIO_SURFACE_OFFSET", brio_offset_surface},
 };
+_Static_assert(sizeof METHODS / sizeof *METHODS == BRIO_SURFACE_END, "a row for each method");
 
 /* Sets of methods. */
 enum {
