@@ -11,8 +11,8 @@ build_jobs=${1:-2}
 long=OFF
 third=threads
 [ "${2:-}" != all ] || long=ON third=stress
-# Few at a time, since each test has several threads or processes itself.
-test_jobs=2
+# One more than there are processors: many tests wait for a process, a file or a signal.
+test_jobs=3
 # In the build folder: what the runner printed, and what the tests did.
 log=check.log
 tests_log=Testing/Temporary/LastTest.log
