@@ -47,7 +47,7 @@ def interrupted(line, when):
         with open("/proc/%d/stat" % process.pid) as file:
             if file.read().rsplit(")", 1)[1].split()[0] == "Z":
                 break
-    process.send_signal(signal.SIGINT)
+    os.kill(process.pid, signal.SIGINT)  # not send_signal, which takes the status of a run that has ended
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     return usage.ru_utime + usage.ru_stime - at if process.returncode == 130 else None
