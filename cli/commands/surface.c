@@ -475,7 +475,7 @@ static void suggest(run *r, brio_status status, const brio_mesh *points) {
     if (a->method != COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
 }
 
-/* No default: the compiler names the method that was forgotten. */
+/* Makes the surface by its method. There is no default, so that the compiler names a method that was forgotten. */
 static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, outcome *found) {
     switch (method_of(r->arguments)) {
     case POWER_CRUST:
