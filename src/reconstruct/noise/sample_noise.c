@@ -57,6 +57,10 @@ static const double LAYERED[SPLITS] = {0.88, 0.85, 0.85};
  * 0.17; models with walls of one and two spacings 0.137, and 0.083. */
 static const double APART = 0.25, EMPTY = 0.16;
 
+/* A layer is clean if it scatters by under CLEAN of what both layers do together. Layers of scans that do not fit
+ * together are not: each has its scanner's noise, and they are one sheet. Chosen. */
+static const double CLEAN = 0.15;
+
 /* --- how much --- */
 
 /* The samples that are measured, and the results as the bits of doubles: bits of doubles that are not negative sort as
@@ -66,7 +70,9 @@ typedef struct {
     uint32_t *sample;
     size_t count, hash_capacity, capacity;
     uint64_t *few, *more;     /* standard deviations from the small and the large piece, in spacings */
-    uint64_t *flat;           /* standard deviations of FLAT points of one layer from a plane, in spacings */
+    uint64_t *flat;           /* standard deviations of FLAT points from a plane, in spacings */
+    uint64_t *layer;          /* the same of points of one layer, where there are two; else as flat */
+    float *scatter;           /* of a layer by that of both; -1 where there is one */
     float (*central)[SPLITS]; /* the share of points near their plane; 1 where all are */
 } looks;
 
@@ -152,24 +158,40 @@ static bool spread_about(const double *p, const brio_point_boxes *boxes, const b
     return fitted;
 }
 
-/* Fits a plane to the FLAT nearest points, or to those of them that are on the sheet of p: of two layers, its own.
- * Writes the share of points near the planes of more. Returns the spread, INFINITY if a sheet has too few points. */
-static double flat_spread(const double *p, const brio_point_boxes *boxes, const brio_near_point *near, double spacing,
-                          float *central) {
-    brio_neighbourhood n, own;
+/* Splits the points near p in layers, and copies FLAT of its own layer. Writes the share of points near the planes of more.
+ * Returns the standard deviation of both layers together; 0 if there is one. */
+static double split_layers(const double *p, const brio_point_boxes *boxes, const brio_near_point *near, double spacing,
+                           float *central, brio_neighbourhood *own) {
+    brio_neighbourhood n;
     brio_two_layers layers;
-    own.count = 0;
+    double both = 0;
+    own->count = 0;
     for (int s = 0; s < SPLITS; s++) {
         see_from(p, boxes, near, SPLIT[s], &n);
         bool split = brio_split_layers(&n, &layers);
         central[s] = split && layers.spread > APART * spacing ? (float)layers.central : 1;
-        if (own.count > 0 || !split || layers.share < LAYERED[s]) continue;
-        for (size_t i = 0; i < n.count && own.count < FLAT; i++)
+        if (own->count > 0 || !split || layers.share < LAYERED[s]) continue;
+        both = layers.spread;
+        for (size_t i = 0; i < n.count && own->count < FLAT; i++)
             if ((layers.height[i] > layers.cut) == (layers.height[0] > layers.cut))
-                brio_add_neighbour(&own, p, boxes->point[near[i].place]);
+                brio_add_neighbour(own, p, boxes->point[near[i].place]);
     }
-    if (own.count == 0) see_from(p, boxes, near, FLAT, &own);
-    return own.count < FLAT ? INFINITY : brio_plane_spread(&own);
+    return both;
+}
+
+/* Measures how flat the points near the i-th sample are, all of them, and those of its layer. */
+static void look_flat(const double *p, const brio_point_boxes *boxes, const brio_near_point *near, double spacing,
+                      const looks *l, size_t i) {
+    brio_neighbourhood n;
+    double both = split_layers(p, boxes, near, spacing, l->central[i], &n), spread = INFINITY;
+    if (both > 0) {
+        if (n.count == FLAT) spread = brio_plane_spread(&n);
+        l->layer[i] = bits_of(spread / spacing);
+        l->scatter[i] = n.count == FLAT ? (float)(spread / both) : -1;
+    }
+    see_from(p, boxes, near, FLAT, &n);
+    l->flat[i] = bits_of(brio_plane_spread(&n) / spacing);
+    if (both == 0) l->layer[i] = l->flat[i];
 }
 
 /* Computes the standard deviations of the points near the i-th sample that is measured; infinite where a fit fails. */
@@ -180,10 +202,11 @@ static void look(const brio_point_boxes *boxes, const looks *l, size_t i) {
     double small, large;
     size_t count = brio_nearest_in_boxes(boxes, l->sample[i], MORE, near);
     double spacing = mean_spacing(near, count);
-    *few = *more = l->flat[i] = bits_of(INFINITY);
+    *few = *more = l->flat[i] = l->layer[i] = bits_of(INFINITY);
+    l->scatter[i] = -1;
     for (int s = 0; s < SPLITS; s++) l->central[i][s] = 1;
     if (count < MORE || !(spacing > 0)) return;
-    l->flat[i] = bits_of(flat_spread(p, boxes, near, spacing, l->central[i]) / spacing);
+    look_flat(p, boxes, near, spacing, l, i);
     if (!spread_about(p, boxes, near, FEW, &small) || !spread_about(p, boxes, near, MORE, &large)) return;
     *few = bits_of(small / spacing);
     *more = bits_of(large / spacing);
@@ -210,6 +233,8 @@ static brio_status look_around(brio_context *ctx, const double *points, size_t c
     BRIO_TRY(BRIO_ALLOC(ctx, l->few, l->count));
     BRIO_TRY(BRIO_ALLOC(ctx, l->more, l->count));
     BRIO_TRY(BRIO_ALLOC(ctx, l->flat, l->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, l->layer, l->count));
+    BRIO_TRY(BRIO_ALLOC(ctx, l->scatter, l->count));
     BRIO_TRY(BRIO_ALLOC(ctx, l->central, l->count));
     BRIO_TRY(brio_point_boxes_new(ctx, points, count, &boxes));
     looking all = {&boxes, l};
@@ -226,6 +251,8 @@ static void free_looks(brio_context *ctx, looks *l) {
     brio_release(ctx, l->few);
     brio_release(ctx, l->more);
     brio_release(ctx, l->flat);
+    brio_release(ctx, l->layer);
+    brio_release(ctx, l->scatter);
     brio_release(ctx, l->central);
 }
 
@@ -249,6 +276,16 @@ static bool is_layered(const looks *l) {
     return false;
 }
 
+/* Returns whether most layers are clean, so that they are sheets. */
+static bool are_clean(const looks *l) {
+    size_t clean = 0, all = 0;
+    for (size_t i = 0; i < l->count; i++) {
+        all += l->scatter[i] >= 0;
+        clean += l->scatter[i] >= 0 && (double)l->scatter[i] < CLEAN;
+    }
+    return 2 * clean > all;
+}
+
 brio_status brio_noise_level(brio_context *ctx, const double *points, size_t count, double *level) {
     brio_status status = BRIO_OK;
     looks l = {0};
@@ -268,7 +305,9 @@ brio_status brio_least_noise(brio_context *ctx, const double *points, size_t cou
     *out = (brio_least_scatter){0};
     BRIO_TRY(look_around(ctx, points, count, &l));
     if (l.count == 0) goto done;
-    *out = (brio_least_scatter){.level = quantile(l.flat, l.count, 0.1), .layered = is_layered(&l)};
+    bool layered = is_layered(&l);
+    uint64_t *spread = layered || are_clean(&l) ? l.layer : l.flat;
+    *out = (brio_least_scatter){.level = quantile(spread, l.count, 0.1), .layered = layered};
 done:
     free_looks(ctx, &l);
     return status;
