@@ -1,6 +1,7 @@
 """brio surface: the power crust with its labelings and outputs, the co-cones."""
 
 import math
+import os
 
 from brio_cli import CERTIFICATE, CliTest, COMMON_FACTS, count, main, number
 
@@ -426,6 +427,16 @@ class PowerCrust(CliTest):
             body = [line.split() for line in f if line.strip() and not line.startswith("#")]
         faces = [line for line in body[2:] if line[0] == "3" and len(line) == 4]
         self.assertGreaterEqual(len(faces), facts["faces"])
+
+    def test_raw_scans_that_do_not_fit_together_are_noise(self):
+        # Their layers were taken for thin walls, and a fifth of the samples was on no triangle.
+        scan, part = os.path.join(os.environ.get("BRIO_SHARED", ""), "data", "scan", "happy_raw.ply"), self.path("part.ply")
+        if not os.path.isfile(scan):
+            self.skipTest("no shared data")
+        self.facts("convert", scan, part, "--crop=-0.01,0.13,-0.048,0.005,0.15,0.035")
+        facts = self.facts("surface", part, "-o", self.path("out.ply"))
+        self.assertGreater(facts["noise"], 0.13)
+        self.assertLess(facts["internals"]["unused"], 0.03 * facts["samples"])
 
     def test_plain_triangles_have_no_properties(self):
         # Small readers take a face for a count and three indices.
