@@ -11,7 +11,7 @@
  * vector area, relative to a corner of the polygon. If ab is on the border, that corner is one of the two on the
  * bisector with x, so that the segment between these two adds nothing. The volume of R(a) is the sum of the cones over
  * its polygons from a corner on the bisector of a and x, so that the facet there adds nothing either. All heights and
- * areas are positive but for rounding; nothing large cancels, even where x is in the plane of a facet.
+ * areas are positive up to rounding; nothing large cancels, even where x is in the plane of a facet.
  *
  * Rounding leaves an error in what the coordinates must reproduce: x itself. The last step changes each coordinate by a
  * factor 1 + g . (a - x) + c near 1, with g and c such that the sum of the coordinates is 1 and x is reproduced.

@@ -1,6 +1,6 @@
 /* Points of well-known kinds, for tests, examples and measurements.
  *
- * The seed and i alone determine point i, for every number of threads and, but for grids and frames, for every n. The
+ * The seed and i alone determine point i, for every number of threads and, except of grids and frames, for every n. The
  * round kinds use rejection and square roots and no other function of the mathematical library, so their numbers are
  * equal on every machine.
  *

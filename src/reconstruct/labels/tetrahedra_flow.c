@@ -3,7 +3,7 @@
  * take.
  *
  * The open tetrahedra are cut into parts of consecutive ones, which are near each other in space. At first the arcs
- * between parts are closed, and every part gets a maximum flow of its own, by any thread. Then one thread opens the
+ * between parts are closed, and any thread finds the maximum flow of each part. Then one thread opens the
  * arcs and goes on from there: most flow is short, and only nodes at the borders are active. A closed arc holds the
  * complement of its residual capacity, a negative number. So a part reads nothing that another part writes.
  *

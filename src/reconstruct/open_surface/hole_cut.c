@@ -198,7 +198,7 @@ static brio_status look_beyond(const cutting *c, const size_t *end) {
     for (size_t i = 0; i < l->count; i++) {
         brio_hole *h = &l->hole[i];
         size_t begin = i ? end[i - 1] : 0;
-        if (!h->unlikely || (h->usual_area > LARGE && !c->rule->layered)) continue;
+        if (!h->unlikely || h->usual_area > LARGE) continue;
         if (!view.net) BRIO_TRY(brio_rim_view_new(c->net, c->usual, &view));
         BRIO_TRY(brio_rim_beyond(&view, c->queue + begin, end[i] - begin, c->part, &h->beyond));
     }
@@ -212,7 +212,6 @@ done:
 static double proof_of(const cutting *c) {
     const brio_hole_list *l = c->holes;
     double all = 0, unlikely = 0, proof = 0;
-    if (c->rule->layered) return 0;
     for (size_t f = 0; f < c->net->num_faces; f++) all += area_of(c->net, f);
     for (size_t i = 0; i < l->count; i++) {
         const brio_hole *h = &l->hole[i];
@@ -258,6 +257,7 @@ static brio_status decide(const cutting *c, const size_t *end) {
     for (size_t i = 0; i < l->count; i++)
         l->hole[i].unlikely = l->hole[i].ratio > SURE && l->hole[i].usual_area > SURE_AREA;
     if (c->rule->choice != BRIO_HOLES_SEEN) goto done;
+    if (c->rule->layered && !c->rule->proven) goto done;
     if (!c->rule->proven) BRIO_TRY(look_beyond(c, end));
     l->proof = proof_of(c);
     if (!c->rule->proven && l->proof <= 1) goto done;
