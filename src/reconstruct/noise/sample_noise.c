@@ -3,7 +3,8 @@
  * Measuring. At some samples, surfaces are fitted to few and to more nearest points. On a smooth or edged surface the
  * larger fit is the worse one, because the surface bends. Where points scatter about a surface, they scatter as much
  * about a large piece as about a small one. So a deviation that does not grow with the size of the piece is noise,
- * unless the points are on two sheets, one close behind the other (two_layers.c).
+ * unless the points are on two sheets, one close behind the other (two_layers.c): two clean layers, as walls have, and
+ * not those of scans that do not fit together.
  *
  * Reducing. Every sample moves along the normal of the surface fitted to its nearest points onto that surface, PASSES
  * times. The nearest points are found once, before the first pass. Noise shrinks with the square root of the number of
