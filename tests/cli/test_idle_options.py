@@ -54,7 +54,7 @@ IDLE = {
     ("voronoi cloud.ply -o out.csv", "ascii"),
     ("surface cloud.ply -o out.stl", "float32"),
     ("surface cloud.ply -o out.ply", "vertex-normals"), ("surface cloud.ply -o out.stl", "vertex-normals"),
-    ("surface cloud.ply -o out.ply", "triangulate"), ("surface cloud.ply", "triangulate"),
+    ("surface cloud.ply", "triangulate"),
     ("surface cloud.ply -o out.stl", "triangulate"), ("surface cloud.ply --method power-crust -o out.ply", "triangulate"),
     # a report in JSON has the density in any case
     ("surface cloud.ply --method cocone -o out.ply", "density"),
