@@ -1,9 +1,10 @@
 """check_versions.py ROOT LIBRARY [CMAKE CC]: what docs/versions.md promises.
 
 1. LIBRARY shows the functions that exported.txt lists and nothing else, and the headers declare the same.
-2. With CMAKE and CC: a shared library is built, all of whose structs of options, statistics and results have one more field, at
-   their end. It exports the same functions, and a program compiled with the frozen headers of this version (brio_0_3) runs
-   with it.
+2. Each struct that begins with its size has the fields that the frozen headers of this version (brio_0_3) have, in their order,
+   and others behind these only.
+3. With CMAKE and CC: a shared library is built, all of whose structs of options, statistics and results have one more field, at
+   their end. It exports the same functions, and a program compiled with the frozen headers runs with it.
 """
 
 import os
@@ -37,6 +38,26 @@ def grow(root):
         names += [match.group(2) for match in SIZED.finditer(text)]
         header.write_text(SIZED.sub(r"\1\n    int later_field, reserved_later;\3", text), encoding="utf-8")
     return names
+
+
+def fields(folder):
+    """The fields of each struct that begins with its size, without comments."""
+    found = {}
+    for header in sorted(folder.glob("*.h")):
+        for match in SIZED.finditer(re.sub(r"/\*.*?\*/", "", header.read_text(encoding="utf-8"), flags=re.S)):
+            found[match.group(2)] = [" ".join(field.split()) for field in match.group(1).split("{", 1)[1].split(";") if field.strip()]
+    return found
+
+
+def check_frozen(root):
+    now = fields(root / "include/brio")
+    for name, first in fields(root / "tests/interface/brio_0_3").items():
+        here = now.get(name, [])
+        if here[:len(first)] != first:
+            at = next((i for i, field in enumerate(first) if i >= len(here) or here[i] != field))
+            sys.exit("%s: a program compiled with version 0.3 has '%s' where this header has '%s': append new fields, and change no other "
+                     "(before 0.3 is released: freeze its headers anew)"
+                     % (name, first[at], here[at] if at < len(here) else "no field"))
 
 
 def build(root, cmake, compiler, folder):
@@ -88,6 +109,7 @@ def main():
         return 77
     expected = (root / "tests/interface/exported.txt").read_text(encoding="utf-8").split()
     check_names(root, library, expected)
+    check_frozen(root)
     print("%d functions exported" % len(expected))
     if len(sys.argv) > 4:
         grown = check_later_library(root, sys.argv[3], sys.argv[4], expected)

@@ -342,7 +342,7 @@ static void by_a_callback(void) {
     for (size_t which = 0; which < NUM_CALLS; which++)
         for (size_t wild = 0; wild < WILDS; wild += BRIEF_TESTS ? 9 : SHORT_TESTS ? 3 : 1) {
             change c = {-1, WILD[wild], 0, NULL};
-            for (int k = 0; c.left < 0; k += BRIEF_TESTS ? 7 + k / 3 : SHORT_TESTS ? 3 + k / 8 : 1) {
+            for (int k = 0; c.left < 0; k += BRIEF_TESTS ? 7 + k / 3 : SHORT_TESTS ? 3 + k / 8 : 1 + k / 32) {
                 c.left = k, c.stage = NULL, c.rows = ROWS[(wild + (size_t)k) % (sizeof ROWS / sizeof *ROWS)];
                 brio_context_set_progress(ctx, change_now, &c);
                 begin(which);
