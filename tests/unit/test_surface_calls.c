@@ -126,9 +126,9 @@ static void the_table_lists_the_options_that_are_taken(void) {
                 {{.pieces = 2}, "pieces"},
                 {{.extraction = BRIO_EXTRACTION_WALK}, "extraction"}};
     for (int method = 0; method < BRIO_SURFACE_END; method++) {
-        size_t listed = 1, known = 0;
-        for (const char *at = brio_surface_method_facts((brio_surface_method)method)->options; *at; at++)
-            listed += *at == ' ';
+        const char *options = brio_surface_method_facts((brio_surface_method)method)->options;
+        size_t listed = *options != 0, known = 0;
+        for (const char *at = options; *at; at++) listed += *at == ' ';
         for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
             brio_surface_options o = uses[i].o;
             brio_mesh *mesh = NULL;
