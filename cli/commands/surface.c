@@ -18,9 +18,9 @@
 
 /* --- the command --- */
 
-/* NO_METHOD: not given. The default is the labeled Delaunay triangulation, or the power crust if an option of its alone
- * is given; of points in a plane, curves. */
-typedef enum { NO_METHOD, LABELED_DELAUNAY, POWER_CRUST, COCONE, TIGHT_COCONE, CURVES } surface_method;
+/* The methods of the library, and CURVES. NO_METHOD: not given; then it is the default of the library, or the power
+ * crust if an option of its alone is given; of points in a plane, curves. */
+enum { NO_METHOD = -1, CURVES = BRIO_SURFACE_END };
 enum { NO_LABELING = -1 };
 
 typedef struct arguments {
@@ -41,9 +41,7 @@ typedef struct {
     bool leaves_many; /* samples on no face are enough in number for those left out to be counted */
 } outcome;
 
-static const option_choice methods[] = {
-    {"labeled-delaunay", LABELED_DELAUNAY}, {"power-crust", POWER_CRUST}, {"cocone", COCONE},
-    {"tight-cocone", TIGHT_COCONE},         {"curves", CURVES},           {NULL, 0}};
+static const option_choice no_surfaces[] = {{"curves", CURVES}, {NULL, 0}};
 
 static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
                                             {"candidates", BRIO_EXTRACTION_CANDIDATES},
@@ -53,12 +51,7 @@ static const option_choice extractions[] = {{"labels", BRIO_EXTRACTION_LABELS},
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
-    {"method", 0, OPTION_CHOICE, FIELD(method), "NAME", "how to reconstruct (default labeled-delaunay)", methods},
-    {"labeled-delaunay", 0, OPTION_NOTE, 0, NULL,
-     "also from noisy points; open where they end (--closed: closed); the one that is right most often", 0},
-    {"power-crust", 0, OPTION_NOTE, 0, NULL, "closed; sharp edges without points on them (--sharp)", 0},
-    {"cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; open where they end", 0},
-    {"tight-cocone", 0, OPTION_NOTE, 0, NULL, "the points are the vertices; closed", 0},
+    {"method", 0, OPTION_METHOD, FIELD(method), "NAME", "how to reconstruct (default labeled-delaunay)", no_surfaces},
     {"curves", 0, OPTION_NOTE, 0, NULL, "polylines, with corners and ends; the default of points in a plane", 0},
     {"curves", 0, OPTION_FLAG, FIELD(curves), NULL, "the same as --method curves", 0},
     COMPONENT_ROWS(arguments, components),
@@ -68,6 +61,7 @@ static const option options[] = {
      "count the pairs of faces that run through each other", 0},
     {"left-out", 0, OPTION_OUTPUT, FIELD(left_out), "FILE",
      "write the points that the surface leaves more than two spacings away", 0},
+    {"normals", 0, OPTION_OUTPUT, FIELD(crust.normals), "FILE", "also write the points with oriented normals", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
     SOLID_ROWS(arguments, crust),
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay, cocone and tight-cocone", 0},
@@ -95,7 +89,7 @@ static const option options[] = {
 };
 #undef FIELD
 
-static const arguments defaults = {.crust.labeling = NO_LABELING};
+static const arguments defaults = {.method = NO_METHOD, .crust.labeling = NO_LABELING};
 /* The least theta that theorem 22 needs: r + 2 arcsin(r / (1 - r)) at r = 0.08. */
 static const double LEAST_THETA = 0.2542;
 
@@ -104,25 +98,40 @@ static bool has_power_crust_options(const arguments *a) {
     return a->polygons || a->crust.labeling != NO_LABELING || a->crust.sampling_density != 0 || a->crust.sharp;
 }
 
-static surface_method method_of(const arguments *a) {
+/* Returns a brio_surface_method, or CURVES. */
+static int method_of(const arguments *a) {
     if (a->curves) return CURVES;
-    return a->method != NO_METHOD ? a->method : has_power_crust_options(a) ? POWER_CRUST : LABELED_DELAUNAY;
+    return a->method != NO_METHOD       ? a->method
+           : has_power_crust_options(a) ? BRIO_SURFACE_POWER_CRUST
+                                        : BRIO_SURFACE_LABELED;
+}
+
+static const char *name_of(int method) {
+    return method == CURVES ? "curves" : brio_surface_method_facts((brio_surface_method)method)->name;
+}
+
+static bool is(int method, unsigned trait) {
+    return method != CURVES && brio_surface_method_facts((brio_surface_method)method)->traits & trait;
+}
+
+/* Returns whether a method has an option of the library; NULL is one that all surfaces have. */
+static bool has(int method, const char *name) {
+    return method != CURVES && (!name || brio_surface_method_has((brio_surface_method)method, name));
 }
 
 /* Completes the surface: normals, the properties of its points, fewer components. Reports what it then has.
- * samples  the point of each vertex; NULL for the co-cones and the power crust.   num_samples  distinct positions. */
+ * samples  the point of each vertex; NULL where no vertex is a point.   num_samples  distinct positions. */
 static brio_status complete(run *r, const brio_mesh *points, const uint32_t *samples, size_t num_samples,
                             brio_mesh *surface) {
     const arguments *a = r->arguments;
     int method = method_of(a);
     size_t dropped[2];
-    if (a->vertex_normals || method == LABELED_DELAUNAY) FORWARD(brio_mesh_add_normals(surface));
-    FORWARD(method == COCONE || method == TIGHT_COCONE ? cli_copy_properties(r, points, surface)
-                                                       : cli_carry_properties(r, points, samples, surface));
+    if (a->vertex_normals || method == BRIO_SURFACE_LABELED) FORWARD(brio_mesh_add_normals(surface));
+    FORWARD(cli_carry_properties(r, points, samples, surface));
     FORWARD(cli_keep_components(r, &a->components, surface, dropped));
     while (a->crust.triangulate && surface->num_face_properties > 0)
         brio_mesh_remove_face_property(surface, surface->face_properties[0].name);
-    cli_fact_text(&r->facts, "method", methods[method - 1].name);
+    cli_fact_text(&r->facts, "method", name_of(method));
     cli_fact_count(&r->facts, "samples", num_samples);
     cli_fact_count(&r->facts, "vertices", surface->num_vertices);
     cli_fact_count(&r->facts, "faces", surface->num_faces);
@@ -132,40 +141,29 @@ static brio_status complete(run *r, const brio_mesh *points, const uint32_t *sam
 
 /* --- the power crust --- */
 
-static brio_status power_crust(run *r, const brio_mesh *points, brio_mesh **surface) {
-    const arguments *a = r->arguments;
-    brio_surface_stats s = {0};
+static power_crust_options crust_of(const arguments *a) {
     power_crust_options o = a->crust;
     o.triangulate = !a->polygons;
     if (o.labeling == NO_LABELING) o.labeling = BRIO_LABELING_GLOBAL;
-    brio_status status = cli_power_crust(r, &o, points, surface, &s);
-    if (status != BRIO_OK) return status;
-    status = complete(r, points, NULL, s.samples, *surface);
-    if (status == BRIO_OK) cli_report_power_crust(r, &o, &s);
-    return status;
+    return o;
+}
+
+static void report_power_crust_stages(run *r, const brio_surface_stats *s) {
+    power_crust_options o = crust_of(r->arguments);
+    cli_report_power_crust_stages(r, &o, s);
+}
+
+static void report_power_crust(run *r, const brio_surface_stats *s) {
+    power_crust_options o = crust_of(r->arguments);
+    cli_report_power_crust(r, &o, s);
 }
 
 /* --- the co-cones --- */
 
 /* Returns how brio_cocone treats boundaries. */
 static int ways_with_boundaries(const arguments *a) {
-    bool by_itself = a->method == COCONE && a->pieces <= 1 && a->extraction == BRIO_EXTRACTION_LABELS;
+    bool by_itself = a->method == BRIO_SURFACE_COCONE && a->pieces <= 1 && a->extraction == BRIO_EXTRACTION_LABELS;
     return a->boundaries ? 1 : by_itself ? BRIO_BOUNDARIES_AUTO : 0;
-}
-
-static void report_cocone(run *r, const brio_surface_stats *s) {
-    const arguments *a = r->arguments;
-    facts *f = &r->facts;
-    cli_fact_count(f, "unused", s->unused);
-    cli_fact_count(f, "candidates", s->candidates);
-    cli_fact_count(f, "pruned", s->pruned);
-    cli_fact_text(f, "extraction", extractions[a->extraction].name);
-    if (ways_with_boundaries(a)) cli_fact_count(f, "boundary_samples", s->boundary_samples);
-    cli_fact_count(f, "relabeled", s->relabeled);
-    if (a->pieces > 1) {
-        cli_fact_count(f, "pieces", s->pieces);
-        cli_fact_count(f, "unmatched", s->unmatched);
-    }
 }
 
 /* Over this median of r the user is told that the points hardly show the surface. Measured: points all over a cube or a
@@ -188,39 +186,34 @@ static void report_density(run *r, const brio_surface_stats *s) {
     if (s->r_median > MOST_R) cli_warn(r, WARNING_DENSITY, s->r_median);
 }
 
-static brio_status cocone(run *r, brio_mesh *points, brio_mesh **surface) {
+static bool estimates_density(const run *r) {
     const arguments *a = r->arguments;
-    brio_surface_options o = {0};
-    brio_surface_stats s = {0};
-    o.seed = r->common.seed;
-    o.theta = a->theta;
-    o.method = a->method == TIGHT_COCONE ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
-    o.boundaries = ways_with_boundaries(a);
-    o.pieces = a->pieces;
-    o.density = a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
-    o.extraction = (brio_extraction)a->extraction;
-    uint64_t work = 0;
-    size_t usual;
-    evidence e = {0};
-    brio_status status = cli_usual_points(r, points, NULL, false, &usual);
-    if (status == BRIO_OK) status = brio_estimate_surface(r->ctx, usual, &o, &work);
-    TRY(cli_require_work(r, status, points, work));
-    TRY(cli_find_evidence(r, &a->evidence, points, &e));
-    if (a->pieces <= 1) o.evidence = &e.taken;
-    TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
-    brio_mesh_remove_property(*surface, "sample"); /* vertex v is point v */
-    cli_stage(r, "delaunay", s.delaunay_seconds);
-    cli_stage(r, "poles", s.poles_seconds);
-    cli_stage(r, "candidates", s.candidates_seconds);
-    cli_stage(r, "label", s.labels_seconds);
-    cli_stage(r, "manifold", s.manifold_seconds);
-    cli_stage(r, "density", s.density_seconds);
-    TRY(complete(r, points, NULL, s.samples, *surface));
-    report_cocone(r, &s);
-    if (o.density) report_density(r, &s);
-done:
-    cli_evidence_free(&e);
-    return status;
+    return a->density || (r->common.json && a->extraction == BRIO_EXTRACTION_LABELS);
+}
+
+static void report_cocone_stages(run *r, const brio_surface_stats *s) {
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "poles", s->poles_seconds);
+    cli_stage(r, "candidates", s->candidates_seconds);
+    cli_stage(r, "label", s->labels_seconds);
+    cli_stage(r, "manifold", s->manifold_seconds);
+    cli_stage(r, "density", s->density_seconds);
+}
+
+static void report_cocone(run *r, const brio_surface_stats *s) {
+    const arguments *a = r->arguments;
+    facts *f = &r->facts;
+    cli_fact_count(f, "unused", s->unused);
+    cli_fact_count(f, "candidates", s->candidates);
+    cli_fact_count(f, "pruned", s->pruned);
+    cli_fact_text(f, "extraction", extractions[a->extraction].name);
+    if (ways_with_boundaries(a)) cli_fact_count(f, "boundary_samples", s->boundary_samples);
+    cli_fact_count(f, "relabeled", s->relabeled);
+    if (a->pieces > 1) {
+        cli_fact_count(f, "pieces", s->pieces);
+        cli_fact_count(f, "unmatched", s->unmatched);
+    }
+    if (estimates_density(r)) report_density(r, s);
 }
 
 /* --- the labeled Delaunay triangulation --- */
@@ -305,50 +298,75 @@ static void report_labeled_delaunay_stages(run *r, const brio_surface_stats *s) 
     if (a->crust.simplify) cli_stage(r, "simplify", s->simplify_seconds);
 }
 
-static brio_surface_options labeled_delaunay_options(run *r) {
+/* --- any method --- */
+
+/* What a method counts besides what all do. A method without a row has one stage, and counts nothing. */
+static const struct {
+    void (*stages)(run *r, const brio_surface_stats *stats);
+    void (*counts)(run *r, const brio_surface_stats *stats);
+} reports[BRIO_SURFACE_END] = {
+    [BRIO_SURFACE_LABELED] = {report_labeled_delaunay_stages, report_labeled_delaunay},
+    [BRIO_SURFACE_POWER_CRUST] = {report_power_crust_stages, report_power_crust},
+    [BRIO_SURFACE_COCONE] = {report_cocone_stages, report_cocone},
+    [BRIO_SURFACE_TIGHT_COCONE] = {report_cocone_stages, report_cocone},
+};
+
+/* Returns the options of the library: those that the method does not have are not given, as check_method found. */
+static brio_surface_options library_options(run *r, int method) {
     const arguments *a = r->arguments;
-    brio_surface_options o = {0};
-    o.seed = r->common.seed;
-    o.noise = (brio_noise)a->crust.noise;
-    o.confidence = 1;
+    power_crust_options crust = crust_of(a);
+    brio_surface_options o = {.method = (brio_surface_method)method,
+                              .noise = (brio_noise)crust.noise,
+                              .seed = r->common.seed,
+                              .simplify = crust.simplify,
+                              .confidence = has(method, "confidence"),
+                              .polygons = a->polygons && !crust.simplify,
+                              .poles = cli_pole_options(&crust),
+                              .theta = a->theta,
+                              .boundaries = has(method, "boundaries") ? ways_with_boundaries(a) : 0,
+                              .density = has(method, "density") && estimates_density(r),
+                              .pieces = a->pieces,
+                              .extraction = (brio_extraction)a->extraction};
     double spacings = NAN;
     (void)cli_read_open(r, &a->crust, &spacings); /* check_arguments has read it before */
-    if (!isnan(spacings)) {
-        o.holes = BRIO_HOLES_CLOSED;
-        o.open = spacings;
-    }
-    o.simplify = a->crust.simplify;
+    if (!isnan(spacings)) o.holes = BRIO_HOLES_CLOSED;
+    if (spacings > 0) o.open = spacings;
     return o;
 }
 
-static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, outcome *found) {
-    brio_surface_options o = labeled_delaunay_options(r);
-    brio_surface_stats s = {0};
+/* Makes the surface by a method of the library. */
+static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, outcome *found) {
     const arguments *a = r->arguments;
+    int method = method_of(a);
+    brio_surface_options o = library_options(r, method);
+    brio_surface_stats s = {0};
     uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;
     double *normals = NULL;
     evidence e = {0};
     brio_status status = BRIO_OK;
-    TRY(cli_usual_points(r, points, NULL, false, &usual));
-    status = brio_estimate_surface(r->ctx, usual, &o, &work);
-    TRY(cli_require_work(r, status, points, work));
     if (a->crust.normals) {
         o.normals = normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
         if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
     }
-    bool closed = o.holes == BRIO_HOLES_CLOSED && o.open <= 0;
-    if (!closed) TRY(cli_find_evidence(r, &a->evidence, points, &e)); /* by evidence a surface may end at the hull */
-    if (!closed) o.evidence = &e.taken;
+    TRY(cli_usual_points(r, points, NULL, false, &usual));
+    status = brio_estimate_surface(r->ctx, usual, &o, &work);
+    TRY(cli_require_work(r, status, points, work));
+    found->open = o.open > 0 || (is(method, BRIO_METHOD_MAY_END) && o.holes != BRIO_HOLES_CLOSED);
+    bool sided = has(method, "evidence") && (found->open || !is(method, BRIO_METHOD_MAY_END));
+    if (sided) TRY(cli_find_evidence(r, &a->evidence, points, &e)); /* by evidence a surface may end at the hull */
+    if (sided && a->pieces <= 1) o.evidence = &e.taken;
     TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
-    report_labeled_delaunay_stages(r, &s);
+    if (reports[method].stages)
+        reports[method].stages(r, &s);
+    else
+        cli_lap(r, "surface");
     if (normals) TRY(cli_write_normals(r, a->crust.normals, points, normals));
     TRY(cli_take_samples(r, *surface, &samples));
-    TRY(complete(r, points, samples, s.samples, *surface));
-    report_labeled_delaunay(r, &s);
-    found->leaves_many = (double)s.unused > MANY_UNUSED * (double)s.samples;
-    found->open |= !closed;
+    TRY(complete(r, points, is(method, BRIO_METHOD_OWN_VERTICES) ? NULL : samples, s.samples, *surface));
+    if (reports[method].counts) reports[method].counts(r, &s);
+    found->leaves_many = method == BRIO_SURFACE_LABELED && (double)s.unused > MANY_UNUSED * (double)s.samples;
 done:
     cli_evidence_free(&e);
     free(normals);
@@ -356,62 +374,59 @@ done:
     return status;
 }
 
-/* An option that some methods have, and whether it was given. */
+/* --- what was asked for --- */
+
+/* An option of the command line, and whether it was given. */
 typedef struct method_option {
     const char *name;
     bool given;
-    unsigned methods; /* bits 1 << method */
+    const char *of_library; /* the option of the library that it stands for; NULL: all surfaces have it */
+    bool of_curves;
 } method_option;
 
-/* Writes "a, b or c", the names of the methods in the set. */
-static void list_methods(unsigned set, char text[128]) {
-    option_choice chosen[CURVES + 1] = {0};
-    size_t count = 0;
-    for (const option_choice *m = methods; m->name; m++)
-        if (set >> m->value & 1) chosen[count++] = *m;
-    cli_list_choices(chosen, text, 128);
+/* Returns name i of the methods that have an option. */
+static const char *name_of_user(const void *option_given, size_t i) {
+    const method_option *o = option_given;
+    for (int m = 0; m <= CURVES; m++) {
+        if (is(m, BRIO_METHOD_AT_DISTANCE) || !(m == CURVES ? o->of_curves : has(m, o->of_library))) continue;
+        if (i-- == 0) return name_of(m);
+    }
+    return NULL;
 }
 
 /* Refuses options of another method. */
 static brio_status check_method(run *r, int method) {
     const arguments *a = r->arguments;
-    enum {
-        PLANE = 1 << CURVES,
-        SOLIDS = 1 << LABELED_DELAUNAY | 1 << POWER_CRUST,
-        CRUST = 1 << POWER_CRUST,
-        COCONES = 1 << COCONE | 1 << TIGHT_COCONE,
-        SIDED = 1 << LABELED_DELAUNAY | COCONES,
-        SURFACES = SOLIDS | COCONES
-    };
-    const method_option given[] = {{"theta", a->theta != 0, COCONES},
-                                   {"boundaries", a->boundaries, COCONES},
-                                   {"density", a->density, COCONES},
-                                   {"pieces", a->pieces > 0, 1 << COCONE},
-                                   {"extraction", a->extraction != BRIO_EXTRACTION_LABELS, 1 << COCONE},
-                                   {"polygons", a->polygons, CRUST},
-                                   {"labeling", a->crust.labeling != NO_LABELING, CRUST},
-                                   {"sampling-density", a->crust.sampling_density != 0, CRUST},
-                                   {"sharp", a->crust.sharp, CRUST},
-                                   {"triangulate", a->crust.triangulate, SOLIDS},
-                                   {"noise", a->crust.noise != 0, SOLIDS},
-                                   {"simplify", a->crust.simplify, SOLIDS},
-                                   {"open", a->crust.open != NULL, SOLIDS | PLANE},
-                                   {"closed", a->crust.closed, SOLIDS | 1 << TIGHT_COCONE | PLANE},
-                                   {"keep-largest", a->components.largest, SURFACES},
-                                   {"min-component", a->components.least > 0, SURFACES},
-                                   {"vertex-normals", a->vertex_normals, SURFACES},
-                                   {"self-intersections", a->self_intersections, SURFACES},
-                                   {"left-out", a->left_out != NULL, SURFACES},
-                                   {"normals", a->crust.normals != NULL, SOLIDS},
-                                   {"from", a->evidence.from != NULL, SIDED},
-                                   {"ignore-normals", a->evidence.ignore_normals, SIDED},
-                                   {"ignore-origins", a->evidence.ignore_origins, SIDED}};
+    const method_option given[] = {
+        {"theta", a->theta != 0, "theta", false},
+        {"boundaries", a->boundaries, "boundaries", false},
+        {"density", a->density, "density", false},
+        {"pieces", a->pieces > 0, "pieces", false},
+        {"extraction", a->extraction != BRIO_EXTRACTION_LABELS, "extraction", false},
+        {"polygons", a->polygons, "polygons", false},
+        {"labeling", a->crust.labeling != NO_LABELING, "poles.labeling", false},
+        {"sampling-density", a->crust.sampling_density != 0, "poles.sampling_density", false},
+        {"sharp", a->crust.sharp, "poles.sharp", false},
+        {"triangulate", a->crust.triangulate, "simplify", false},
+        {"noise", a->crust.noise != 0, "noise", false},
+        {"simplify", a->crust.simplify, "simplify", false},
+        {"open", a->crust.open != NULL, "open", true},
+        {"closed", a->crust.closed, "holes", true},
+        {"keep-largest", a->components.largest, NULL, false},
+        {"min-component", a->components.least > 0, NULL, false},
+        {"vertex-normals", a->vertex_normals, NULL, false},
+        {"self-intersections", a->self_intersections, NULL, false},
+        {"left-out", a->left_out != NULL, NULL, false},
+        {"normals", a->crust.normals != NULL, "normals", false},
+        {"from", a->evidence.from != NULL, "evidence", false},
+        {"ignore-normals", a->evidence.ignore_normals, "evidence", false},
+        {"ignore-origins", a->evidence.ignore_origins, "evidence", false}};
     for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
         char names[128] = "";
-        if (!given[i].given || given[i].methods >> method & 1) continue;
-        list_methods(given[i].methods, names);
+        if (!given[i].given || (method == CURVES ? given[i].of_curves : has(method, given[i].of_library))) continue;
+        cli_list_words(name_of_user, &given[i], names, sizeof names);
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method %s, and the method is %s", given[i].name, names,
-                        methods[method - 1].name);
+                        name_of(method));
     }
     return BRIO_OK;
 }
@@ -428,12 +443,11 @@ static brio_status check_arguments(run *r) {
     brio_status status = check_method(r, method_of(a));
     if (status != BRIO_OK) return status;
     if (a->curves && a->method != NO_METHOD && a->method != CURVES)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--curves and --method %s exclude each other",
-                        methods[a->method - 1].name);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--curves and --method %s exclude each other", name_of(a->method));
     double spacings;
     TRY(cli_read_open(r, &a->crust, &spacings));
     if (method_of(a) == CURVES) TRY(check_open_of_curves(r, spacings));
-    if (a->crust.open && isnan(spacings) && method_of(a) == POWER_CRUST)
+    if (a->crust.open && isnan(spacings) && method_of(a) == BRIO_SURFACE_POWER_CRUST)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--open auto is for --method labeled-delaunay, and the method is power-crust");
     if (a->extraction != BRIO_EXTRACTION_LABELS && a->pieces > 1)
@@ -472,24 +486,7 @@ static void suggest(run *r, brio_status status, const brio_mesh *points) {
     const char *message = cli_message(r, status);
     if (strstr(message, "span holes")) cli_hint(r, HINT_HOLES);
     if (strstr(message, "no component is left")) cli_hint(r, HINT_COMPONENTS);
-    if (a->method != COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
-}
-
-/* Makes the surface by its method. There is no default, so that the compiler names a method that was forgotten. */
-static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **result, outcome *found) {
-    switch (method_of(r->arguments)) {
-    case POWER_CRUST:
-        return power_crust(r, points, result);
-    case LABELED_DELAUNAY:
-        return labeled_delaunay(r, points, result, found);
-    case COCONE:
-    case TIGHT_COCONE:
-        return cocone(r, points, result);
-    case NO_METHOD:
-    case CURVES: /* try_curves */
-        break;
-    }
-    return BRIO_ERR_ARGUMENT;
+    if (a->method != BRIO_SURFACE_COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
 }
 
 /* --- curves --- */
@@ -548,10 +545,11 @@ static brio_status surface(run *r) {
     TRY(cli_require_output(r, cli_mesh_formats, false));
     if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
     if (a->left_out) TRY(cli_check_beside(r, "left-out", a->left_out, cli_point_formats));
-    r->wants_origins = method_of(a) != POWER_CRUST && !a->evidence.ignore_origins && !a->evidence.from;
+    r->wants_origins =
+        (method_of(a) == CURVES || has(method_of(a), "evidence")) && !a->evidence.ignore_origins && !a->evidence.from;
     TRY(cli_read_samples(r, r->operands[0], &points));
     if (!points->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, no surface", r->operands[0]);
-    outcome found = {.open = a->method == COCONE || (a->crust.open && method_of(a) == POWER_CRUST)};
+    outcome found = {0};
     status = try_curves(r, points, &result, &is_curve);
     if (status == BRIO_OK && !is_curve) status = reconstruct(r, points, &result, &found);
     suggest(r, status, points);

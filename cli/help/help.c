@@ -65,10 +65,18 @@ static void print_option(FILE *out, const option *row) {
     bool explained = row[1].kind == OPTION_NOTE;
     snprintf(left, sizeof left, "%s--%s%s%s", row->letter ? letter : "", row->name, row->value ? " " : "",
              row->value ? row->value : "");
-    if (row->choices && !explained) cli_list_choices(row->choices, choices, sizeof choices);
+    if (cli_has_choices(row) && !explained) cli_list_words(cli_choice_name, row, choices, sizeof choices);
     snprintf(meaning, sizeof meaning, "%s%s%s%s", row->meaning, *choices ? "; one of " : "", choices,
              explained ? ":" : "");
     print_entry(out, left, meaning, 2, COLUMN);
+}
+
+/* Prints what the methods among the choices of a row are good for. */
+static void print_words(FILE *out, const option *row) {
+    const char *words;
+    option_choice c;
+    for (size_t i = 0; cli_has_choices(row) && (c = cli_choice(row, i, &words)).name; i++)
+        if (words) print_entry(out, c.name, words, 6, COLUMN);
 }
 
 static void print_options(FILE *out, const char *title, const option *rows) {
@@ -82,7 +90,7 @@ static void print_options(FILE *out, const char *title, const option *rows) {
         else if (row->kind == OPTION_NOTE)
             print_entry(out, row->name, row->meaning, indent, COLUMN);
         else
-            print_option(out, row);
+            print_option(out, row), print_words(out, row);
     }
 }
 

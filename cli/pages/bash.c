@@ -41,9 +41,10 @@ static void write_values(FILE *out, const command *c, const option *row) {
     fprintf(out, "    %s:--%s", c->name, row->name);
     if (row->letter) fprintf(out, " | %s:-%c", c->name, row->letter);
     fputs(") ", out);
-    if (row->choices) {
+    if (cli_has_choices(row)) {
+        const char *word;
         fputs("_brio_words \"", out);
-        for (const option_choice *choice = row->choices; choice->name; choice++) fprintf(out, "%s ", choice->name);
+        for (size_t i = 0; (word = cli_choice_name(row, i)); i++) fprintf(out, "%s ", word);
         fputs("\"", out);
     } else if (!strcmp(row->value, "EXT")) {
         fprintf(out, "_brio_words \"%s\"", extensions ? extensions : "");

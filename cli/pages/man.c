@@ -79,14 +79,28 @@ static void put_option(FILE *out, const option *row) {
     fputs("\\fR", out);
     if (row->value) fprintf(out, " \\fI%s\\fR", row->value);
     fputc('\n', out);
-    if (row->choices && row[1].kind != OPTION_NOTE) {
+    if (cli_has_choices(row) && row[1].kind != OPTION_NOTE) {
         char meaning[1024];
-        cli_list_choices(row->choices, choices, sizeof choices);
+        cli_list_words(cli_choice_name, row, choices, sizeof choices);
         snprintf(meaning, sizeof meaning, "%s; one of %s", row->meaning, choices);
         put_line(out, meaning);
     } else {
         put_line(out, row->meaning);
     }
+}
+
+/* Writes what the methods among the choices of a row are good for. Returns whether there are any. */
+static bool put_words(FILE *out, const option *row) {
+    const char *words;
+    option_choice c;
+    bool any = false;
+    for (size_t i = 0; cli_has_choices(row) && (c = cli_choice(row, i, &words)).name; i++) {
+        if (!words) continue;
+        if (!any) fputs(".RS\n", out);
+        put_term(out, c.name, words);
+        any = true;
+    }
+    return any;
 }
 
 static void put_options(FILE *out, const option *rows) {
@@ -101,7 +115,7 @@ static void put_options(FILE *out, const option *rows) {
         else if (row->kind == OPTION_TITLE)
             put_title(out, "SS", row->meaning);
         else
-            put_option(out, row);
+            put_option(out, row), in_notes = put_words(out, row);
     }
     if (in_notes) fputs(".RE\n", out);
 }

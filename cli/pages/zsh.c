@@ -24,9 +24,11 @@ static void put_files(FILE *out, const char *extensions) {
     fputs(")(-.)\"", out);
 }
 
-static void put_choices(FILE *out, const option_choice *choices) {
+/* Writes words in parentheses.   next  as cli_list_words takes it. */
+static void put_choices(FILE *out, const char *(*next)(const void *list, size_t i), const void *list) {
+    const char *word;
     fputc('(', out);
-    for (const option_choice *c = choices; c->name; c++) fprintf(out, "%s%s", c == choices ? "" : " ", c->name);
+    for (size_t i = 0; (word = next(list, i)); i++) fprintf(out, "%s%s", i == 0 ? "" : " ", word);
     fputc(')', out);
 }
 
@@ -36,8 +38,8 @@ static void put_value(FILE *out, const command *c, const option *row) {
     fputs(row->kind & OPTION_OPTIONAL ? "::" : ":", out);
     put_text(out, row->value);
     fputc(':', out);
-    if (row->choices)
-        put_choices(out, row->choices);
+    if (cli_has_choices(row))
+        put_choices(out, cli_choice_name, row);
     else if (!strcmp(row->value, "FILE"))
         put_files(out, extensions);
     else if (!strcmp(row->value, "DIR"))
@@ -69,7 +71,7 @@ static void put_command(FILE *out, const command *c) {
     put_text(out, c->operands);
     fputc(':', out);
     if (c->choices)
-        put_choices(out, c->choices);
+        put_choices(out, cli_choice_name, &(option){.kind = OPTION_CHOICE, .choices = c->choices});
     else
         put_files(out, pages_inputs(c));
     fputs("'\n        ;;\n", out);

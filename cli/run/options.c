@@ -4,6 +4,7 @@
  * takes the next argument unless that looks like an option itself; negative numbers and `-` are values. An option that
  * may stand without a value takes the next argument if that is a number. The last of repeated options counts. */
 #include "cli/run/options.h"
+#include "brio/brio.h"
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
@@ -78,28 +79,48 @@ bool cli_parse_size(const char *text, size_t *bytes) {
     return true;
 }
 
-static const char *choice_name(const void *choices, size_t i) {
-    return ((const option_choice *)choices)[i].name;
+bool cli_has_choices(const option *row) {
+    return row->kind == OPTION_CHOICE || row->kind == OPTION_METHOD;
 }
 
-void cli_list_choices(const option_choice *choices, char *text, size_t size) {
+/* Methods come first: those whose surface is through the points. */
+option_choice cli_choice(const option *row, size_t i, const char **words) {
+    if (words) *words = NULL;
+    for (int m = 0; row->kind == OPTION_METHOD && m < BRIO_SURFACE_END; m++) {
+        const brio_surface_method_info *info = brio_surface_method_facts((brio_surface_method)m);
+        if (info->traits & BRIO_METHOD_AT_DISTANCE || i-- > 0) continue;
+        if (words) *words = info->words;
+        return (option_choice){info->name, m};
+    }
+    for (const option_choice *c = row->choices; c->name; c++)
+        if (i-- == 0) return *c;
+    return (option_choice){NULL, 0};
+}
+
+const char *cli_choice_name(const void *row, size_t i) {
+    return cli_choice(row, i, NULL).name;
+}
+
+void cli_list_words(const char *(*next)(const void *list, size_t i), const void *list, char *text, size_t size) {
     size_t used = 0;
-    for (const option_choice *c = choices; c->name && used < size; c++) {
-        const char *between = c == choices ? "" : c[1].name ? ", " : " or ";
-        int length = snprintf(text + used, size - used, "%s%s", between, c->name);
+    const char *word, *after;
+    for (size_t i = 0; used < size && (word = next(list, i)); i++) {
+        after = next(list, i + 1);
+        int length = snprintf(text + used, size - used, "%s%s", i == 0 ? "" : after ? ", " : " or ", word);
         used += length > 0 ? (size_t)length : 0;
     }
 }
 
 static bool parse_choice(option_parse *parse, const option *row, const char *text, int *value) {
-    for (const option_choice *c = row->choices; c->name; c++) {
-        if (strcmp(c->name, text)) continue;
-        *value = c->value;
+    option_choice c;
+    for (size_t i = 0; (c = cli_choice(row, i, NULL)).name; i++) {
+        if (strcmp(c.name, text)) continue;
+        *value = c.value;
         return true;
     }
     char names[256] = "";
-    cli_list_choices(row->choices, names, sizeof names);
-    const char *near = cli_nearest(text, choice_name, row->choices);
+    cli_list_words(cli_choice_name, row, names, sizeof names);
+    const char *near = cli_nearest(text, cli_choice_name, row);
     if (near)
         return wrong(parse, "--%s: unknown name '%s', expected %s; did you mean '%s'?", row->name, text, names, near);
     return wrong(parse, "--%s: unknown name '%s', expected %s", row->name, text, names);
@@ -137,7 +158,7 @@ static const char *parse_value(option_kind kind, const char *text, void *field, 
 }
 
 static bool store(option_parse *parse, const option *row, void *field, const char *text) {
-    if (row->kind == OPTION_CHOICE) return parse_choice(parse, row, text, field);
+    if (cli_has_choices(row)) return parse_choice(parse, row, text, field);
     if (is_text(row->kind)) {
         *(const char **)field = text;
         return true;

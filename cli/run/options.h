@@ -18,6 +18,7 @@ typedef enum option_kind {
     OPTION_NUMBER,          /* double, finite */
     OPTION_SIZE,            /* size_t bytes: 500M, 8G, 1.5GiB */
     OPTION_CHOICE,          /* int: a name from a list */
+    OPTION_METHOD,          /* int: a method for surfaces, brio_surface_method, or a name from the list */
     OPTION_TITLE,           /* no option: the title, in `meaning`, of the rows up to the next one */
     OPTION_NOTE,            /* no option: what `name`, a choice of the row above, means */
     OPTION_POSITIVE = 0x10, /* added to a kind of number: 0 and less are refused */
@@ -62,8 +63,18 @@ bool cli_parse(option_parse *parse, int argc, char **argv);
 /** Returns whether a row is an option, and no title or note. */
 bool cli_is_option(const option *row);
 
-/** Writes "a, b or c", cut to the size of the array. */
-void cli_list_choices(const option_choice *choices, char *text, size_t size);
+/** Returns whether a row is an option that takes one of several names. */
+bool cli_has_choices(const option *row);
+
+/** Returns choice i of a row that has them; its name is NULL after the last one.
+ *  words  NULL, or receives what a method is good for; NULL for choices that the rows below explain. */
+option_choice cli_choice(const option *row, size_t i, const char **words);
+
+/** Returns the name of choice i of a row, as cli_list_words and cli_nearest take it. */
+const char *cli_choice_name(const void *row, size_t i);
+
+/** Writes "a, b or c", cut to the size of the array. `next(list, i)` gives word i, NULL at the end. */
+void cli_list_words(const char *(*next)(const void *list, size_t i), const void *list, char *text, size_t size);
 
 /** Reads "500M", "8G", "1.5GiB": K M G T are powers of 1024, as KiB ...; KB MB GB TB are powers of 1000. */
 bool cli_parse_size(const char *text, size_t *bytes);

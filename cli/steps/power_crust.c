@@ -1,6 +1,5 @@
 /* The power crust on the command line: its options, the call, what it counts. */
 #include "cli/steps/power_crust.h"
-#include "cli/steps/estimate.h"
 #include "cli/files/files.h"
 #include "cli/files/read_write.h"
 #include "cli/steps/hints.h"
@@ -86,39 +85,6 @@ brio_status cli_read_open(run *r, const power_crust_options *a, double *spacings
 static double open_of(run *r, const power_crust_options *a) {
     double spacings;
     return cli_read_open(r, a, &spacings) == BRIO_OK && spacings > 0 ? spacings : 0;
-}
-
-static brio_surface_options library_options(run *r, const power_crust_options *a) {
-    return (brio_surface_options){.method = BRIO_SURFACE_POWER_CRUST,
-                                  .noise = (brio_noise)a->noise,
-                                  .seed = r->common.seed,
-                                  .open = open_of(r, a),
-                                  .simplify = a->simplify,
-                                  .polygons = !a->triangulate && !a->simplify,
-                                  .poles = cli_pole_options(a)};
-}
-
-brio_status cli_power_crust(run *r, const power_crust_options *a, const brio_mesh *points, brio_mesh **surface,
-                            brio_surface_stats *stats) {
-    brio_surface_options o = library_options(r, a);
-    brio_status status = BRIO_OK;
-    double *normals = NULL;
-    if (a->normals) {
-        o.normals = normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
-        if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
-    }
-    uint64_t work;
-    size_t usual;
-    TRY(cli_usual_points(r, points, NULL, false, &usual));
-    status = brio_estimate_surface(r->ctx, usual, &o, &work);
-    TRY(cli_require_work(r, status, points, work));
-    TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, stats));
-    brio_mesh_remove_property(*surface, "sample"); /* which no vertex is */
-    cli_report_power_crust_stages(r, a, stats);
-    if (normals) TRY(cli_write_normals(r, a->normals, points, normals));
-done:
-    free(normals);
-    return status;
 }
 
 void cli_report_noise(run *r, double noise, bool smoothed) {

@@ -42,9 +42,7 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
     {"simplify", 0, OPTION_FLAG, offsetof(type, field.simplify), NULL,                                                 \
      "a quarter as many faces, as far as the shape allows; triangles", 0},                                             \
     {"triangulate", 0, OPTION_FLAG, offsetof(type, field.triangulate), NULL,                                           \
-     "plain triangles: faces without properties, for readers that expect none", 0},                                    \
-    {"normals", 0, OPTION_OUTPUT, offsetof(type, field.normals), "FILE",                                               \
-     "also write the points with oriented normals", 0}
+     "plain triangles: faces without properties, for readers that expect none", 0}
 
 #define POWER_CRUST_ROWS(type, field)                                                                                  \
     {"labeling", 0, OPTION_CHOICE, offsetof(type, field.labeling), "NAME",                                             \
@@ -64,10 +62,6 @@ brio_pole_options cli_pole_options(const power_crust_options *options);
 
 /** Writes the points with their normals, #P by 3. */
 brio_status cli_write_normals(run *r, const char *path, const brio_mesh *points, const double *normals);
-
-/** Reconstructs the surface of the points; writes the normals where they are asked for. */
-brio_status cli_power_crust(run *r, const power_crust_options *options, const brio_mesh *points, brio_mesh **surface,
-                            brio_surface_stats *stats);
 
 /** Adds the stages of a power crust to the clock. */
 void cli_report_power_crust_stages(run *r, const power_crust_options *options, const brio_surface_stats *stats);

@@ -77,6 +77,31 @@ typedef enum brio_surface_method {
     BRIO_SURFACE_END
 } brio_surface_method;
 
+/** What holds for every surface of a method, as bits of brio_surface_method_info.traits. */
+enum {
+    BRIO_METHOD_ALL_POINTS = 1,   /* vertex v is point v */
+    BRIO_METHOD_OWN_VERTICES = 2, /* no vertex is a point */
+    BRIO_METHOD_MAY_END = 4,      /* it ends where the points do, unless `holes` closes it */
+    BRIO_METHOD_AT_DISTANCE = 8   /* it is not through the points, but at `distance` from them */
+};
+
+/** What is known of a method. */
+typedef struct brio_surface_method_info {
+    size_t size; /* of the struct in the library that runs */
+    brio_surface_method method;
+    const char *name;    /* as the command line and Python call it: "tight-cocone" */
+    const char *words;   /* what it is good for, in a line of help; options in it are those of the command line */
+    const char *options; /* the fields of brio_surface_options that it has, besides method and seed, blanks between:
+                            "noise open poles.sharp" */
+    unsigned traits;     /* BRIO_METHOD_ALL_POINTS and so on */
+} brio_surface_method_info;
+
+/** Returns what is known of a method; NULL for a number that names none. */
+BRIO_API const brio_surface_method_info *brio_surface_method_facts(brio_surface_method method);
+
+/** Returns 1 if a method has an option of the list in its info, 0 if it has not, or if there is no such method. */
+BRIO_API int brio_surface_method_has(brio_surface_method method, const char *option);
+
 /** What becomes of holes of the points: places where a surface goes on and no point shows it. */
 typedef enum brio_holes {
     BRIO_HOLES_AUTO = 0,   /* filled where the points round a hole make it likely that the surface goes on, else open */
@@ -164,7 +189,7 @@ typedef enum brio_extraction {
 enum { BRIO_BOUNDARIES_AUTO = 2 }; /* for brio_surface_options.boundaries */
 
 /** Options of brio_surface. A field of 0 is the default. One that is set and that the method does not have is
- *  BRIO_ERR_ARGUMENT; the methods that have it are named first. */
+ *  BRIO_ERR_ARGUMENT; the methods that have it are named first, as brio_surface_method_facts lists them. */
 struct brio_surface_options {
     size_t size;
     brio_surface_method method;

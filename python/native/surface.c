@@ -183,8 +183,32 @@ static PyObject *report_of(const brio_surface_stats *s) {
     return report;
 }
 
-/* Returns a handle of the mesh and a report. */
-static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
+/* An option of brio_surface, by the name that Python has for it, and the field that a method must have for it; NULL: all
+ * have it. */
+typedef struct {
+    option option;
+    const char *field;
+} surface_option;
+
+/* Copies the options that a method has into a table, which has room for all. */
+static void choose_options(const surface_option *all, const brio_surface_method_info *method, option *table) {
+    for (; all->option.name; all++)
+        if (!all->field || brio_surface_method_has(method->method, all->field)) *table++ = all->option;
+    *table = all->option;
+}
+
+/* Takes the number of a method out of the options. Returns NULL with an exception set where it names none. */
+static const brio_surface_method_info *take_method(PyObject *options) {
+    PyObject *value = PyDict_GetItemString(options, "method");
+    const brio_surface_method_info *method = NULL;
+    if (value) method = brio_surface_method_facts((brio_surface_method)as_int(value));
+    if (!method && !PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "no such method");
+    return method && !PyErr_Occurred() && !PyDict_DelItemString(options, "method") ? method : NULL;
+}
+
+/* Returns a handle of the mesh and a report. The option `method` is a brio_surface_method. Polygons stay polygons, unless
+ * triangles are asked for. */
+static PyObject *surface(PyObject *module, PyObject *args) {
     surface_call s;
     evidence_input e = {.taken = {0}};
     call c;
@@ -192,48 +216,57 @@ static PyObject *labeled_delaunay(PyObject *module, PyObject *args) {
     brio_surface_stats stats = {0};
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
+    int triangulate = 0;
     brio_surface_options o = {0};
-    const option table[] = {
-        {"seed", SEED, &o.seed},   {"noise", INT, &o.noise},       {"confidence", INT, &o.confidence},
-        {"open", DOUBLE, &o.open}, {"simplify", INT, &o.simplify}, {"holes", INT, &o.holes},
-        {NULL, INT, NULL}};
-    o.evidence = &e.taken;
-    if (!open_surface_call(&s, args, input_open, 'I', 0) && !open_evidence(&e, s.options, s.p.rows))
-        RUN_SURFACE(table, make_surface(c.ctx, &s, &o, s.out.data, &mesh, &stats));
+    const surface_option all[] = {{{"seed", SEED, &o.seed}, NULL},
+                                  {{"noise", INT, &o.noise}, "noise"},
+                                  {{"open", DOUBLE, &o.open}, "open"},
+                                  {{"holes", INT, &o.holes}, "holes"},
+                                  {{"simplify", INT, &o.simplify}, "simplify"},
+                                  {{"confidence", INT, &o.confidence}, "confidence"},
+                                  {{"triangulate", INT, &triangulate}, "polygons"},
+                                  {{"labeling", INT, &o.poles.labeling}, "poles.labeling"},
+                                  {{"sampling_density", DOUBLE, &o.poles.sampling_density}, "poles.sampling_density"},
+                                  {{"sharp", INT, &o.poles.sharp}, "poles.sharp"},
+                                  {{"theta", DOUBLE, &o.theta}, "theta"},
+                                  {{"boundaries", INT, &o.boundaries}, "boundaries"},
+                                  {{"density", INT, &o.density}, "density"},
+                                  {{"pieces", SIZE, &o.pieces}, "pieces"},
+                                  {{"extraction", INT, &o.extraction}, "extraction"},
+                                  {{NULL, INT, NULL}, NULL}};
+    option table[sizeof all / sizeof *all];
+    PyObject *options = PyTuple_Size(args) > 1 ? PyTuple_GetItem(args, 1) : NULL;
+    if (!options || !PyDict_Check(options))
+        return PyErr_Format(PyExc_TypeError, "surface: options in a dict are wanted");
+    const brio_surface_method_info *method = take_method(options);
+    if (!method) return NULL;
+    int own = method->traits & BRIO_METHOD_OWN_VERTICES;
+    choose_options(all, method, table);
+    if (!open_surface_call(&s, args, input_open, own ? 'd' : 'I', own ? 3 : 0) &&
+        !open_evidence(&e, s.options, s.p.rows)) {
+        o.method = method->method;
+        o.distance = s.number;
+        o.normals = own ? s.out.data : NULL;
+        if (e.taken.normals || e.taken.origins) o.evidence = &e.taken;
+        RUN_SURFACE(table, (o.polygons = brio_surface_method_has(o.method, "polygons") && !triangulate && !o.simplify,
+                            make_surface(c.ctx, &s, &o, own ? NULL : s.out.data, &mesh, &stats)));
+    }
     close_evidence(&e);
     close_surface_call(&s);
     return result ? Py_BuildValue("NN", result, report_of(&stats)) : NULL;
 }
 
-/* The power crust, and its offset: polygons, unless triangles are asked for. */
-static PyObject *crust(PyObject *module, PyObject *args, brio_surface_method method) {
-    surface_call s;
-    call c;
-    brio_status status;
-    brio_mesh *mesh = NULL;
-    PyObject *result = NULL;
-    int triangulate = 0;
-    brio_surface_options o = {.method = method};
-    const option table[] = {POLE_OPTIONS(o),
-                            {"triangulate", INT, &triangulate},
-                            {"simplify", INT, &o.simplify},
-                            {method == BRIO_SURFACE_POWER_CRUST ? "open" : NULL, DOUBLE, &o.open},
-                            {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, input_open, 'd', 3)) {
-        o.normals = s.out.data;
-        o.distance = s.number;
-        RUN_SURFACE(table, (o.polygons = !triangulate && !o.simplify, make_surface(c.ctx, &s, &o, NULL, &mesh, NULL)));
+/* surface_methods(): a list of tuples: name, number, options, traits. */
+static PyObject *list_surface_methods(PyObject *module, PyObject *args) {
+    PyObject *list = PyList_New(0);
+    (void)module, (void)args;
+    for (int m = 0; list && m < BRIO_SURFACE_END; m++) {
+        const brio_surface_method_info *i = brio_surface_method_facts((brio_surface_method)m);
+        PyObject *row = Py_BuildValue("sisI", i->name, m, i->options, i->traits);
+        if (!row || PyList_Append(list, row)) Py_CLEAR(list);
+        Py_XDECREF(row);
     }
-    close_surface_call(&s);
-    return result;
-}
-
-static PyObject *power_crust(PyObject *module, PyObject *args) {
-    return crust(module, args, BRIO_SURFACE_POWER_CRUST);
-}
-
-static PyObject *offset_surface(PyObject *module, PyObject *args) {
-    return crust(module, args, BRIO_SURFACE_OFFSET);
+    return list;
 }
 
 static PyObject *power_shape(PyObject *module, PyObject *args) {
@@ -250,33 +283,6 @@ static PyObject *power_shape(PyObject *module, PyObject *args) {
                             {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, input_open, 'd', 3))
         RUN_SURFACE(table, brio_power_shape(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL, NULL));
-    close_surface_call(&s);
-    return result;
-}
-
-static PyObject *cocone(PyObject *module, PyObject *args) {
-    surface_call s;
-    evidence_input e = {.taken = {0}};
-    call c;
-    brio_status status;
-    brio_mesh *mesh = NULL;
-    PyObject *result = NULL;
-    int tight = 0;
-    brio_surface_options o = {0};
-    const option table[] = {{"seed", SEED, &o.seed},
-                            {"theta", DOUBLE, &o.theta},
-                            {"tight", INT, &tight},
-                            {"boundaries", INT, &o.boundaries},
-                            {"density", INT, &o.density},
-                            {"pieces", SIZE, &o.pieces},
-                            {"extraction", INT, &o.extraction},
-                            {NULL, INT, NULL}};
-    if (!open_surface_call(&s, args, input_open, 'd', 3) && !open_evidence(&e, s.options, s.p.rows)) {
-        if (e.taken.normals || e.taken.origins) o.evidence = &e.taken;
-        RUN_SURFACE(table, (o.method = tight ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE,
-                            make_surface(c.ctx, &s, &o, NULL, &mesh, NULL)));
-    }
-    close_evidence(&e);
     close_surface_call(&s);
     return result;
 }
@@ -380,12 +386,12 @@ static PyObject *point_normals(PyObject *module, PyObject *args) {
     { #name, name, METH_VARARGS, #name "(points, options, number, out, threads, progress): " what }
 
 PyMethodDef surface_methods[] = {
-    SURFACE(labeled_delaunay, "a mesh; out: the sample of each vertex."),
-    SURFACE(power_crust, "a mesh; out: normals of the points."),
-    SURFACE(offset_surface, "a mesh; number: the distance."),
+    SURFACE(surface,
+            "a mesh and a report; number: the distance; out: the sample of each vertex, or normals of the points."),
     SURFACE(power_shape, "a mesh."),
-    SURFACE(cocone, "a mesh."),
     SURFACE(convex_hull, "a mesh; out: the point of each vertex."),
+    {"surface_methods", list_surface_methods, METH_NOARGS,
+     "surface_methods(): tuples of name, number, options, traits"},
     {"mesh_offset", mesh_offset, METH_VARARGS, "mesh_offset(mesh, distance, error, threads, progress)"},
     {"mesh_shape", mesh_shape, METH_VARARGS, "mesh_shape(mesh, spacing, options, threads, progress)"},
     {"point_normals", point_normals, METH_VARARGS, "point_normals(points, mesh, samples, out, threads, progress)"},

@@ -1,12 +1,14 @@
 /* Memory estimates.
  *
- * The constants are those of the data structures or measured, as said beside them; measurement adjusts them here and
- * nowhere else. docs/measured/performance.md compares the estimates with the peaks of many inputs. An input that no
- * estimate foresees meets the memory limit of the context, which refuses memory while the work runs. */
+ * The constants are those of the data structures or measured, as said beside them; measurement adjusts them here, or in
+ * the table of methods for surfaces, and nowhere else. docs/measured/performance.md compares the estimates with the
+ * peaks of many inputs. An input that no estimate foresees meets the memory limit of the context, which refuses memory
+ * while the work runs. */
 #include "base/float_state.h"
 #include "base/versioned.h"
 #include "estimate/triangulation_size.h"
 #include "order/canonical_points.h"
+#include "reconstruct/surface/method.h"
 #include "triangulation/triangulation.h"
 #include <math.h>
 
@@ -27,15 +29,7 @@ static const double HISTORY_BYTES_A_POINT = 570, LOCATION_BYTES_A_POINT = 8, BYT
  * vertex and a list of the points that may be hidden. */
 static const double PLANE_BYTES_A_POINT = 88, PLANE_BYTES_A_WEIGHT = 10;
 
-/* Measured, the samples not included: models take 1,460 to 1,570 bytes a sample, a raw scan 1,590, offsets 1,240, the
- * co-cone 540 to 640. */
-static const double CRUST_BYTES_A_POINT = 1426, OFFSET_BYTES_A_POINT = 1300, COCONE_BYTES_A_POINT = 616;
-/* Measured: a raw scan of a million samples takes 993 bytes a sample, simulated scans of 60,000 and 20,000 samples
- * 1,063 and 1,213. */
-static const double LABELED_BYTES_A_POINT = 1110;
-static const double TRIANGLE_BYTES_A_POINT = 300;  /* more, triangulated: a scan of 20,000 points 210, bunny 350 */
-static const double SIMPLIFY_BYTES_A_POINT = 2150; /* more, simplified: knot2 2,080, bunny 2,150, fandisk 2,200 */
-static const double SUBDIVIDE_BYTES_A_FACE = 76;   /* of the result, a certificate included */
+static const double SUBDIVIDE_BYTES_A_FACE = 76; /* of the result, a certificate included */
 static const double ISO_BYTES_A_VERTEX = 71, COORDINATE_BYTES = 24;
 
 /* Returns a number of bytes as an integer, the greatest integer for larger numbers. */
@@ -97,46 +91,15 @@ brio_status brio_estimate_tetrahedra(brio_context *ctx, const double *points, co
     return BRIO_OK;
 }
 
-/* Returns the estimate of a crust.   each  bytes a point of the balls and the faces. */
-static uint64_t crust_bytes(size_t num_points, double each, bool triangulate, bool simplify) {
-    if (triangulate) each += TRIANGLE_BYTES_A_POINT;
-    if (simplify) each += SIMPLIFY_BYTES_A_POINT;
-    return bytes_of(each * (double)num_points);
-}
-
-/* Returns the estimate of the co-cones. The super co-cone keeps the points and the triangles of all pieces, and works
- * on one piece of up to twice the mean size. Measured on scans of 60,000 and 200,000 points in 3 to 154 pieces, with
- * one thread. */
-static double cocone_bytes(double points, double pieces) {
-    static const double KEPT_A_POINT = 210, A_PIECE = 180e3;
-    double whole = COCONE_BYTES_A_POINT * points;
-    return pieces < 2 ? whole : fmin(whole, KEPT_A_POINT * points + whole * 2 / pieces) + A_PIECE * pieces;
-}
-
 brio_status brio_estimate_surface(brio_context *ctx, size_t num_points, const brio_surface_options *options,
                                   uint64_t *bytes) {
     BRIO_DOOR;
     brio_surface_options o = {0};
     *bytes = 0;
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_surface_options, options, &o));
-    BRIO_EXPECT(ctx, (unsigned)o.method < BRIO_SURFACE_END, BRIO_ERR_ARGUMENT, "no such method: %d", (int)o.method);
-    switch (o.method) {
-    case BRIO_SURFACE_POWER_CRUST:
-        *bytes = crust_bytes(num_points, CRUST_BYTES_A_POINT, !o.polygons, o.simplify);
-        break;
-    case BRIO_SURFACE_OFFSET:
-        *bytes = crust_bytes(num_points, OFFSET_BYTES_A_POINT, !o.polygons, o.simplify);
-        break;
-    case BRIO_SURFACE_LABELED:
-        *bytes = bytes_of(LABELED_BYTES_A_POINT * (double)num_points);
-        break;
-    case BRIO_SURFACE_COCONE:
-    case BRIO_SURFACE_TIGHT_COCONE:
-        *bytes = bytes_of(cocone_bytes((double)num_points, (double)o.pieces));
-        break;
-    case BRIO_SURFACE_END: /* no default: the compiler names the method that was forgotten */
-        break;
-    }
+    const brio_method_row *row = brio_method_row_of(o.method);
+    BRIO_EXPECT(ctx, row, BRIO_ERR_ARGUMENT, "no such method: %d", (int)o.method);
+    *bytes = bytes_of(brio_method_bytes(row, (double)num_points, &o));
     return BRIO_OK;
 }
 
@@ -145,7 +108,9 @@ brio_status brio_estimate_power_shape(brio_context *ctx, size_t num_points, cons
     BRIO_DOOR;
     brio_power_shape_options o = {0};
     brio_status status = BRIO_TAKE(ctx, brio_power_shape_options, options, &o);
-    *bytes = status == BRIO_OK ? crust_bytes(num_points, CRUST_BYTES_A_POINT, false, false) : 0;
+    *bytes = status == BRIO_OK
+                 ? bytes_of((double)num_points * brio_method_row_of(BRIO_SURFACE_POWER_CRUST)->bytes_a_point)
+                 : 0;
     return status;
 }
 

@@ -135,6 +135,11 @@ class CliTest(unittest.TestCase):
         self.assertRegex(run.err, r"brio: see 'brio (\w+ )?--help'\n\Z")
         self.assertEqual(run.out, b"")
 
+    def methods(self):
+        """The names that `brio surface --method` takes, in the order of its help."""
+        of_method = self.expect(0, "surface", "--help").text.split("  --method ")[1].split("\n  --")[0]
+        return re.findall(r"(?m)^ {6}([a-z-]+)", of_method)
+
     def bad_input(self, message, *arguments, **how):
         run = self.expect(2, *arguments, **how)
         self.assertRegex(run.err, message)

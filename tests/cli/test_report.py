@@ -144,7 +144,8 @@ class Messages(CliTest):
     def test_wrong_words_list_the_right_ones(self):
         for arguments in [("surface", "a", "-o", "b.ply", "--method"), ("delaunay", "a", "--order")]:
             self.usage(r"unknown name 'xyzzy', expected [a-z-]+, .* or [a-z-]+\n", *arguments, "xyzzy")
-        self.usage("expected labeled-delaunay, power-crust, cocone, tight-cocone or curves; did you mean 'cocone'", "surface", "a",
+        names = self.methods()
+        self.usage("expected %s or %s; did you mean 'cocone'" % (", ".join(names[:-1]), names[-1]), "surface", "a",
                    "-o", "b.ply", "--method", "cocoon")
 
     def test_memory_hints(self):

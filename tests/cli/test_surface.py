@@ -2,6 +2,7 @@
 
 import math
 import os
+import pathlib
 
 from brio_cli import CERTIFICATE, CliTest, COMMON_FACTS, count, main, number
 
@@ -15,12 +16,32 @@ class Usage(CliTest):
             self.usage("cocone", "surface", "a.xyz", "-o", "x.ply", *option)
         for option in [("--triangulate",), ("--simplify",), ("--labeling", "greedy"), ("--noise", "keep"),
                        ("-R", "0.3"), ("--sharp",),
-                       ("--open", "4"), ("--normals", "n.ply")]:
+                       ("--open", "4")]:
             self.usage("power-crust", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", *option)
         for option in [("--extraction", "walk"), ("--extraction", "walk", "--method", "tight-cocone"),
                        ("--extraction", "walk", "--method", "cocone", "--pieces", "3")]:
             self.usage("--extraction is for", "surface", "a.xyz", "-o", "x.ply", *option)
         self.usage("pi/2", "surface", "a.xyz", "-o", "x.ply", "--method", "cocone", "--theta", "2")
+
+
+class Methods(CliTest):
+    def test_every_method_makes_a_surface_and_has_its_row_in_the_page(self):
+        cloud, out = self.cloud("a.ply", 600, "sphere"), self.path("out.ply")
+        page = pathlib.Path(__file__).resolve().parents[2] / "docs/which-method.md"
+        rows = [line.split("|")[1] for line in page.read_text(encoding="utf-8").splitlines() if line.startswith("| `")]
+        for name in self.methods():
+            if name != "curves":  # for points in a plane
+                self.assertEqual(self.facts("surface", cloud, "-o", out, "--method", name)["method"], name)
+                self.assertTrue([row for row in rows if f"`{name}`" in row], f"docs/which-method.md has no row for {name}: what does it "
+                                "guarantee, and what was measured?")
+
+    def test_points_with_normals_beside_every_surface_of_them(self):
+        cloud, beside = self.cloud("a.ply", 600, "sphere"), self.path("n.csv")
+        for name in ("labeled-delaunay", "power-crust", "cocone", "tight-cocone"):
+            self.facts("surface", cloud, "-o", self.path("out.ply"), "--method", name, "--normals", beside)
+            with open(beside) as f:
+                rows = [[float(word) for word in row.split(",")] for row in list(f)[1:]]
+            self.assertGreater(min(sum(p * n for p, n in zip(row[:3], row[3:6])) for row in rows), 0.8, name)
 
 
 class Unseen(CliTest):

@@ -9,24 +9,29 @@ enum { N = 600 };
 
 static double points[3 * N];
 
+static bool has(int method, const char *option) {
+    return brio_surface_method_has((brio_surface_method)method, option);
+}
+
 /* The vertices of every method say which points they are, and lie there. */
 static void every_method_names_the_points_of_its_vertices(void) {
     brio_context *ctx = new_context();
     for (int method = 0; method < BRIO_SURFACE_END; method++) {
-        const bool named = method != BRIO_SURFACE_POWER_CRUST && method != BRIO_SURFACE_OFFSET;
-        const brio_surface_options o = {.method = (brio_surface_method)method,
-                                        .noise =
-                                            named && method != BRIO_SURFACE_LABELED ? BRIO_NOISE_AUTO : BRIO_NOISE_KEEP,
-                                        .distance = method == BRIO_SURFACE_OFFSET ? 0.1 : 0};
+        const brio_surface_method_info *info = brio_surface_method_facts((brio_surface_method)method);
+        const bool named = !(info->traits & BRIO_METHOD_OWN_VERTICES);
+        const brio_surface_options o = {.method = info->method,
+                                        .noise = has(method, "noise") ? BRIO_NOISE_KEEP : BRIO_NOISE_AUTO,
+                                        .distance = has(method, "distance") ? 0.1 : 0};
         brio_surface_stats s = {0};
         brio_mesh *mesh = NULL;
         EXPECT(brio_surface(ctx, points, N, &o, &mesh, &s) == BRIO_OK, "%d: %s", method, brio_message(ctx));
         if (!mesh) continue;
         const brio_property *sample = brio_mesh_property(mesh, "sample");
-        EXPECT(sample && sample->type == BRIO_SCALAR_INT32 && s.samples == N && s.delaunay_seconds > 0, "%d", method);
+        EXPECT(sample && sample->type == BRIO_SCALAR_INT32 && s.samples == N, "%d", method);
         for (size_t v = 0; sample && v < mesh->num_vertices; v++) {
             int32_t p = ((const int32_t *)sample->data)[v];
             EXPECT(named ? p >= 0 && p < N : p == -1, "%d: vertex %zu is point %d", method, v, (int)p);
+            EXPECT(!(info->traits & BRIO_METHOD_ALL_POINTS) || (size_t)p == v, "%d: vertex %zu", method, v);
             if (named && p >= 0 && p < N)
                 EXPECT(!memcmp(mesh->vertices + 3 * v, points + 3 * p, 3 * sizeof *points), "%d: vertex %zu", method,
                        v);
@@ -40,10 +45,11 @@ static void every_method_names_the_points_of_its_vertices(void) {
 }
 
 /* The normals of the points of a sphere are the points. */
-static void every_method_but_the_offset_tells_normals(void) {
+static void methods_that_have_normals_tell_them(void) {
     brio_context *ctx = new_context();
     double normals[3 * N];
-    for (int method = 0; method < BRIO_SURFACE_OFFSET; method++) {
+    for (int method = 0; method < BRIO_SURFACE_END; method++) {
+        if (!has(method, "normals")) continue;
         const brio_surface_options o = {.method = (brio_surface_method)method, .normals = normals};
         brio_mesh *mesh = NULL;
         EXPECT(brio_surface(ctx, points, N, &o, &mesh, NULL) == BRIO_OK, "%d: %s", method, brio_message(ctx));
@@ -91,6 +97,55 @@ static void options_of_other_methods_are_refused(void) {
     brio_context_free(ctx);
 }
 
+/* The table says of every method and every option whether brio_surface takes it. */
+static void the_table_lists_the_options_that_are_taken(void) {
+    static const brio_evidence evidence = {0};
+    double normals[3 * N];
+    brio_mesh *cube = NULL;
+    brio_context *ctx = new_context();
+    EXPECT(brio_generate_solid(ctx, BRIO_SOLID_IMPLICIT, 1, 16, &cube) == BRIO_OK, "%s", brio_message(ctx));
+    const struct {
+        brio_surface_options o;
+        const char *name;
+    } uses[] = {{{.noise = BRIO_NOISE_SMOOTH}, "noise"},
+                {{.evidence = &evidence}, "evidence"},
+                {{.normals = normals}, "normals"},
+                {{.open = 9}, "open"},
+                {{.holes = BRIO_HOLES_CLOSED}, "holes"},
+                {{.simplify = 1}, "simplify"},
+                {{.confidence = 1}, "confidence"},
+                {{.polygons = 1}, "polygons"},
+                {{.distance = 0.1}, "distance"},
+                {{.poles.labeling = BRIO_LABELING_GREEDY}, "poles.labeling"},
+                {{.poles.sharp = 1}, "poles.sharp"},
+                {{.poles.sampling_density = 0.9}, "poles.sampling_density"},
+                {{.poles.solid = cube}, "poles.solid"},
+                {{.theta = 0.4}, "theta"},
+                {{.boundaries = 1}, "boundaries"},
+                {{.density = 1}, "density"},
+                {{.pieces = 2}, "pieces"},
+                {{.extraction = BRIO_EXTRACTION_WALK}, "extraction"}};
+    for (int method = 0; method < BRIO_SURFACE_END; method++) {
+        const char *options = brio_surface_method_facts((brio_surface_method)method)->options;
+        size_t listed = *options != 0, known = 0;
+        for (const char *at = options; *at; at++) listed += *at == ' ';
+        for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
+            brio_surface_options o = uses[i].o;
+            brio_mesh *mesh = NULL;
+            o.method = (brio_surface_method)method;
+            bool refused = brio_surface(ctx, points, N, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT;
+            EXPECT(refused == !has(method, uses[i].name), "%d, %s: %s", method, uses[i].name, brio_message(ctx));
+            known += has(method, uses[i].name);
+            brio_mesh_free(mesh);
+        }
+        EXPECT(known == listed, "%d: %zu options listed, %zu known", method, listed, known);
+    }
+    EXPECT(!has(BRIO_SURFACE_COCONE, "poles") && !has(BRIO_SURFACE_OFFSET, "sharp") && !has(BRIO_SURFACE_END, "noise"));
+    EXPECT(!brio_surface_method_facts(BRIO_SURFACE_END) && !brio_surface_method_facts((brio_surface_method)-1));
+    brio_mesh_free(cube);
+    brio_context_free(ctx);
+}
+
 /* A seed of 0 is the default seed, in every function that has one. */
 static void the_default_seed_is_one(void) {
     brio_context *ctx = new_context();
@@ -109,8 +164,9 @@ static void the_default_seed_is_one(void) {
 SUITE(test_surface_calls) {
     sphere_points(1, N, points);
     RUN(every_method_names_the_points_of_its_vertices);
-    RUN(every_method_but_the_offset_tells_normals);
+    RUN(methods_that_have_normals_tell_them);
     RUN(options_of_other_methods_are_refused);
+    RUN(the_table_lists_the_options_that_are_taken);
     RUN(the_default_seed_is_one);
     return harness_end();
 }

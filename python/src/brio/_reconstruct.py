@@ -1,6 +1,6 @@
 """Surfaces of samples, and what comes with them: medial axes, offsets, normals of points."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,20 @@ from ._points import nearest
 from ._properties import Properties, as_properties, carry
 from .errors import ArgumentError
 
-_METHODS = ["labeled-delaunay", "power-crust", "cocone", "tight-cocone"]
+_ALL_POINTS, _OWN_VERTICES, _MAY_END, _AT_DISTANCE = 1, 2, 4, 8
+
+
+class _Method(NamedTuple):
+    """What the library knows of a method."""
+
+    name: str
+    number: int
+    options: frozenset[str]
+    traits: int
+
+
+_TABLE = [_Method(name, number, frozenset(options.split()), traits) for name, number, options, traits in _native.surface_methods()]
+_METHODS = {method.name: method for method in _TABLE if not method.traits & _AT_DISTANCE}
 _NOISE = {"auto": 0, "keep": 1, "smooth": 2}
 _LABELING = {"global": 0, "greedy": 1, "naive": 2, "theoretical": 3}
 _EXTRACTION = {"labels": 0, "candidates": 1, "pruned": 2, "walk": 3}
@@ -64,6 +77,14 @@ def _run(function: Any, points: Floats, options: dict[str, Any], number: float, 
     return surface
 
 
+def _surface(method: _Method, points: Floats, options: dict[str, Any], distance: float, out: NDArray[Any] | None,
+             threads: int, progress: bool | Progress | None) -> Surface:
+    surface = _run(_native.surface, points, {**options, "method": method.number}, distance, out, threads, progress)
+    if "confidence" not in method.options:  # the report judges what such a method did
+        surface.report = {}
+    return surface
+
+
 def _split(points: Any) -> tuple[Floats, Properties]:
     """Positions, and the properties of a Mesh."""
     if isinstance(points, Mesh):
@@ -71,20 +92,20 @@ def _split(points: Any) -> tuple[Floats, Properties]:
     return as_rows(points, "points"), {}
 
 
-def _method(method: Any) -> str:
-    """The name of a method, with hyphens."""
+def _method(method: Any) -> _Method:
+    """The method of a name, which may have underscores for hyphens."""
     name = method.replace("_", "-") if isinstance(method, str) else method
-    if name not in _METHODS:
+    if not isinstance(name, str) or name not in _METHODS:
         raise ArgumentError(f"method: one of {', '.join(_METHODS)}, not {method!r}")
-    return str(name)
+    return _METHODS[name]
 
 
-def _evidence(method: str, options: dict[str, Any], properties: Properties, normals: Any,
+def _evidence(method: _Method, options: dict[str, Any], properties: Properties, normals: Any,
               origins: Any) -> dict[str, Floats]:
     """What tells the outside, as options of the module."""
     out: dict[str, Floats] = {}
     pieces = options.get("pieces", 0)
-    takes = method != "power-crust" and not (isinstance(pieces, int) and pieces > 1)
+    takes = "evidence" in method.options and not (isinstance(pieces, int) and pieces > 1)
     for name, given, columns in (("normals", normals, ("nx", "ny", "nz")),
                                  ("origins", origins, ("x_origin", "y_origin", "z_origin"))):
         if given is None and takes and all(c in properties for c in columns):
@@ -92,13 +113,15 @@ def _evidence(method: str, options: dict[str, Any], properties: Properties, norm
         if given is None or given is False:
             continue
         if not takes:
-            raise ArgumentError(f"{name}: {method} takes none" + (" in pieces" if method != "power-crust" else ""))
+            raise ArgumentError(f"{name}: {method.name} takes none" + (" in pieces" if "evidence" in method.options else ""))
         out[name] = as_rows(np.atleast_2d(np.asarray(given, np.float64)), name)
     return out
 
 
-def _holes(options: dict[str, Any]) -> dict[str, Any]:
-    """The options of the library for `open`: "auto", its default, is none of its numbers."""
+def _holes(method: _Method, options: dict[str, Any]) -> dict[str, Any]:
+    """The options of the library for `open`: "auto", the default where a surface may end, is none of its numbers."""
+    if not (method.traits & _MAY_END and "open" in method.options):
+        return options
     if options.get("open", "auto") != "auto":
         return {"holes": 1, **options}
     return {name: value for name, value in options.items() if name != "open"}
@@ -147,20 +170,16 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     >>> surface.certificate.closed, surface.certificate.genus
     (True, 0)
     """
-    name = _method(method)
+    which = _method(method)
     rows, carried = _split(points)
-    options = {**options, **_evidence(name, options, carried, normals, origins)}
+    options = _holes(which, {**options, **_evidence(which, options, carried, normals, origins)})
     carried = {**carried, **as_properties({} if attributes is None else attributes, len(rows), "attribute", "point")}
-    if name == "labeled-delaunay":
-        samples = np.empty(len(rows), np.uint32)
-        surface = _run(_native.labeled_delaunay, rows, {"confidence": 1, **_holes(options)}, 0.0, samples, threads, progress)
+    samples = None if which.traits & _OWN_VERTICES else np.empty(len(rows), np.uint32)
+    if "confidence" in which.options:
+        options = {"confidence": 1, **options}
+    surface = _surface(which, rows, options, 0.0, samples, threads, progress)
+    if samples is not None:
         surface.samples = frozen(samples[: len(surface.vertices)].astype(np.int64))
-    elif name == "power-crust":
-        surface = _run(_native.power_crust, rows, options, 0.0, None, threads, progress)
-    else:
-        tight = {"tight": 1} if name == "tight-cocone" else {}
-        surface = _run(_native.cocone, rows, {**options, **tight}, 0.0, None, threads, progress)
-        surface.samples = frozen(np.arange(len(rows)))
     _carry(surface, carried, threads)
     return surface
 
@@ -199,8 +218,9 @@ def oriented_normals(points: Any, method: str = "labeled-delaunay", *, threads: 
     """
     rows, _ = _split(points)
     normals = np.empty((len(rows), 3))
-    if _method(method) == "power-crust":
-        _run(_native.power_crust, rows, options, 0.0, normals, threads, progress)
+    which = _method(method)
+    if which.traits & _OWN_VERTICES:
+        _surface(which, rows, options, 0.0, normals, threads, progress)
         return normals
     surface = reconstruct(rows, method, threads=threads, progress=progress, **options)
     samples = None if surface.samples is None else surface.samples.astype(np.uint32)
@@ -267,7 +287,8 @@ def offset(points: Any, distance: float, *, error: float | None = None, threads:
     if error is not None:
         raise ArgumentError("error: for closed meshes; the error of an offset of points is that of the points")
     rows, _ = _split(points)
-    return _run(_native.offset_surface, rows, options, far, None, threads, progress)
+    method = next(method for method in _TABLE if method.traits & _AT_DISTANCE)
+    return _surface(method, rows, options, far, None, threads, progress)
 
 
 def medial_axis(points: Any, *, sides: str = "inner", spacing: float | None = None, threads: int = 0,

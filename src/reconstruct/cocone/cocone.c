@@ -7,7 +7,7 @@
 #include "base/scale.h"
 #include "order/canonical_points.h"
 #include "mesh/properties.h"
-#include "reconstruct/cocone/cocone.h"
+#include "reconstruct/surface/method.h"
 #include "reconstruct/cocone/sampling_density.h"
 #include "reconstruct/cocone/super_cocone.h"
 #include <math.h>
@@ -122,6 +122,8 @@ done:
     brio_release(mesh->context, samples);
     return status;
 }
+
+brio_method_fn brio_cocone;
 
 brio_status brio_cocone(brio_context *ctx, const double *points, size_t num_points, const brio_surface_options *options,
                         brio_mesh *mesh, brio_surface_stats *stats) {

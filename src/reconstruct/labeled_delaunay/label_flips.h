@@ -40,7 +40,8 @@ typedef struct {
     int16_t part[BRIO_STAR_ROOM];
 } brio_star_parts;
 
-/** label  kept, read and written: of tetrahedra and samples.   out  freed with brio_label_flips_free, on failure
+/** Begins with labels, and sums the votes on each sample.
+ *  label  kept, read and written: of tetrahedra and samples.   out  freed with brio_label_flips_free, on failure
  *  too. */
 brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_label_flips *out);
 void brio_label_flips_free(brio_label_flips *f);

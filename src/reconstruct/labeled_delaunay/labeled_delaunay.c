@@ -25,7 +25,7 @@
 #include "base/rng.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
-#include "reconstruct/labeled_delaunay/labeled_delaunay.h"
+#include "reconstruct/surface/method.h"
 #include "reconstruct/labeled_delaunay/reconstruction.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
@@ -464,6 +464,8 @@ done:
     release(&r);
     return status;
 }
+
+brio_method_fn brio_labeled_delaunay;
 
 brio_status brio_labeled_delaunay(brio_context *ctx, const double *points, size_t num_points,
                                   const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats) {

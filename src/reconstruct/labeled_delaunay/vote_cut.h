@@ -15,7 +15,8 @@ typedef struct {
                         cut */
 } brio_vote_cut;
 
-/** g     kept.
+/** Makes room for cuts of a graph.
+ *  g     kept.
  *  open  #T, kept: 0 for tetrahedra that keep their labels in all cuts; NULL: all are open. Those from
  *        g->num_free on are never open.
  *  out   freed with brio_vote_cut_free, on failure too. */

@@ -39,7 +39,7 @@ typedef struct {
     brio_status status;
 } round_of_blocks;
 
-/* By I1 of brio_node_blocks no thread reads a label that another thread writes. */
+/* Settles blocks of one colour. By I1 of brio_node_blocks no thread reads a label that another thread writes. */
 static void settle_part(void *user, size_t begin, size_t end, int thread) {
     round_of_blocks *r = user;
     const problem *pr = r->pr;

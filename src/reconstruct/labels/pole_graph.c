@@ -266,7 +266,7 @@ static void sort_edges(void *user, size_t begin, size_t end, int thread) {
 }
 
 #ifndef NDEBUG
-/* Whether the run of each pole's edges leads to other poles, in ascending order. */
+/* Returns whether the run of each pole's edges leads to other poles, in ascending order. */
 static bool runs_are_sorted(const brio_pole_graph *g) {
     size_t n = g->diagram->poles->count;
     if (g->first[0] != 0) return false;

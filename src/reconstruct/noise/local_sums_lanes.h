@@ -121,7 +121,7 @@ static inline void find_angle(lanes m[3][3], int i, int j, lanes *c, lanes *s) {
     *s = t * *c;
 }
 
-/* brio_rotate, in the lanes that are open. */
+/* Turns two axes as brio_rotate does, in the lanes that are open. */
 static inline void rotate(lanes m[3][3], lanes v[3][3], const lane_bits *open, int i, int j) {
     lane_bits turns = *open & (lane_bits)(m[i][j] != 0);
     lanes c, s;

@@ -278,8 +278,8 @@ done:
 }
 
 #ifndef NDEBUG
-/* Whether every pole has a label and every pole on the hull of the triangulation is outer. Then every face between an
- * inner and an outer cell is bounded, and the crust closes. */
+/* Returns whether every pole has a label and every pole on the hull of the triangulation is outer. Then every face
+ * between an inner and an outer cell is bounded, and the crust closes. */
 static bool labels_close(const brio_power_diagram *d, const uint8_t *label) {
     for (size_t p = 0; p < d->poles->count; p++)
         if (label[p] != BRIO_LABEL_INNER && label[p] != BRIO_LABEL_OUTER) return false;

@@ -124,7 +124,7 @@ static void take_mean(const brio_poles *poles, const uint32_t pole[4], double *p
     }
 }
 
-/* If doubles cannot hold an orthocentre, takes the mean of the four poles. */
+/* Takes the mean of the four poles where doubles cannot hold an orthocentre. */
 void brio_crust_positions(const brio_power_diagram *d, const uint32_t (*pole)[4], size_t count, double *position) {
     const brio_poles *poles = d->poles;
     brio_centres(&(brio_centre_batch){poles->centre, poles->square, pole, count}, position, NULL);

@@ -11,6 +11,7 @@
 #include "base/scale.h"
 #include "mesh/properties.h"
 #include "reconstruct/power_crust/power_crust.h"
+#include "reconstruct/surface/method.h"
 #include <float.h>
 #include <math.h>
 
@@ -74,6 +75,8 @@ static brio_status make_offset(brio_labeled_poles *l, const brio_surface_options
     if (status == BRIO_ERR_NO_ANSWER && o->distance < 0) return brio_fail(l->ctx, status, SWALLOWED, o->distance);
     return status;
 }
+
+brio_method_fn brio_offset_surface;
 
 brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points,
                                 const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats) {

@@ -4,6 +4,7 @@
  * Based on: Amenta, Choi, Kolluri. The power crust, unions of balls, and the medial axis transform. CGTA 2001.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, figure 3.7. */
 #include "reconstruct/power_crust/power_crust.h"
+#include "reconstruct/surface/method.h"
 #include "base/kept.h"
 #include "base/memory.h"
 #include "base/scale.h"
@@ -62,6 +63,8 @@ void brio_give_pole_stats(const brio_labeled_poles *l, brio_surface_stats *stats
     stats->delaunay_seconds = l->found.delaunay_seconds;
     stats->poles_seconds = l->found.poles_seconds;
 }
+
+brio_method_fn brio_power_crust;
 
 brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
                              const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats) {

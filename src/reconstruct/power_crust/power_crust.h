@@ -18,12 +18,4 @@ brio_status brio_make_crust(brio_labeled_poles *l, const brio_surface_options *o
 /** Copies what was counted of poles and of their samples. */
 void brio_give_pole_stats(const brio_labeled_poles *l, brio_surface_stats *stats);
 
-/** Makes a surface, as brio_surface describes it, in an empty mesh.   options  with their defaults.   stats  zeros. */
-brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num_points,
-                             const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats);
-
-/** Makes the offset of a power crust, likewise. */
-brio_status brio_offset_surface(brio_context *ctx, const double *points, size_t num_points,
-                                const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats);
-
 #endif

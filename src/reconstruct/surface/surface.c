@@ -1,86 +1,53 @@
-/* A surface through points: the methods, which options each of them has, and one call for all.
- *
- * A method is a row of METHODS and a function that fills a mesh: from options whose defaults are filled in and that are
- * all its own. It adds the property "sample" and, where options.normals asks for them, writes the normals of the
- * points. */
+/* A surface through points: one call for all methods of the table, whose options are checked and completed here. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/versioned.h"
 #include "order/canonical_points.h"
-#include "reconstruct/cocone/cocone.h"
-#include "reconstruct/labeled_delaunay/labeled_delaunay.h"
-#include "reconstruct/power_crust/power_crust.h"
+#include "reconstruct/surface/method.h"
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
-typedef brio_status method_fn(brio_context *ctx, const double *points, size_t num_points,
-                              const brio_surface_options *options, brio_mesh *mesh, brio_surface_stats *stats);
-
-static const struct {
-    const char *name;
-    method_fn *make;
-} METHODS[] = {
-    [BRIO_SURFACE_LABELED] = {"BRIO_SURFACE_LABELED", brio_labeled_delaunay},
-    [BRIO_SURFACE_POWER_CRUST] = {"BRIO_SURFACE_POWER_CRUST", brio_power_crust},
-    [BRIO_SURFACE_COCONE] = {"BRIO_SURFACE_COCONE", brio_cocone},
-    [BRIO_SURFACE_TIGHT_COCONE] = {"BRIO_SURFACE_TIGHT_COCONE", brio_cocone},
-    [BRIO_SURFACE_OFFSET] = {"BRIO_SURFACE_OFFSET", brio_offset_surface},
-};
-_Static_assert(sizeof METHODS / sizeof *METHODS == BRIO_SURFACE_END, "a row for each method");
-
-/* Sets of methods. */
-enum {
-    LABELED = 1 << BRIO_SURFACE_LABELED,
-    CRUST = 1 << BRIO_SURFACE_POWER_CRUST,
-    COCONE = 1 << BRIO_SURFACE_COCONE,
-    COCONES = COCONE | 1 << BRIO_SURFACE_TIGHT_COCONE,
-    OFFSET = 1 << BRIO_SURFACE_OFFSET
-};
-
-/* An option, whether it is set, and the methods that have it. */
-typedef struct {
-    const char *name;
-    bool set;
-    unsigned methods;
-} option_use;
-
-/* Writes the names of the methods of a set, with commas between. */
-static void list_methods(unsigned set, char *text, size_t room) {
+/* Writes the names of the methods that have an option, with commas between. */
+static void list_methods(const char *option, char *text, size_t room) {
     size_t used = 0;
     text[0] = 0;
-    for (int m = 0; m < BRIO_SURFACE_END; m++)
-        if (set >> m & 1 && used < room)
-            used += (size_t)snprintf(text + used, room - used, "%s%s", used ? ", " : "", METHODS[m].name);
+    for (int m = 0; m < BRIO_SURFACE_END; m++) {
+        if (brio_surface_method_has((brio_surface_method)m, option) && used < room)
+            used += (size_t)snprintf(text + used, room - used, "%s%s", used ? ", " : "",
+                                     brio_method_row_of((brio_surface_method)m)->enumerator);
+    }
 }
 
-/* Options of another method are a mistake. */
+/* Refuses options of another method, which are a mistake. */
 static brio_status check_uses(brio_context *ctx, const brio_surface_options *o) {
-    const option_use uses[] = {{"noise", o->noise == BRIO_NOISE_SMOOTH, LABELED | CRUST | OFFSET},
-                               {"evidence", o->evidence != NULL, LABELED | COCONES},
-                               {"normals", o->normals != NULL, LABELED | CRUST | COCONES},
-                               {"open", o->open != 0, LABELED | CRUST},
-                               {"holes", o->holes == BRIO_HOLES_CLOSED, LABELED | CRUST | OFFSET | (COCONES ^ COCONE)},
-                               {"simplify", o->simplify != 0, LABELED | CRUST | OFFSET},
-                               {"confidence", o->confidence != 0, LABELED},
-                               {"polygons", o->polygons != 0, CRUST | OFFSET},
-                               {"distance", o->distance != 0, OFFSET},
-                               {"poles.labeling", o->poles.labeling != 0, CRUST | OFFSET},
-                               {"poles.sharp", o->poles.sharp != 0, CRUST | OFFSET},
-                               {"poles.sampling_density", o->poles.sampling_density != 0, CRUST | OFFSET},
-                               {"poles.solid", o->poles.solid != NULL, CRUST | OFFSET},
-                               {"theta", o->theta != 0, COCONES},
-                               {"boundaries", o->boundaries != 0, COCONES},
-                               {"density", o->density != 0, COCONES},
-                               {"pieces", o->pieces > 1, COCONE},
-                               {"extraction", o->extraction != 0, COCONE}};
+    const struct {
+        const char *name;
+        bool set;
+    } uses[] = {{"noise", o->noise == BRIO_NOISE_SMOOTH},
+                {"evidence", o->evidence != NULL},
+                {"normals", o->normals != NULL},
+                {"open", o->open != 0},
+                {"holes", o->holes == BRIO_HOLES_CLOSED},
+                {"simplify", o->simplify != 0},
+                {"confidence", o->confidence != 0},
+                {"polygons", o->polygons != 0},
+                {"distance", o->distance != 0},
+                {"poles.labeling", o->poles.labeling != 0},
+                {"poles.sharp", o->poles.sharp != 0},
+                {"poles.sampling_density", o->poles.sampling_density != 0},
+                {"poles.solid", o->poles.solid != NULL},
+                {"theta", o->theta != 0},
+                {"boundaries", o->boundaries != 0},
+                {"density", o->density != 0},
+                {"pieces", o->pieces > 1},
+                {"extraction", o->extraction != 0}};
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
         char names[160];
-        if (!uses[i].set || uses[i].methods >> o->method & 1) continue;
-        list_methods(uses[i].methods, names, sizeof names);
+        if (!uses[i].set || brio_surface_method_has(o->method, uses[i].name)) continue;
+        list_methods(uses[i].name, names, sizeof names);
         return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s is an option of %s, and the method is %s", uses[i].name, names,
-                         METHODS[o->method].name);
+                         brio_method_row_of(o->method)->enumerator);
     }
     return BRIO_OK;
 }
@@ -116,7 +83,7 @@ brio_status brio_surface(brio_context *ctx, const double *points, size_t num_poi
     BRIO_TRY(settle(ctx, options, &o));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
-    BRIO_TRY(METHODS[o.method].make(ctx, points, num_points, &o, mesh, &s));
+    BRIO_TRY(brio_method_row_of(o.method)->make(ctx, points, num_points, &o, mesh, &s));
     *out = mesh;
     mesh = NULL;
 done:
