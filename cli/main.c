@@ -160,7 +160,7 @@ static int unknown_command(const char *name, bool json) {
     return finish(&r, cli_fail(&r, BRIO_ERR_ARGUMENT, "unknown command '%s'", name));
 }
 
-/* Runs brio help [COMMAND|methods]. */
+/* Runs brio help [COMMAND|methods|formats]. */
 static int help(int argc, char **argv) {
     const char *subject = argc > 0 ? argv[0] : "--help";
     const command *c = cli_find_command(subject);
@@ -168,6 +168,8 @@ static int help(int argc, char **argv) {
         cli_print_command_help(stdout, c, has_flag(argc, argv, "--verbose"));
     else if (!strcmp(subject, "methods"))
         cli_print_advice(stdout);
+    else if (!strcmp(subject, "formats"))
+        cli_print_formats(stdout, has_flag(argc, argv, "--json"));
     else if (subject[0] == '-' || !strcmp(subject, "help"))
         cli_print_help(stdout);
     else

@@ -142,8 +142,8 @@ static brio_status alpha(run *r) {
     brio_status status = BRIO_OK;
     TRY(read_alpha(r, a, &value));
     TRY(cli_check_weights_options(r, &a->weights));
-    TRY(cli_require_output(r, cli_mesh_formats, a->filtration != NULL));
-    if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration, NULL));
+    TRY(cli_require_output(r, a->filtration != NULL));
+    if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration));
     TRY(cli_read_samples(r, r->operands[0], &input));
     TRY(cli_weights(r, &a->weights, input, &weights));
     TRY(cli_usual_points(r, input, weights, false, &usual));
@@ -173,7 +173,8 @@ const command cli_alpha = {
     .examples = "brio alpha points.ply --alpha auto -o shape.ply\nthe least alpha with all points in one solid\n"
                 "brio alpha points.ply --alpha 0.01 --filtration values.txt -o shape.ply\nall simplices and their "
                 "values as well\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

@@ -172,7 +172,7 @@ static brio_status compare(run *r) {
     brio_status status = BRIO_OK;
     if (!strcmp(r->operands[0], "-") && !strcmp(r->operands[1], "-"))
         FAIL(r, BRIO_ERR_ARGUMENT, "both inputs want standard input");
-    if (r->common.output) TRY(cli_require_output(r, cli_point_formats, false));
+    if (r->common.output) TRY(cli_require_output(r, false));
     for (int i = 0; i < 2; i++) TRY(cli_read(r, r->operands[i], &mesh[i]));
     if (mesh[0]->num_faces && mesh[1]->num_faces) {
         status = compare_surfaces(r, mesh[0], mesh[1]);
@@ -204,7 +204,8 @@ const command cli_compare = {
     .examples =
         "brio compare surface.ply truth.ply\nhow far they are apart\n"
         "brio compare scan.ply part.stl --within 0.1 -o checked.ply\nis every point within a tenth of the part?\n",
-    .outputs = "ply xyz pts txt csv asc tsv vtu vtp vtk las laz pcd npy glb",
+    .has_output = true,
+    .holds = CLI_POINTS,
     .output_optional = true,
     .group = GROUP_FILES,
     .min_operands = 2,

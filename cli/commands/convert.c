@@ -131,7 +131,7 @@ static brio_status convert(run *r) {
     facts lost = {0}, renamed = {0};
     brio_status status = BRIO_OK;
     if (!r->common.output) return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: expected A B, got one file");
-    TRY(cli_require_output(r, NULL, false));
+    TRY(cli_require_output(r, false));
     TRY(take_files(r, &from, &to));
     TRY(take_options(r, &o));
     to.moved = &moved;
@@ -170,7 +170,7 @@ const command cli_convert = {
         "brio convert scan.laz scan.ply\nevery property is kept\n"
         "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n"
         "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n",
-    .outputs = "ply xyz pts txt csv asc tsv obj off stl vtu vtp vtk node las laz pcd npy glb e57 ptx",
+    .has_output = true,
     .output_optional = true,
     .group = GROUP_FILES,
     .min_operands = 1,

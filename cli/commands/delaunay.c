@@ -128,8 +128,6 @@ static const option options[] = {
 
 static const arguments defaults = {
     .weights.exponent = NO_EXPONENT, .order = NO_ORDER_OPTIONS, .subgraph = SUBGRAPH_FITTING, .plane = NO_PLANE};
-static const brio_format formats[] = {BRIO_FORMAT_VTU, BRIO_FORMAT_VTK, BRIO_FORMAT_PLY, BRIO_FORMAT_NODE,
-                                      BRIO_FORMAT_AUTO};
 
 static brio_order insertion_order(const arguments *a) {
     bool random = a->order.order == FITTING_ORDER && a->locate == (int)BRIO_LOCATION_TRACE;
@@ -143,7 +141,7 @@ static brio_status check_plane(run *r, const arguments *a) {
     if (three)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--plane goes with orders, --verify and weights, not with locations or records");
-    return cli_require_output(r, cli_mesh_formats, true);
+    return cli_require_output_holding(r, CLI_SURFACES, true);
 }
 
 /* Refuses the files beside .node and .ele where these are not written. */
@@ -166,7 +164,7 @@ static brio_status check_arguments(run *r, const arguments *a) {
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(check_beside_node(r, a));
     if (a->plane != NO_PLANE) return check_plane(r, a);
-    TRY(cli_require_output(r, formats, true));
+    TRY(cli_require_output(r, true));
     const char *output = r->common.output;
     if (output && cli_is_single(output) && r->common.format && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele",
@@ -366,13 +364,14 @@ const command cli_delaunay = {
     .description =
         "Exact for every input: duplicates, grids, points in a plane. The result is the same for every order of the "
         "points and every number of threads. Without -o the result is reported and not written. "
-        "With --plane the output is .ply .obj .off .stl .vtu or .vtp.",
+        "With --plane the output is one that 'brio hull' writes, too.",
     .examples =
         "brio delaunay points.ply -o tetrahedra.vtu\ntetrahedra for ParaView\n"
         "brio delaunay points.xyz --verify\nchecks the result exactly; writes nothing\n"
         "brio delaunay lidar.las --plane xy -o terrain.ply\ntriangles over the ground: terrain\n"
         "brio delaunay atoms.xyz --weights radii2.txt -o regular.vtu\nregular triangulation, one weight a line\n",
-    .outputs = "vtu vtk ply node",
+    .has_output = true,
+    .holds = CLI_TETRAHEDRA,
     .output_optional = true,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,

@@ -98,9 +98,9 @@ static brio_status check_arguments(run *r, const arguments *a, brio_kind kind) {
     if (a->truth_resolution && (a->truth_resolution < 4 || a->truth_resolution > 32768))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--truth-resolution: %llu is not between 4 and 32768",
                         (unsigned long long)a->truth_resolution);
-    FORWARD(cli_require_output(r, NULL, false));
+    FORWARD(cli_require_output(r, false));
     if (!a->truth) return BRIO_OK;
-    return cli_check_beside(r, "truth", a->truth, cli_mesh_formats);
+    return cli_check_mesh_beside(r, "truth", a->truth, CLI_SURFACES);
 }
 
 static brio_status write_truth(run *r, const arguments *a) {
@@ -141,7 +141,7 @@ static brio_status generate_solid(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
     if (a->points != NO_COUNT || has_scan_options(a))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "a solid takes --kind, --seed and --resolution, and no number of points");
-    TRY(cli_require_output(r, cli_mesh_formats, false));
+    TRY(cli_require_output_holding(r, CLI_SURFACES, false));
     TRY(brio_generate_solid(r->ctx, kind, r->common.seed, (size_t)a->resolution, &mesh));
     cli_lap(r, "generate");
     cli_fact_count(&r->facts, "vertices", mesh->num_vertices);
@@ -168,7 +168,7 @@ const command cli_generate = {
     .examples = "brio generate scan -n 60000 -o scan.ply\na simulated laser scan of a sculpture of genus 3\n"
                 "brio generate cube -n 1e6 -o cube.ply\nuniform in a cube\n"
                 "brio generate solid --kind machined --seed 7 -o part.ply\na random machine part, as a mesh\n",
-    .outputs = CLI_POINT_OUTPUTS " obj off stl",
+    .has_output = true,
     .choices = kinds,
     .group = GROUP_FILES,
     .min_operands = 1,

@@ -50,7 +50,7 @@ static brio_status hull(run *r) {
     uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
     TRY(cli_check_order(r, &a->order, cli_order_of(&a->order)));
-    TRY(cli_require_output(r, cli_mesh_formats, false));
+    TRY(cli_require_output(r, false));
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_require_memory(r, cli_hull_bytes(input)));
     o.polygons = a->polygons;
@@ -80,7 +80,8 @@ const command cli_hull = {
     .summary = "convex hull of points; flat ones are a polygon or an edge",
     .examples = "brio hull points.ply -o hull.ply\ntriangles\n"
                 "brio hull points.ply --polygons -o hull.off\none polygon for each facet\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

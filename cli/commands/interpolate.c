@@ -34,7 +34,7 @@ static bool wants_table(const run *r) {
 
 static brio_status check_arguments(run *r, const arguments *a) {
     if (!a->property) return cli_fail(r, BRIO_ERR_ARGUMENT, "no property: --property NAME is missing");
-    return wants_table(r) ? cli_require_table(r) : cli_require_output(r, cli_point_formats, false);
+    return wants_table(r) ? cli_require_table(r) : cli_require_output(r, false);
 }
 
 static brio_status values_of(run *r, const brio_mesh *points, const char *name, double **values) {
@@ -121,7 +121,8 @@ const command cli_interpolate = {
         "brio interpolate stations.csv --at places.xyz --property temperature -o values.csv\nby natural neighbours\n"
         "brio interpolate stations.csv --at places.csv --plane xy --property depth -o values.csv\nover a map: columns "
         "x, y, depth\n",
-    .outputs = CLI_POINT_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_POINTS,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,

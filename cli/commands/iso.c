@@ -37,7 +37,7 @@ static brio_status check_arguments(run *r, const arguments *a) {
     if (a->vertices && a->resolution)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "-n chooses the resolution: give one of -n and --resolution");
     brio_status status = cli_require_output_for(r, "vertex-normals", a->vertex_normals);
-    return status == BRIO_OK ? cli_require_output(r, cli_mesh_formats, false) : status;
+    return status == BRIO_OK ? cli_require_output(r, false) : status;
 }
 
 static brio_status iso(run *r) {
@@ -76,8 +76,9 @@ const command cli_iso = {
     .examples =
         "brio iso emd_1234.map --level 2 --sigma -o surface.ply\ntwo standard deviations above the mean of the map\n"
         "brio iso 1abc.pdb --level 1 -n 50000 -o molecule.ply\natoms at their own radii, about 50000 vertices\n",
-    .inputs = "map mrc ccp4 pdb ent",
-    .outputs = CLI_MESH_OUTPUTS,
+    .inputs = ".map .mrc .ccp4 .pdb .ent",
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

@@ -73,7 +73,8 @@ const command cli_locate = {
     .summary = "the tetrahedron that holds each place (-1 outside), and the nearest vertex",
     .examples = "brio locate points.ply --at places.xyz -o tetrahedra.csv\na row for each place\n"
                 "brio locate stations.csv --at places.csv --plane xy -o triangles.csv\ntriangles of a map\n",
-    .outputs = "csv npy",
+    .has_output = true,
+    .outputs = ".csv .npy",
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,

@@ -45,13 +45,11 @@ static const option options[] = {
 static const arguments defaults = {.labeling = LABELS_OF_INPUT};
 static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
 static const double SPACING = 0.01;                 /* of samples, in diagonals of the mesh; chosen */
-static const brio_format formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_VTP, BRIO_FORMAT_VTU,
-                                      BRIO_FORMAT_VTK, BRIO_FORMAT_XYZ, BRIO_FORMAT_AUTO};
 
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
     if (a->scale != 0 && a->scale < 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "--scale: %g is less than 1", a->scale);
-    if (a->crust) FORWARD(cli_check_beside(r, "crust", a->crust, cli_mesh_formats));
+    if (a->crust) FORWARD(cli_check_mesh_beside(r, "crust", a->crust, CLI_SURFACES));
     return BRIO_OK;
 }
 
@@ -119,12 +117,12 @@ static void report(run *r, const brio_power_shape_options *o, const brio_power_s
     cli_fact_count(f, "tetrahedra", s->tetrahedra);
 }
 
-/* Writes the shape. A VTP file and a text of points cannot hold tetrahedra: they are left out there. */
+/* Writes the shape. Tetrahedra are left out of files that cannot hold them, such as a VTP file. */
 static brio_status write_shape(run *r, brio_mesh *shape) {
     brio_format format;
     if (!r->common.output) return BRIO_OK; /* --json alone asks for the facts */
     FORWARD(cli_output_format(r, r->common.output, r->common.format, &format));
-    if ((format == BRIO_FORMAT_VTP || format == BRIO_FORMAT_XYZ) && shape->num_tetrahedra) {
+    if (shape->num_tetrahedra && !(brio_format_facts(format)->holds & BRIO_HOLDS_TETRAHEDRA)) {
         shape->num_tetrahedra = 0;
         cli_warn(r, WARNING_TETRAHEDRA, r->common.output);
     }
@@ -146,7 +144,7 @@ static brio_status medial(run *r) {
     int labeling = a->labeling;
     bool by_mesh;
     TRY(check_arguments(r));
-    TRY(cli_require_output(r, formats, false));
+    TRY(cli_require_output(r, false));
     TRY(cli_read(r, r->operands[0], &input));
     TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
     uint64_t work;
@@ -187,7 +185,8 @@ const command cli_medial = {
                    "finds the inside.",
     .examples = "brio medial scan.ply -o axis.vtp --simplify\nthe axis without what noise adds\n"
                 "brio medial mesh.off -o axis.ply --sides both\nof a closed mesh, inside and outside\n",
-    .outputs = "ply vtp vtu vtk xyz",
+    .has_output = true,
+    .holds = CLI_BALLS,
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

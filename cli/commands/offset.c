@@ -129,7 +129,7 @@ static brio_status offset(run *r) {
     bool by_mesh;
     if (isnan(a->distance)) FAIL(r, BRIO_ERR_ARGUMENT, "no distance: --distance D is missing");
     TRY(cli_require_output_for(r, "vertex-normals", a->vertex_normals));
-    TRY(cli_require_output(r, cli_mesh_formats, false));
+    TRY(cli_require_output(r, false));
     TRY(cli_read(r, r->operands[0], &points));
     TRY(cli_settle_labeling(r, points, &crust.labeling, &by_mesh));
     TRY(by_mesh ? offset_mesh(r, points, &surface) : offset_points(r, &crust, points, &surface));
@@ -158,7 +158,8 @@ const command cli_offset = {
         "brio offset scan.ply --distance 0.1 -o thicker.ply\n0.1 farther out\n"
         "brio offset mesh.ply --distance -0.1 -o thinner.ply\n0.1 farther in\n"
         "brio offset mesh.ply --distance 2 --error 0.001 -o far.ply\na thousandth of the unit from the exact offset\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

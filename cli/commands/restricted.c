@@ -57,7 +57,7 @@ static brio_status restricted(run *r) {
     if (!a->surface) FAIL(r, BRIO_ERR_ARGUMENT, "no surface: --surface FILE is missing");
     if (!strcmp(r->operands[0], "-") && !strcmp(a->surface, "-"))
         FAIL(r, BRIO_ERR_ARGUMENT, "the samples and --surface both want standard input");
-    TRY(cli_require_output(r, cli_mesh_formats, true));
+    TRY(cli_require_output(r, true));
     TRY(cli_read_points(r, r->operands[0], &samples));
     TRY(cli_read(r, a->surface, &surface));
     if (!surface->num_faces) FAIL(r, BRIO_ERR_FORMAT, "%s: expected a surface, found no faces", a->surface);
@@ -86,7 +86,8 @@ const command cli_restricted = {
         "are homeomorphic to the surface. Both are decided exactly. Exit code 5 says that the property does not hold.",
     .examples =
         "brio restricted samples.ply --surface mesh.ply -o triangles.ply\nalso says whether they are proven right\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .output_optional = true,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,

@@ -28,7 +28,7 @@ static brio_status simplify(run *r) {
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     if (!a->faces && !(a->error > 0)) FAIL(r, BRIO_ERR_ARGUMENT, "simplify: --faces N or --error D is missing");
-    TRY(cli_require_output(r, cli_mesh_formats, false));
+    TRY(cli_require_output(r, false));
     TRY(cli_read(r, r->operands[0], &mesh));
     if (!mesh->num_faces) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: has no faces", r->operands[0]);
     if (mesh->num_edges || mesh->num_tetrahedra)
@@ -61,7 +61,8 @@ const command cli_simplify = {
         "come to cross each other. Vertices and faces that stay keep their properties.",
     .examples = "brio simplify mesh.ply --faces 10000 -o small.ply\nat most 10,000 triangles\n"
                 "brio simplify mesh.stl --error 0.01 -o small.stl\nas few as stay within a hundredth\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,

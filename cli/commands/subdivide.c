@@ -29,7 +29,7 @@ static brio_status subdivide(run *r) {
     brio_status status = BRIO_OK;
     if (a->levels < 1 || a->levels > MOST_LEVELS)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--levels: %d is not between 1 and %d", a->levels, MOST_LEVELS);
-    TRY(cli_require_output(r, cli_mesh_formats, false));
+    TRY(cli_require_output(r, false));
     TRY(cli_read(r, r->operands[0], &mesh));
     TRY(check_mesh(r, a, mesh));
     TRY(brio_mesh_subdivide(r->ctx, mesh, a->levels, &fine));
@@ -52,7 +52,8 @@ const command cli_subdivide = {
     .operands = "IN",
     .summary = "smooth, denser mesh through the vertices of a triangle mesh",
     .examples = "brio subdivide mesh.ply --levels 2 -o fine.ply\neach triangle becomes sixteen\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,

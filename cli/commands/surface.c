@@ -542,9 +542,9 @@ static brio_status surface(run *r) {
     TRY(cli_check_evidence(r, &a->evidence));
     if (a->evidence.from && (a->crust.closed || a->pieces > 1))
         FAIL(r, BRIO_ERR_ARGUMENT, "--from and --%s exclude each other", a->crust.closed ? "closed" : "pieces");
-    TRY(cli_require_output(r, cli_mesh_formats, false));
-    if (a->crust.normals) TRY(cli_check_beside(r, "normals", a->crust.normals, cli_point_formats));
-    if (a->left_out) TRY(cli_check_beside(r, "left-out", a->left_out, cli_point_formats));
+    TRY(cli_require_output(r, false));
+    if (a->crust.normals) TRY(cli_check_mesh_beside(r, "normals", a->crust.normals, CLI_POINTS));
+    if (a->left_out) TRY(cli_check_mesh_beside(r, "left-out", a->left_out, CLI_POINTS));
     r->wants_origins =
         (method_of(a) == CURVES || has(method_of(a), "evidence")) && !a->evidence.ignore_origins && !a->evidence.from;
     TRY(cli_read_samples(r, r->operands[0], &points));
@@ -577,7 +577,8 @@ const command cli_surface = {
                 "brio surface scan.ply --closed -o solid.stl\nwithout holes, as a printer needs it\n"
                 "brio surface scan.las --open 5 --keep-largest -o surface.ply\nleaves holes over 5 point spacings "
                 "open, drops crumbs\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_SURFACES,
     .min_operands = 1,
     .max_operands = 1,

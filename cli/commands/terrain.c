@@ -224,7 +224,7 @@ static brio_status run_terrain(run *r) {
     terrain t = {0};
     brio_status status = BRIO_OK;
     if ((a->raster != NULL) != (a->cell > 0)) FAIL(r, BRIO_ERR_ARGUMENT, "--raster FILE and --cell SIZE go together");
-    TRY(cli_require_output(r, cli_mesh_formats, a->raster != NULL));
+    TRY(cli_require_output(r, a->raster != NULL));
     if (a->raster) TRY(cli_check_raster(r, a->raster));
     TRY(cli_read_points(r, r->operands[0], &t.points));
     size_t all = t.points->num_vertices;
@@ -255,7 +255,8 @@ const command cli_terrain = {
                 "and the rim\n"
                 "brio terrain survey.laz --class 2,8 --raster ground.tif --cell 1 -o ground.ply\nits heights, a metre "
                 "apart, too\n",
-    .outputs = CLI_MESH_OUTPUTS,
+    .has_output = true,
+    .holds = CLI_SURFACES,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,

@@ -70,7 +70,7 @@ static brio_status spanning_tree(run *r) {
     brio_mesh *points = NULL, *result = NULL;
     double *projected = NULL, bytes;
     brio_status status = BRIO_OK;
-    TRY(cli_require_output(r, cli_mesh_formats, true));
+    TRY(cli_require_output(r, true));
     TRY(cli_require_edges(r));
     TRY(cli_read_points(r, r->operands[0], &points));
     TRY(cli_delaunay_bytes(r, points, NULL, &o, &bytes));
@@ -98,7 +98,8 @@ const command cli_tree = {
         "is the same for every order of the points. Without -o it is reported and not written.",
     .examples = "brio tree points.ply -o tree.vtp\nedges for ParaView\n"
                 "brio tree lidar.las --plane xy -o tree.ply\nthe tree of the map, over the points in space\n",
-    .outputs = "ply vtp vtu vtk glb",
+    .has_output = true,
+    .holds = CLI_EDGES,
     .output_optional = true,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,

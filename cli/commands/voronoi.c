@@ -115,7 +115,7 @@ static brio_status require_output(run *r, brio_cells_format *format) {
     const common_options *c = &r->common;
     *format = BRIO_CELLS_FORMAT_AUTO;
     const arguments *a = r->arguments;
-    brio_status status = a->faces ? cli_check_beside(r, "faces", a->faces, NULL) : BRIO_OK;
+    brio_status status = a->faces ? cli_check_beside(r, "faces", a->faces) : BRIO_OK;
     if (status != BRIO_OK) return status;
     if (!c->output && (c->json || a->faces)) return BRIO_OK;
     if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
@@ -256,7 +256,8 @@ const command cli_voronoi = {
     .summary = "Voronoi cells of points, power cells with weights",
     .examples = "brio voronoi atoms.xyz --box 0,0,0,1,1,1 -o cells.vtu\ncells clipped to a box, for ParaView\n"
                 "brio voronoi atoms.xyz -o cells.csv\nvolume, area and centroid of each cell\n",
-    .outputs = "vtu npy csv",
+    .has_output = true,
+    .outputs = ".vtu .npy .csv",
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,

@@ -123,21 +123,8 @@ static bool is_gltf(const char *name) {
     return !strcasecmp(dot ? dot + 1 : name, "gltf");
 }
 
-/* Lists the extensions that are written: ".ply .xyz". */
-static void list_written(char text[256]) {
-    size_t used = 0;
-    for (int i = BRIO_FORMAT_AUTO + 1; i < BRIO_FORMAT_END; i++) {
-        const char *at = brio_format_facts((brio_format)i)->written;
-        while (*at && used < 240) {
-            size_t length = strcspn(at, " ");
-            used += (size_t)snprintf(text + used, 256 - used, "%s.%.*s", used ? " " : "", (int)length, at);
-            at += length + (at[length] == ' ');
-        }
-    }
-}
-
 brio_status cli_output_format(run *r, const char *path, const char *extension, brio_format *format) {
-    char written[256] = "";
+    char written[BRIO_FORMAT_LIST];
     *format = brio_format_of(extension ? extension : path);
     const brio_format_info *info = brio_format_facts(*format);
     if (info && is_gltf(extension ? extension : path))
@@ -145,7 +132,7 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
     if (info && !info->written[0])
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
     if (info) return BRIO_OK;
-    list_written(written);
+    brio_format_list(1, 0, written, sizeof written);
     if (extension) return cli_fail(r, BRIO_ERR_ARGUMENT, "--format %s: this version writes %s", extension, written);
     if (!strcmp(path, "-")) return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format");
     return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: this version writes %s; name one of these with --format", path, written);
@@ -264,12 +251,21 @@ brio_status cli_check_named_twice(run *r) {
     return BRIO_OK;
 }
 
-brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats) {
+static brio_status refuse_standard_output(run *r, const char *name, const char *path) {
+    if (!cli_goes_to_stdout(path)) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name);
+}
+
+brio_status cli_check_beside(run *r, const char *name, const char *path) {
+    FORWARD(refuse_standard_output(r, name, path));
+    return cli_check_target(r, path);
+}
+
+brio_status cli_check_mesh_beside(run *r, const char *name, const char *path, cli_holds holds) {
     brio_format format;
-    if (cli_goes_to_stdout(path)) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s: a file, not standard output", name);
-    if (formats) FORWARD(cli_output_format(r, path, NULL, &format));
-    for (; formats && *formats != format; formats++)
-        if (*formats == BRIO_FORMAT_AUTO)
-            return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold what --%s writes", path, name);
+    FORWARD(refuse_standard_output(r, name, path));
+    FORWARD(cli_output_format(r, path, NULL, &format));
+    if ((brio_format_facts(format)->holds & holds) != holds)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold what --%s writes", path, name);
     return cli_check_target(r, path);
 }

@@ -29,9 +29,10 @@ bool cli_same_file(const char *a, const char *b);
  *  operands and the options of kind OPTION_INPUT, outputs those of kind OPTION_OUTPUT. */
 brio_status cli_check_named_twice(run *r);
 
-/** Finds everything wrong with a file that an option wants beside -o: standard output, a format not among those of the
- *  list, a file that cannot be written.   formats  ended by BRIO_FORMAT_AUTO; NULL: any name. */
-brio_status cli_check_beside(run *r, const char *name, const char *path, const brio_format *formats);
+/** Finds everything wrong with a file that an option wants beside -o: standard output, or it cannot be written. */
+brio_status cli_check_beside(run *r, const char *name, const char *path);
+/** Finds the same, and whether the file's format holds what is written. */
+brio_status cli_check_mesh_beside(run *r, const char *name, const char *path, cli_holds holds);
 
 /** Finds the format that --format or the extension asks for; BRIO_FORMAT_AUTO with the reason stored when there is
  *  none. */

@@ -157,23 +157,31 @@ static bool single_is_harmful(const single_loss *l, char reason[200]) {
 
 /* --- what is said of it --- */
 
-brio_status cli_check_precision(run *r, const char *path, const brio_mesh *mesh) {
-    const common_options *c = &r->common;
-    single_loss l;
-    char reason[200];
-    if (!c->output || brio_format_of(c->format ? c->format : c->output) != BRIO_FORMAT_STL) return BRIO_OK;
-    brio_status status = cli_single_loss(r, mesh, &l);
-    if (status != BRIO_OK || !single_is_harmful(&l, reason)) return status;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s: a STL file has no other; .ply has double precision", path, reason);
-}
-
 static bool has(brio_format format, unsigned what) {
     return (brio_format_facts(format)->holds & what) == what;
 }
 
-/* Returns whether points are rounded to singles: a STL file's always, others' by choice. */
+/* Returns whether a format has coordinates in single precision and no other ones. */
+static bool has_singles_alone(brio_format format) {
+    const brio_format_info *info = brio_format_facts(format);
+    const unsigned others = BRIO_HOLDS_DOUBLES | BRIO_HOLDS_ORIGIN;
+    return info && info->holds & BRIO_HOLDS_SINGLES && !(info->holds & others);
+}
+
+brio_status cli_check_precision(run *r, const char *path, const brio_mesh *mesh) {
+    const common_options *c = &r->common;
+    single_loss l;
+    char reason[200];
+    if (!c->output || !has_singles_alone(brio_format_of(c->format ? c->format : c->output))) return BRIO_OK;
+    brio_status status = cli_single_loss(r, mesh, &l);
+    if (status != BRIO_OK || !single_is_harmful(&l, reason)) return status;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s: %s has no other; .ply has double precision", path, reason,
+                    brio_format_facts(brio_format_of(c->format ? c->format : c->output))->name);
+}
+
+/* Returns whether points are rounded to singles: where there is nothing else, or by choice. */
 static bool rounds(const brio_write_options *o) {
-    return o->format == BRIO_FORMAT_STL || (o->float32 && has(o->format, BRIO_HOLDS_SINGLES | BRIO_HOLDS_DOUBLES));
+    return has_singles_alone(o->format) || (o->float32 && has(o->format, BRIO_HOLDS_SINGLES | BRIO_HOLDS_DOUBLES));
 }
 
 static void tell_idle(run *r, const char *path, brio_format format) {
@@ -185,7 +193,7 @@ static size_t settle(run *r, const char *path, const single_loss *l, brio_write_
     char reason[200];
     bool harmful = single_is_harmful(l, reason);
     if (!harmful) return l->merged;
-    if (o->format == BRIO_FORMAT_STL) {
+    if (has_singles_alone(o->format)) {
         cli_warn(r, WARNING_SINGLE, path, reason);
         return l->merged;
     }

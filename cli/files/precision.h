@@ -4,7 +4,7 @@
 
 #include "cli/run/run.h"
 
-/** Refuses points that a STL file as output would ruin: the file has single precision alone. */
+/** Refuses points that an output with single precision alone, an STL file, would ruin. */
 brio_status cli_check_precision(run *r, const char *path, const brio_mesh *mesh);
 
 /** Takes back --float32 where it would merge points or move them far, or cannot hold a coordinate, and says so.

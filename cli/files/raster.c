@@ -33,7 +33,7 @@ static bool is_tiff(const char *path) {
 brio_status cli_check_raster(run *r, const char *path) {
     if (!is_tiff(path) && !has_extension(path, "asc"))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a raster is .asc (Esri's ASCII grid) or .tif (GeoTIFF)", path);
-    return cli_check_beside(r, "raster", path, NULL);
+    return cli_check_beside(r, "raster", path);
 }
 
 /* --- GeoTIFF --- */

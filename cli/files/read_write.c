@@ -16,9 +16,10 @@ static brio_status check_compress(run *r) {
     if (!c->compress || !c->output) return BRIO_OK;
     if (c->ascii) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress and --ascii: text is not compressed");
     const brio_format_info *info = brio_format_facts(brio_format_of(c->format ? c->format : c->output));
+    char others[BRIO_FORMAT_LIST];
     if (info && info->holds & BRIO_HOLDS_COMPRESSED) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can",
-                    c->output);
+    brio_format_list(1, BRIO_HOLDS_COMPRESSED, others, sizeof others);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot be compressed; %s can", c->output, others);
 }
 
 static bool names_output(const run *r) {
@@ -49,7 +50,7 @@ static brio_status refuse_idle(run *r) {
                  {"compress", c->compress && !written}};
     for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
         if (!given[i].idle) continue;
-        if (r->command->outputs) return cli_require_output_for(r, given[i].name, true);
+        if (r->command->has_output) return cli_require_output_for(r, given[i].name, true);
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s writes no file; --%s has no meaning here", r->command->name,
                         given[i].name);
     }
@@ -149,31 +150,24 @@ brio_status cli_read_samples(run *r, const char *path, brio_mesh **out) {
     return cli_drop_connectivity(r, *out);
 }
 
-const brio_format cli_mesh_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_OBJ, BRIO_FORMAT_OFF,
-                                        BRIO_FORMAT_STL, BRIO_FORMAT_VTU, BRIO_FORMAT_VTP,
-                                        BRIO_FORMAT_VTK, BRIO_FORMAT_GLB, BRIO_FORMAT_AUTO};
-
-const brio_format cli_point_formats[] = {BRIO_FORMAT_PLY, BRIO_FORMAT_XYZ,  BRIO_FORMAT_VTU, BRIO_FORMAT_VTK,
-                                         BRIO_FORMAT_VTP, BRIO_FORMAT_NODE, BRIO_FORMAT_LAS, BRIO_FORMAT_LAZ,
-                                         BRIO_FORMAT_NPY, BRIO_FORMAT_GLB,  BRIO_FORMAT_PCD, BRIO_FORMAT_AUTO};
-
-static brio_status check_format(run *r, const brio_format *formats, brio_format format) {
-    for (; formats && *formats != format; formats++)
-        if (*formats == BRIO_FORMAT_AUTO)
-            return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold the result of '%s'",
-                            r->common.output, r->command->name);
-    return BRIO_OK;
-}
-
-brio_status cli_require_output(run *r, const brio_format *formats, bool optional) {
+brio_status cli_require_output_holding(run *r, cli_holds holds, bool optional) {
     const common_options *c = &r->common;
     brio_format format;
     if (!c->output && (optional || c->json)) return BRIO_OK;
     if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
     FORWARD(cli_output_format(r, c->output, c->format, &format));
-    FORWARD(check_format(r, formats, format));
-    if (strcmp(c->output, "-")) FORWARD(cli_check_target(r, c->output));
-    return BRIO_OK;
+    const brio_format_info *info = brio_format_facts(format);
+    if ((info->holds & holds) != holds)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold the result of '%s'", c->output,
+                        r->command->name);
+    if (info->holds & BRIO_HOLDS_PLACES && cli_is_single(c->output))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: the beginning of %s is written last: that needs a file, no pipe",
+                        strcmp(c->output, "-") ? c->output : "standard output", info->name);
+    return strcmp(c->output, "-") ? cli_check_target(r, c->output) : BRIO_OK;
+}
+
+brio_status cli_require_output(run *r, bool optional) {
+    return cli_require_output_holding(r, r->command->holds, optional);
 }
 
 static brio_status write_file(run *r, const char *path, const char *extension, const brio_mesh *mesh) {

@@ -30,18 +30,15 @@ brio_status cli_read_points(run *r, const char *path, brio_mesh **out);
 /** Reads the same for a command that makes a surface of the points: warns where the file has one already. */
 brio_status cli_read_samples(run *r, const char *path, brio_mesh **out);
 
-/** The formats of surfaces; BRIO_FORMAT_AUTO ends the list. */
-extern const brio_format cli_mesh_formats[];
-/** Those of points with properties. */
-extern const brio_format cli_point_formats[];
-
 /** Refuses an option, where it was given, about a file that is not written. */
 brio_status cli_require_output_for(run *r, const char *option, bool given);
 
-/** Finds everything wrong with -o that can be found before the work: no output, no format, a format not among those of
- *  `formats` (ended by BRIO_FORMAT_AUTO; NULL: any), a folder that cannot be written.   optional  the command has a use
- *  without -o also when it does not report as JSON. */
-brio_status cli_require_output(run *r, const brio_format *formats, bool optional);
+/** Finds everything wrong with -o that can be found before the work: no output, no format, a format that does not hold
+ *  what the command writes, a pipe where it needs a file, a folder that cannot be written.
+ *  optional  the command has a use without -o also when it does not report as JSON. */
+brio_status cli_require_output(run *r, bool optional);
+/** Finds the same where an option changes what the command writes. */
+brio_status cli_require_output_holding(run *r, cli_holds holds, bool optional);
 /** Writes to -o, or does nothing without it. The time is lapped as `write`. */
 brio_status cli_write(run *r, const brio_mesh *mesh);
 /** Writes to another file, by its extension. */

@@ -2,9 +2,41 @@
 #include "cli/help/help.h"
 #include "cli/run/commands.h"
 #include "cli/report/glossary.h"
-#include "cli/help/manual.h"
 #include <string.h>
 #include <sys/ioctl.h>
+
+const manual_entry cli_exit_codes[] = {
+    {"0", "done"},
+    {"1", "wrong usage"},
+    {"2", "an input is missing, unreadable or malformed"},
+    {"3", "the input has no answer, as the surface of three points has none"},
+    {"4", "not enough memory, or over --max-memory"},
+    {"5", "the result, or the file of `brio check`, does not check"},
+    {"6", "the output could not be written"},
+    {"130", "interrupted: at most half a second of processor time after the signal"},
+    {NULL, NULL},
+};
+
+const manual_entry cli_advice[] = {
+    {"brio surface IN -o OUT", "points of a surface, noisy or not; open where they end; no normals needed. Start here"},
+    {"brio surface IN --method cocone -o OUT", "an open surface: a shell, a part of an object; clean points"},
+    {"brio surface IN --closed -o OUT", "a scan with holes, to be closed all over"},
+    {"brio surface IN --noise smooth -o OUT", "noise that you see but the report does not (`smoothed`)"},
+    {"brio surface IN --sharp -R 0.4 -o OUT", "machine parts whose sharp edges have no points on them"},
+    {"brio surface IN --method tight-cocone -o OUT", "clean, dense points of a closed object: all of them vertices"},
+    {"brio surface IN --method cocone --pieces 30 -o OUT", "more points than memory; clean ones"},
+    {"brio delaunay IN --plane xy -o OUT", "terrain: one height at each place, as from the air"},
+    {"brio alpha IN --alpha auto -o OUT", "points throughout a volume, not only on its surface"},
+    {"brio hull IN -o OUT", "the convex hull"},
+    {"brio iso MAP --level L -o OUT", "values on a grid, or atoms, and not points of a surface"},
+    {"brio medial IN -o OUT", "the medial axis: the balls that fill the object"},
+    {"brio offset IN --distance D -o OUT", "the surface at a distance from the object"},
+    {NULL, NULL},
+};
+
+const char *const cli_group_titles[] = {"meshes and files", "surfaces", "triangulations and cells", NULL};
+
+/* --- lines --- */
 
 enum { USUAL = 80, MOST = 100, FEWEST = 30, COLUMN = 28, NARROW = 60 };
 
@@ -33,8 +65,7 @@ void cli_print_wrapped(FILE *out, const char *text, int at, int indent, int colu
     fputc('\n', out);
 }
 
-/* Prints a term at the left and its meaning at the right, below it where there is no room. */
-static void print_entry(FILE *out, const char *term, const char *meaning, int left, int column) {
+void cli_print_entry(FILE *out, const char *term, const char *meaning, int left, int column) {
     int columns = cli_columns(out), length = left + (int)strlen(term);
     if (columns < NARROW) column = left + 6;
     fprintf(out, "%*s%s", left, "", term);
@@ -47,7 +78,7 @@ static void print_entry(FILE *out, const char *term, const char *meaning, int le
 
 static void print_entries(FILE *out, const char *title, const manual_entry *entries, int column) {
     fprintf(out, "\n%s:\n", title);
-    for (; entries->name; entries++) print_entry(out, entries->name, entries->text, 2, column);
+    for (; entries->name; entries++) cli_print_entry(out, entries->name, entries->text, 2, column);
 }
 
 /* --- options --- */
@@ -68,7 +99,7 @@ static void print_option(FILE *out, const option *row) {
     if (cli_has_choices(row) && !explained) cli_list_words(cli_choice_name, row, choices, sizeof choices);
     snprintf(meaning, sizeof meaning, "%s%s%s%s", row->meaning, *choices ? "; one of " : "", choices,
              explained ? ":" : "");
-    print_entry(out, left, meaning, 2, COLUMN);
+    cli_print_entry(out, left, meaning, 2, COLUMN);
 }
 
 /* Prints what the methods among the choices of a row are good for. */
@@ -88,24 +119,13 @@ static void print_options(FILE *out, const char *title, const option *rows) {
         if (row->kind == OPTION_TITLE)
             print_title(out, row->meaning);
         else if (row->kind == OPTION_NOTE)
-            print_entry(out, row->name, row->meaning, indent, COLUMN);
+            cli_print_entry(out, row->name, row->meaning, indent, COLUMN);
         else
             print_option(out, row), print_words(out, row);
     }
 }
 
 /* --- one command --- */
-
-static void print_extensions(FILE *out, const char *title, const char *extensions) {
-    char list[256];
-    size_t used = 0;
-    for (const char *e = extensions; *e && used + 2 < sizeof list; e++) {
-        if (e == extensions || e[-1] == ' ') list[used++] = '.';
-        list[used++] = *e;
-    }
-    list[used] = 0;
-    print_entry(out, title, list, 0, 10);
-}
 
 static void print_examples(FILE *out, const char *examples) {
     fputs("\nexamples:\n", out);
@@ -122,14 +142,14 @@ static void print_glossary(FILE *out, const char *name, const char *parent, int 
         bool hidden = line->level == LINE_JSON || !cli_glossary_fits(line, name, parent);
         if (hidden || cli_glossary_find(name, parent, line->key) != line) continue;
         cli_glossary_label(line, line->key, label, sizeof label);
-        print_entry(out, label, line->meaning, left, COLUMN);
+        cli_print_entry(out, label, line->meaning, left, COLUMN);
         if (!parent) print_glossary(out, name, line->key, left + 2);
     }
 }
 
 void cli_print_command_help(FILE *out, const command *c, bool verbose) {
-    char usage[128];
-    const char *output = !c->outputs ? "" : c->output_optional ? " [-o FILE]" : " -o FILE";
+    char usage[128], inputs[BRIO_FORMAT_LIST], outputs[BRIO_FORMAT_LIST];
+    const char *output = !c->has_output ? "" : c->output_optional ? " [-o FILE]" : " -o FILE";
     snprintf(usage, sizeof usage, "usage: brio %s %s%s [options]", c->name, c->operands, output);
     cli_print_wrapped(out, usage, 0, 4, cli_columns(out));
     fputc('\n', out);
@@ -139,11 +159,13 @@ void cli_print_command_help(FILE *out, const command *c, bool verbose) {
         cli_print_wrapped(out, c->description, 0, 0, cli_columns(out));
     }
     fputc('\n', out);
-    if (!c->choices) print_extensions(out, "reads:", c->inputs ? c->inputs : CLI_INPUTS);
-    if (c->outputs) print_extensions(out, "writes:", c->outputs);
+    cli_list_inputs(c, inputs);
+    cli_list_outputs(c, outputs);
+    if (*inputs) cli_print_entry(out, "reads:", inputs, 0, 10);
+    if (*outputs) cli_print_entry(out, "writes:", outputs, 0, 10);
     print_options(out, "options", c->options);
     print_options(out, "options of every command", cli_common_options);
-    print_entry(out, "-h, --help", "print this", 2, COLUMN);
+    cli_print_entry(out, "-h, --help", "print this", 2, COLUMN);
     if (c->examples) print_examples(out, c->examples);
     fputc('\n', out);
     if (verbose) {
@@ -160,7 +182,7 @@ static void print_commands(FILE *out, int group) {
     fprintf(out, "\n%s:\n", cli_group_titles[group]);
     for (size_t i = 0; cli_commands[i]; i++)
         if ((int)cli_commands[i]->group == group)
-            print_entry(out, cli_commands[i]->name, cli_commands[i]->summary, 2, 15);
+            cli_print_entry(out, cli_commands[i]->name, cli_commands[i]->summary, 2, 15);
 }
 
 void cli_print_help(FILE *out) {
@@ -170,10 +192,12 @@ void cli_print_help(FILE *out) {
           out);
     for (int i = 0; i < 3; i++) print_commands(out, order[i]);
     fputs("\nhelp:\n", out);
-    print_entry(out, "brio help COMMAND", "the options of a command, with examples; also brio COMMAND --help", 2,
-                COLUMN);
-    print_entry(out, "brio help methods", "which command and method fits which points", 2, COLUMN);
-    print_entry(out, "brio --version", "the version; also brio -V", 2, COLUMN);
+    cli_print_entry(out, "brio help COMMAND", "the options of a command, with examples; also brio COMMAND --help", 2,
+                    COLUMN);
+    cli_print_entry(out, "brio help methods", "which command and method fits which points", 2, COLUMN);
+    cli_print_entry(out, "brio help formats", "the formats of files, and what each holds; with --json for programs", 2,
+                    COLUMN);
+    cli_print_entry(out, "brio --version", "the version; also brio -V", 2, COLUMN);
     print_entries(out, "exit codes", cli_exit_codes, 8);
     fputc('\n', out);
     cli_print_wrapped(out,
@@ -184,7 +208,7 @@ void cli_print_help(FILE *out) {
 
 void cli_print_advice(FILE *out) {
     fputs("Which command and method fits which points:\n\n", out);
-    for (const manual_entry *e = cli_advice; e->name; e++) print_entry(out, e->name, e->text, 2, 8);
+    for (const manual_entry *e = cli_advice; e->name; e++) cli_print_entry(out, e->name, e->text, 2, 8);
     fputc('\n', out);
     cli_print_wrapped(out,
                       "What each guarantees, what it costs and how often it is right is in which-method.md, among "

@@ -36,7 +36,8 @@ static void write_commands(FILE *out) {
 
 /* Writes what stands behind an option that takes a value. */
 static void write_values(FILE *out, const command *c, const option *row) {
-    const char *extensions = pages_extensions(c, row);
+    char extensions[BRIO_FORMAT_LIST];
+    pages_list_extensions(c, row, extensions);
     if (!row->value || row->kind & OPTION_OPTIONAL) return; /* a file may stand behind it */
     fprintf(out, "    %s:--%s", c->name, row->name);
     if (row->letter) fprintf(out, " | %s:-%c", c->name, row->letter);
@@ -47,11 +48,11 @@ static void write_values(FILE *out, const command *c, const option *row) {
         for (size_t i = 0; (word = cli_choice_name(row, i)); i++) fprintf(out, "%s ", word);
         fputs("\"", out);
     } else if (!strcmp(row->value, "EXT")) {
-        fprintf(out, "_brio_words \"%s\"", extensions ? extensions : "");
+        fprintf(out, "_brio_words \"%s\"", extensions);
     } else if (!strcmp(row->value, "DIR")) {
         fputs("_brio_folders", out);
     } else if (!strcmp(row->value, "FILE")) {
-        fprintf(out, "_brio_files \"%s\"", extensions ? extensions : "");
+        fprintf(out, "_brio_files \"%s\"", extensions);
     } else {
         fputs(":", out);
     }
@@ -79,7 +80,9 @@ static void write_command(FILE *out, const command *c) {
         for (const option_choice *choice = c->choices; choice->name; choice++) fprintf(out, "%s ", choice->name);
         fputs("\"\n", out);
     } else {
-        fprintf(out, "_brio_files \"%s\"\n", pages_inputs(c));
+        char inputs[BRIO_FORMAT_LIST];
+        pages_list_inputs(c, inputs);
+        fprintf(out, "_brio_files \"%s\"\n", inputs);
     }
     fputs("        fi\n        ;;\n", out);
 }
@@ -95,7 +98,7 @@ void pages_write_bash(FILE *out) {
     }
     fputs("    esac\n    case ${COMP_WORDS[1]} in\n    help) _brio_words \"", out);
     write_commands(out);
-    fputs("methods\" ;;\n", out);
+    fputs("methods formats\" ;;\n", out);
     for (size_t i = 0; cli_commands[i]; i++) write_command(out, cli_commands[i]);
     fputs("    esac\n}\n\ncomplete -F _brio brio\n", out);
 }

@@ -1,6 +1,6 @@
 /* Manual pages in the language of man(7). */
 #include "cli/report/glossary.h"
-#include "cli/help/manual.h"
+#include "cli/help/help.h"
 #include "cli/pages/pages.h"
 #include <ctype.h>
 #include <string.h>
@@ -170,15 +170,9 @@ static void put_report(FILE *out, const char *name) {
 /* --- pages --- */
 
 static void put_extensions(FILE *out, const char *title, const char *extensions) {
-    char list[256];
-    size_t used = 0;
-    for (const char *e = extensions; *e && used + 2 < sizeof list; e++) {
-        if (e == extensions || e[-1] == ' ') list[used++] = '.';
-        list[used++] = *e;
-    }
-    list[used] = 0;
+    if (!*extensions) return;
     fprintf(out, ".PP\n%s\n", title);
-    put_line(out, list);
+    put_line(out, extensions);
 }
 
 static void put_examples(FILE *out, const char *examples) {
@@ -193,15 +187,17 @@ static void put_examples(FILE *out, const char *examples) {
 }
 
 void pages_write_command_manual(FILE *out, const command *c, const char *date) {
-    char name[64];
+    char name[64], inputs[BRIO_FORMAT_LIST], outputs[BRIO_FORMAT_LIST];
+    cli_list_inputs(c, inputs);
+    cli_list_outputs(c, outputs);
     snprintf(name, sizeof name, "brio-%s", c->name);
     put_header(out, name, date, c->summary);
     fprintf(out, ".SH SYNOPSIS\n.B brio %s\n.I %s\n", c->name, c->operands);
-    if (c->outputs) fputs(c->output_optional ? "[\\fB\\-o\\fR \\fIFILE\\fR]\n" : ".B \\-o\n.I FILE\n", out);
+    if (c->has_output) fputs(c->output_optional ? "[\\fB\\-o\\fR \\fIFILE\\fR]\n" : ".B \\-o\n.I FILE\n", out);
     fputs("[options]\n.SH DESCRIPTION\n", out);
     put_line(out, c->description ? c->description : c->summary);
-    if (!c->choices) put_extensions(out, "Reads", pages_inputs(c));
-    if (c->outputs) put_extensions(out, "Writes", c->outputs);
+    put_extensions(out, "Reads", inputs);
+    put_extensions(out, "Writes", outputs);
     if (c->options[0].kind) put_title(out, "SH", "Options");
     put_options(out, c->options);
     put_title(out, "SH", "Options of every command");
@@ -215,7 +211,8 @@ void pages_write_command_manual(FILE *out, const command *c, const char *date) {
 
 void pages_write_manual(FILE *out, const char *date) {
     put_header(out, "brio", date, "exact Delaunay triangulations, and surfaces from points");
-    fputs(".SH SYNOPSIS\n.B brio\n.I COMMAND\n[options]\n.I INPUT\n.PP\n.B brio help\n[\\fICOMMAND\\fR|methods]\n",
+    fputs(".SH SYNOPSIS\n.B brio\n.I COMMAND\n[options]\n.I INPUT\n.PP\n.B brio "
+          "help\n[\\fICOMMAND\\fR|methods|formats]\n",
           out);
     put_title(out, "SH", "Commands");
     for (size_t i = 0; cli_commands[i]; i++) {

@@ -4,13 +4,24 @@
 #include <errno.h>
 #include <string.h>
 
-const char *pages_inputs(const command *c) {
-    return c->choices ? "" : c->inputs ? c->inputs : CLI_INPUTS;
+/* Takes the dots off a list of extensions. */
+static void drop_dots(char *text) {
+    char *to = text;
+    for (const char *from = text; *from; from++)
+        if (*from != '.') *to++ = *from;
+    *to = 0;
 }
 
-const char *pages_extensions(const command *c, const option *row) {
-    if (!strcmp(row->name, "output") || !strcmp(row->name, "format")) return c->outputs ? c->outputs : "";
-    return !strcmp(row->name, "input-format") ? pages_inputs(c) : NULL;
+void pages_list_inputs(const command *c, char *text) {
+    cli_list_inputs(c, text);
+    drop_dots(text);
+}
+
+void pages_list_extensions(const command *c, const option *row, char *text) {
+    text[0] = 0;
+    if (!strcmp(row->name, "output") || !strcmp(row->name, "format")) cli_list_outputs(c, text);
+    if (!strcmp(row->name, "input-format")) cli_list_inputs(c, text);
+    drop_dots(text);
 }
 
 /* Opens a page. Returns NULL, with a message, when the file cannot be written. */

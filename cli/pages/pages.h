@@ -17,10 +17,9 @@ void pages_write_bash(FILE *out);
 /** Writes the completion of zsh. */
 void pages_write_zsh(FILE *out);
 
-/** Extensions of the files that a command reads, with blanks between; empty when its operand is no file. */
-const char *pages_inputs(const command *c);
-
-/** Extensions of the files that an option of a command names; NULL when it names no file or any file. */
-const char *pages_extensions(const command *c, const option *row);
+/** Lists extensions without dots, "ply vtu": of the files that a command reads, and of those that an option names; ""
+ *  where that is no file, or any file.   text  of BRIO_FORMAT_LIST bytes, receives the list. */
+void pages_list_inputs(const command *c, char *text);
+void pages_list_extensions(const command *c, const option *row, char *text);
 
 #endif

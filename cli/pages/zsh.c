@@ -15,7 +15,7 @@ static void put_text(FILE *out, const char *text) {
 
 /* Writes ply|xyz, of "ply xyz". */
 static void put_files(FILE *out, const char *extensions) {
-    if (!extensions || !*extensions) {
+    if (!*extensions) {
         fputs("_files", out);
         return;
     }
@@ -33,8 +33,9 @@ static void put_choices(FILE *out, const char *(*next)(const void *list, size_t 
 }
 
 static void put_value(FILE *out, const command *c, const option *row) {
+    char extensions[BRIO_FORMAT_LIST];
     if (!row->value) return;
-    const char *extensions = pages_extensions(c, row);
+    pages_list_extensions(c, row, extensions);
     fputs(row->kind & OPTION_OPTIONAL ? "::" : ":", out);
     put_text(out, row->value);
     fputc(':', out);
@@ -45,7 +46,7 @@ static void put_value(FILE *out, const command *c, const option *row) {
     else if (!strcmp(row->value, "DIR"))
         fputs("_files -/", out);
     else if (!strcmp(row->value, "EXT"))
-        fprintf(out, "(%s)", extensions ? extensions : "");
+        fprintf(out, "(%s)", extensions);
     else
         fputc(' ', out);
 }
@@ -64,6 +65,8 @@ static void put_options(FILE *out, const command *c, const option *rows) {
 }
 
 static void put_command(FILE *out, const command *c) {
+    char inputs[BRIO_FORMAT_LIST];
+    pages_list_inputs(c, inputs);
     fprintf(out, "    %s)\n        _arguments \\\n", c->name);
     put_options(out, c, c->options);
     put_options(out, c, cli_common_options);
@@ -73,7 +76,7 @@ static void put_command(FILE *out, const command *c) {
     if (c->choices)
         put_choices(out, cli_choice_name, &(option){.kind = OPTION_CHOICE, .choices = c->choices});
     else
-        put_files(out, pages_inputs(c));
+        put_files(out, inputs);
     fputs("'\n        ;;\n", out);
 }
 
@@ -86,7 +89,7 @@ void pages_write_zsh(FILE *out) {
         put_text(out, cli_commands[i]->summary);
         fputs("'\n", out);
     }
-    fputs("        'help:the help of a command, or of methods'\n    )\n"
+    fputs("        'help:the help of a command, of methods, or of formats'\n    )\n"
           "    if ((CURRENT == 2)); then\n        _describe command commands\n        return\n    fi\n"
           "    local name=$words[2]\n    shift words\n    ((CURRENT--))\n    case $name in\n"
           "    help) _describe command commands ;;\n",

@@ -60,7 +60,8 @@ const option cli_common_options[] = {
     {"salvage", 0, OPTION_FLAG, FIELD(salvage), NULL, "of an input that ends early, keep the points that are whole", 0},
     {"ascii", 0, OPTION_FLAG, FIELD(ascii), NULL, "write text where the format has text and binary", 0},
     {"float32", 0, OPTION_FLAG, FIELD(float32), NULL, "write coordinates in single precision", 0},
-    {"compress", 0, OPTION_FLAG, FIELD(compress), NULL, "write numbers compressed: .vtu, .vtp, .pcd", 0},
+    {"compress", 0, OPTION_FLAG, FIELD(compress), NULL,
+     "write numbers compressed, where the format has that (brio help formats)", 0},
     {"json", 0, OPTION_FLAG, FIELD(json), NULL, "print the report as one JSON object on standard output", 0},
     {"threads", 0, OPTION_INT, FIELD(threads), "N", "threads to use (default 0: all cores)", 0},
     {"seed", 0, OPTION_NATURAL, FIELD(seed), "N", "every random choice follows from it (default 1)", 0},
@@ -77,6 +78,26 @@ const option cli_common_options[] = {
 #undef FIELD
 
 const common_options cli_common_defaults = {.seed = 1};
+
+/* --- what a command reads and writes --- */
+
+void cli_list_inputs(const command *c, char *text) {
+    if (c->choices)
+        text[0] = 0;
+    else if (c->inputs)
+        snprintf(text, BRIO_FORMAT_LIST, "%s", c->inputs);
+    else
+        brio_format_list(0, 0, text, BRIO_FORMAT_LIST);
+}
+
+void cli_list_outputs(const command *c, char *text) {
+    if (!c->has_output)
+        text[0] = 0;
+    else if (c->outputs)
+        snprintf(text, BRIO_FORMAT_LIST, "%s", c->outputs);
+    else
+        brio_format_list(1, (unsigned)c->holds, text, BRIO_FORMAT_LIST);
+}
 
 /* --- failure --- */
 

@@ -68,13 +68,15 @@ typedef struct common_options {
 extern const option cli_common_options[];
 extern const common_options cli_common_defaults;
 
-/** Extensions of the files that hold points, meshes, or both. */
-#define CLI_INPUTS                                                                                                     \
-    "ply xyz pts txt csv asc xyzrgb xyzn tsv dat obj off stl vtu vtp vtk node ele las laz pcd ptx npy npz glb gltf "   \
-    "e57 "                                                                                                             \
-    "bnpts chemical extxyz"
-#define CLI_MESH_OUTPUTS  "ply obj off stl vtu vtp vtk glb"
-#define CLI_POINT_OUTPUTS "ply xyz pts txt csv asc tsv vtu vtp vtk node las laz pcd npy glb"
+/** What the files hold that a command writes: the library tells the formats. */
+typedef enum cli_holds {
+    CLI_ANYTHING = 0,
+    CLI_SURFACES = BRIO_HOLDS_FACES,
+    CLI_POINTS = BRIO_HOLDS_PROPERTIES, /* each with its properties */
+    CLI_TETRAHEDRA = BRIO_HOLDS_TETRAHEDRA,
+    CLI_EDGES = BRIO_HOLDS_EDGES,
+    CLI_BALLS = BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_NAMES /* points with the property radius */
+} cli_holds;
 
 enum { MAX_STAGES = 16 };
 
@@ -112,10 +114,12 @@ typedef struct command {
     const char *name, *operands, *summary; /* the summary: what it does, on a line */
     const char *description;               /* more of it, for the help and the manual; NULL: nothing */
     const char *examples;                  /* command lines, each followed by a line that says what it does */
-    const char *inputs;                    /* extensions of the files that it reads; NULL: CLI_INPUTS */
-    const char *outputs;                   /* of the files that -o can name; NULL: it has no output */
-    bool output_optional;                  /* it has a use without -o, and without --json */
-    const option_choice *choices;          /* the words that the first operand can be; NULL: it is a file */
+    const char *inputs;                    /* ".map .mrc": files that the command itself reads; NULL: all formats */
+    const char *outputs;                   /* ".csv .npy": files that the command itself writes; NULL: formats */
+    bool has_output;                       /* whether there is -o: of `outputs`, or of all formats that hold: */
+    cli_holds holds;
+    bool output_optional;         /* it has a use without -o, and without --json */
+    const option_choice *choices; /* the words that the first operand can be; NULL: it is a file */
     command_group group;
     int min_operands, max_operands;
     bool writes_last; /* the last of max_operands operands is the output, as -o is */
@@ -125,6 +129,11 @@ typedef struct command {
     size_t size;          /* of that struct */
     brio_status (*run)(run *r);
 } command;
+
+/** Lists extensions, ".ply .vtu", of what the operands and what -o can name; "" for none.
+ *  text  of BRIO_FORMAT_LIST bytes, receives the list. */
+void cli_list_inputs(const command *c, char *text);
+void cli_list_outputs(const command *c, char *text);
 
 /** Prepares context, progress and signals' callback from the common options. */
 brio_status cli_begin(run *r);

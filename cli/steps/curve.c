@@ -71,8 +71,10 @@ brio_status cli_require_edges(run *r) {
     brio_format format;
     if (!r->common.output) return BRIO_OK;
     FORWARD(cli_output_format(r, r->common.output, r->common.format, &format));
+    char others[BRIO_FORMAT_LIST];
     if (brio_format_facts(format)->holds & BRIO_HOLDS_EDGES) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold edges: .ply .vtp .vtu .vtk .glb can", r->common.output);
+    brio_format_list(1, BRIO_HOLDS_EDGES, others, sizeof others);
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold edges: %s can", r->common.output, others);
 }
 
 brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed, brio_mesh **out) {

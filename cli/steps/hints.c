@@ -20,8 +20,11 @@ static void suggest_for_argument(run *r) {
                         says(r, BRIO_ERR_ARGUMENT, "this version writes");
     if (says(r, BRIO_ERR_ARGUMENT, ", got ") && r->num_operands < c->min_operands && c->examples)
         cli_hint(r, HINT_EXAMPLE, (int)strcspn(c->examples, "\n"), c->examples);
-    else if (about_output && c->outputs)
-        cli_hint(r, HINT_OUTPUTS, c->name, c->outputs);
+    else if (about_output && c->has_output) {
+        char outputs[BRIO_FORMAT_LIST];
+        cli_list_outputs(c, outputs);
+        cli_hint(r, HINT_OUTPUTS, c->name, outputs);
+    }
 }
 
 static void suggest_for_poles(run *r) {

@@ -28,9 +28,8 @@ BRIO_API brio_status brio_read(brio_context *ctx, const char *path, const brio_r
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a
  *  descriptor of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The
- *  process receives neither SIGPIPE nor SIGXFSZ. What a format cannot hold is left out: properties by STL, edges by all
- *  but PLY, VTU, VTP, VTK and GLB, faces by texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners
- *  by STL and GLB; brio_format_facts tells what a format holds. In the names of
+ *  process receives neither SIGPIPE nor SIGXFSZ. What a format cannot hold is left out: properties, edges, faces, as
+ *  brio_format_facts tells; faces of fewer than three corners by STL and GLB. In the names of
  *  properties, formats that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a
  *  coordinate; a comment of several lines becomes several comments. Of several files (.node and those beside it) none
  *  gets its name before all are complete.
@@ -41,7 +40,8 @@ BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_
                                 const brio_write_options *options);
 
 /** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the
- *  format. */
+ *  format. A format need not have a name here: brio_format_of finds the number of each, up to BRIO_FORMAT_MOST, and
+ *  numbers for which brio_format_facts returns NULL are free. */
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
     BRIO_FORMAT_PLY = 1,
@@ -63,7 +63,7 @@ typedef enum brio_format {
     BRIO_FORMAT_BNPTS = 17,    /* oriented points of Kazhdan's Poisson programs: read, not written */
     BRIO_FORMAT_NPZ = 18,      /* NumPy's zip of arrays: read, not written */
     BRIO_FORMAT_VTK = 19,      /* VTK's legacy files of polygonal data and unstructured grids */
-    BRIO_FORMAT_END
+    BRIO_FORMAT_MOST = 255     /* no number is larger */
 } brio_format;
 
 /** Returns the format of a file name or of an extension with or without its dot; BRIO_FORMAT_AUTO if it is unknown. */
@@ -85,7 +85,9 @@ enum {
     BRIO_HOLDS_NORMALS = 2048,         /* nx, ny and nz, though not all properties */
     BRIO_HOLDS_INTENSITY = 4096,       /* intensity, though not all properties */
     BRIO_HOLDS_FACE_PROPERTIES = 8192, /* of the faces, any of them */
-    BRIO_HOLDS_FACE_COLOURS = 16384    /* red, green, blue and alpha of the faces, though not all properties */
+    BRIO_HOLDS_FACE_COLOURS = 16384,   /* red, green, blue and alpha of the faces, though not all properties */
+    BRIO_HOLDS_ORIGIN = 32768,         /* an origin, from which coordinates in single precision are counted */
+    BRIO_HOLDS_PLACES = 65536          /* places of its parts, known at its end: it goes to a file, not into a pipe */
 };
 
 /** What is known of a format. */
@@ -102,6 +104,13 @@ typedef struct brio_format_info {
 
 /** Returns what is known of a format, valid for ever; NULL for BRIO_FORMAT_AUTO and what is no format. */
 BRIO_API const brio_format_info *brio_format_facts(brio_format format);
+
+enum { BRIO_FORMAT_LIST = 512 }; /* bytes that a list of all extensions fits in */
+/** Lists extensions, as messages do: ".ply .vtp .vtu".
+ *  written  1: those that are written; 0: those that are read.
+ *  holds    BRIO_HOLDS_FACES and so on: of formats that hold all of that; 0: of all formats.
+ *  text     receives the list; where `size` bytes are too few, extensions are left out. */
+BRIO_API void brio_format_list(int written, unsigned holds, char *text, size_t size);
 
 /** Receives the name of something that a mesh or a file cannot hold, valid during the call. */
 typedef void (*brio_lost_fn)(const char *name, void *user);

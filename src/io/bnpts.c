@@ -23,7 +23,7 @@ static brio_status read_point(brio_stream *s, brio_builder *b) {
     return BRIO_OK;
 }
 
-brio_status brio_bnpts_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     uint64_t rows = s->size / RECORD;
     bool known = s->size != BRIO_SIZE_UNKNOWN;
     BRIO_EXPECT(s->ctx, !known || s->size % RECORD == 0, BRIO_ERR_FORMAT,
@@ -42,3 +42,5 @@ brio_status brio_bnpts_read(brio_stream *s, brio_builder *b) {
     }
     return BRIO_OK;
 }
+
+const brio_codec brio_bnpts_codec = {.read = read_file};

@@ -7,7 +7,7 @@
  *
  * Based on: XYZ file format of XMol, Minnesota Supercomputer Center; extended XYZ as written by ASE and QUIP. */
 #include "base/memory.h"
-#include "io/elements.h"
+#include "io/pdb.h"
 #include "io/formats.h"
 #include "io/number.h"
 #include "io/textrow.h"
@@ -321,7 +321,7 @@ static brio_status check_end(chemical_reader *r) {
     return BRIO_OK;
 }
 
-brio_status brio_chemical_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     chemical_reader r = {.text = {s, 0, NULL}, .builder = b};
     uint64_t count = 0;
     char *comment;
@@ -341,3 +341,5 @@ brio_status brio_chemical_read(brio_stream *s, brio_builder *b) {
     }
     return check_end(&r);
 }
+
+const brio_codec brio_chemical_codec = {.read = read_file};

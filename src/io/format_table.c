@@ -1,5 +1,8 @@
 /* What is known of each format, in one table: all that needs a format's name, its extensions, its beginning, its
- * reader, its writer or what it can hold asks here. */
+ * reader, its writer or what it can hold asks here.
+ *
+ * A new format is a file beside this one, which defines a codec, and a row here. Its number is the next that no row
+ * has; a name for it in the enum brio_format is for programs that speak of that format alone. */
 #include "io/row_format.h"
 #include "mesh/properties.h"
 #include <stdio.h>
@@ -12,117 +15,92 @@ enum {
     BOTH_FORMS = BRIO_HOLDS_TEXT | BRIO_HOLDS_BINARY
 };
 
+/* The codec of each format, in the format's own file. */
+extern const brio_codec brio_ply_codec, brio_off_codec, brio_vtp_codec, brio_vtu_codec, brio_vtk_codec, brio_laz_codec,
+    brio_las_codec, brio_pcd_codec, brio_npy_codec, brio_glb_codec, brio_e57_codec, brio_npz_codec, brio_stl_codec,
+    brio_obj_codec, brio_node_codec, brio_ptx_codec, brio_bnpts_codec, brio_chemical_codec, brio_xyz_codec;
+
 /* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
 static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_PLY, "a PLY file", "ply", "ply",
       POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, BRIO_MOST_NUMBERS - 3},
-     .starts = brio_ply_starts,
-     .read = brio_ply_read,
-     .rows = &brio_ply_rows,
+     .codec = &brio_ply_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_OFF, "an OFF file", "off", "off",
       BRIO_HOLDS_FACES | BRIO_HOLDS_FACE_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
-     .starts = brio_off_starts,
-     .read = brio_off_read,
-     .write = brio_off_write,
+     .codec = &brio_off_codec,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTP, "a VTP file", "vtp", "vtp",
       POINTS | FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS},
-     .starts = brio_vtp_starts,
-     .read = brio_vtk_read,
-     .write = brio_vtp_write,
+     .codec = &brio_vtp_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTU, "a VTU file", "vtu", "vtu",
       POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED,
       BRIO_MOST_NUMBERS},
-     .starts = brio_vtu_starts,
-     .read = brio_vtk_read,
-     .write = brio_vtu_write,
+     .codec = &brio_vtu_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTK, "a legacy VTK file", "vtk", "vtk",
       POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 4096},
-     .starts = brio_vtk_legacy_starts,
-     .read = brio_vtk_legacy_read,
-     .write = brio_vtk_legacy_write,
+     .codec = &brio_vtk_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "laz", POINTS | BRIO_HOLDS_BINARY, 0},
-     .starts = brio_laz_starts,
-     .read = brio_las_read,
-     .rows = &brio_laz_rows,
+     .codec = &brio_laz_codec,
      .colours = BRIO_COLOURS_16,
      .keeps = "crs. las."},
     {{sizeof(brio_format_info), BRIO_FORMAT_LAS, "a LAS file", "las", "las", POINTS | BRIO_HOLDS_BINARY, 0},
-     .starts = brio_las_starts,
-     .read = brio_las_read,
-     .rows = &brio_las_rows,
+     .codec = &brio_las_codec,
      .colours = BRIO_COLOURS_16,
      .keeps = "crs. las."},
     {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "pcd",
       POINTS | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS - 3},
-     .starts = brio_pcd_starts,
-     .read = brio_pcd_read,
-     .rows = &brio_pcd_rows,
+     .codec = &brio_pcd_codec,
      .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPY, "an NPY file", "npy", "npy",
       POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, BRIO_MOST_NUMBERS - 3},
-     .starts = brio_npy_starts,
-     .read = brio_npy_read,
-     .rows = &brio_npy_rows},
+     .codec = &brio_npy_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_GLB, "a GLB file", "glb gltf", "glb",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BRIO_HOLDS_SINGLES | BRIO_HOLDS_BINARY, 256},
-     .starts = brio_glb_starts,
-     .read = brio_glb_read,
-     .write = brio_glb_write,
-     .about_origin = true,
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BRIO_HOLDS_SINGLES | BRIO_HOLDS_ORIGIN | BRIO_HOLDS_BINARY, 256},
+     .codec = &brio_glb_codec,
      .colours = BRIO_COLOURS_NORMALIZED},
     {{sizeof(brio_format_info), BRIO_FORMAT_E57, "an E57 file", "e57", "e57",
-      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, 252},
-     .starts = brio_e57_starts,
-     .read = brio_e57_read,
-     .rows = &brio_e57_rows,
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY | BRIO_HOLDS_PLACES, 252},
+     .codec = &brio_e57_codec,
      .colours = BRIO_COLOURS_8_OR_16,
      .scans = true,
      .keeps = "crs.wkt"},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPZ, "an NPZ file", "npz", "", POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY,
       0},
-     .starts = brio_npz_starts,
-     .read = brio_npz_read},
+     .codec = &brio_npz_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_STL, "an STL file", "stl", "stl",
       BRIO_HOLDS_FACES | BRIO_HOLDS_SINGLES | BOTH_FORMS, 0},
-     .read = brio_stl_read,
-     .write = brio_stl_write},
+     .codec = &brio_stl_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_OBJ, "an OBJ file", "obj", "obj",
       BRIO_HOLDS_FACES | BRIO_HOLDS_COLOURS | BRIO_HOLDS_NORMALS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
-     .read = brio_obj_read,
-     .write = brio_obj_write,
+     .codec = &brio_obj_codec,
      .colours = BRIO_COLOURS_UNIT},
     {{sizeof(brio_format_info), BRIO_FORMAT_NODE, "a NODE file", "node ele", "node",
       BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS},
-     .read = brio_node_read,
-     .write = brio_node_write},
+     .codec = &brio_node_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_PTX, "a PTX file", "ptx", "ptx",
       BRIO_HOLDS_COLOURS | BRIO_HOLDS_INTENSITY | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
-     .read = brio_ptx_read,
-     .rows = &brio_ptx_rows,
+     .codec = &brio_ptx_codec,
      .colours = BRIO_COLOURS_8,
      .scans = true},
     {{sizeof(brio_format_info), BRIO_FORMAT_BNPTS, "a BNPTS file", "bnpts", "", BRIO_HOLDS_SINGLES | BRIO_HOLDS_BINARY,
       0},
-     .read = brio_bnpts_read},
+     .codec = &brio_bnpts_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_CHEMICAL, "a chemical XYZ file", "chemical extxyz", "",
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
-     .read = brio_chemical_read},
+     .codec = &brio_chemical_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz pts txt csv asc xyzrgb xyzn tsv dat",
       "xyz pts txt csv asc xyzrgb xyzn tsv", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS - 3},
-     .read_columns = brio_xyz_read,
-     .rows = &brio_xyz_rows}};
+     .codec = &brio_xyz_codec}};
 
 enum { NUM_FORMATS = sizeof table / sizeof *table };
-_Static_assert(NUM_FORMATS == BRIO_FORMAT_END - 1, "each format has one row");
 
 const brio_format_row *brio_format_row_of(brio_format format) {
     for (size_t i = 0; i < NUM_FORMATS; i++)
@@ -174,7 +152,7 @@ bool brio_format_keeps(brio_format format, const char *metadata) {
 
 brio_format brio_format_that_starts(const char *bytes, size_t size) {
     for (size_t i = 0; i < NUM_FORMATS; i++)
-        if (table[i].starts && table[i].starts(bytes, size)) return table[i].info.format;
+        if (table[i].codec->starts && table[i].codec->starts(bytes, size)) return table[i].info.format;
     return BRIO_FORMAT_AUTO;
 }
 
@@ -191,15 +169,24 @@ brio_format brio_format_with(const char *path, bool (*has)(const char *path, con
     return BRIO_FORMAT_AUTO;
 }
 
-void brio_format_list(bool written, char text[BRIO_FORMAT_LIST]) {
-    size_t used = 0;
-    text[0] = 0;
-    for (size_t i = 0; i < NUM_FORMATS; i++) {
-        const char *at = written ? table[i].info.written : table[i].info.extensions;
-        while (*at) {
-            size_t length = strcspn(at, " ");
-            used += (size_t)snprintf(text + used, BRIO_FORMAT_LIST - used, "%s.%.*s", used ? " " : "", (int)length, at);
-            at += length + (at[length] == ' ');
-        }
+/* Appends extensions to a list, those that there is room for. */
+static void append(const char *extensions, char *text, size_t size) {
+    for (const char *at = extensions; *at; at += *at == ' ') {
+        size_t length = strcspn(at, " "), used = strlen(text);
+        if (used + length + 3 <= size) snprintf(text + used, size - used, "%s.%.*s", used ? " " : "", (int)length, at);
+        at += length;
     }
+}
+
+void brio_format_list(int written, unsigned holds, char *text, size_t size) {
+    if (size) text[0] = 0;
+    for (size_t i = 0; i < NUM_FORMATS && size; i++)
+        if ((table[i].info.holds & holds) == holds)
+            append(written ? table[i].info.written : table[i].info.extensions, text, size);
+}
+
+void brio_format_list_columns(char *text, size_t size) {
+    text[0] = 0;
+    for (size_t i = 0; i < NUM_FORMATS; i++)
+        if (table[i].codec->read_columns) append(table[i].info.extensions, text, size);
 }

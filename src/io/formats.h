@@ -17,50 +17,37 @@ typedef struct brio_write_job {
     uint64_t expected;      /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
 } brio_write_job;
 
-brio_status brio_ply_read(brio_stream *s, brio_builder *b);
-/* Reads a text of points.   columns  the names of the columns that the caller gives (brio_read_options), or NULL */
-brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns);
-brio_status brio_obj_read(brio_stream *s, brio_builder *b);
-brio_status brio_off_read(brio_stream *s, brio_builder *b);
-brio_status brio_vtk_legacy_read(brio_stream *s, brio_builder *b);
-brio_status brio_vtk_read(brio_stream *s, brio_builder *b); /* VTU and VTP */
-brio_status brio_node_read(brio_stream *s, brio_builder *b);
-brio_status brio_las_read(brio_stream *s, brio_builder *b); /* LAZ, too */
-brio_status brio_pcd_read(brio_stream *s, brio_builder *b);
-brio_status brio_ptx_read(brio_stream *s, brio_builder *b);
-brio_status brio_stl_read(brio_stream *s, brio_builder *b);
-brio_status brio_npy_read(brio_stream *s, brio_builder *b);
-brio_status brio_glb_read(brio_stream *s, brio_builder *b); /* .gltf, too */
-brio_status brio_e57_read(brio_stream *s, brio_builder *b);
-brio_status brio_chemical_read(brio_stream *s, brio_builder *b);
-brio_status brio_bnpts_read(brio_stream *s, brio_builder *b);
-brio_status brio_npz_read(brio_stream *s, brio_builder *b);
-brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
+/** What a format does with files. One object in the format's own file, which the table in format_table.c names. */
+typedef struct brio_codec {
+    bool (*starts)(const char *bytes,
+                   size_t size); /* whether a file that begins so is the format's; NULL: none tells */
+    brio_status (*read)(brio_stream *s, brio_builder *b); /* NULL: read_columns */
+    /* Reads a text of points.   columns  the names of the columns that the caller gives (brio_read_options), or NULL */
+    brio_status (*read_columns)(brio_stream *s, brio_builder *b, const char *columns);
+    const struct brio_row_format *rows;                                /* NULL: not written row by row */
+    brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
+} brio_codec;
 
-brio_status brio_obj_write(brio_output *out, const brio_write_job *job);
-brio_status brio_off_write(brio_output *out, const brio_write_job *job);
-brio_status brio_vtu_write(brio_output *out, const brio_write_job *job);
-brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
-brio_status brio_node_write(brio_output *out, const brio_write_job *job);
+/* --- parts of formats that others call --- */
+
+brio_status brio_xyz_read(brio_stream *s, brio_builder *b, const char *columns);
+brio_status brio_npy_read(brio_stream *s, brio_builder *b);
+brio_status brio_ele_read(brio_stream *s, brio_builder *b); /* after the .node file: its index base is in b */
 /** Writes .node, .ele if there are tetrahedra or an old .ele, and what the options ask for of .neigh, .face and .edge.
  *  All files are complete before any gets its name.
  *  expected  an estimate of the bytes of a file, for progress.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 brio_status brio_node_write_files(brio_context *ctx, const char *path, const brio_write_job *job, uint64_t expected);
-brio_status brio_stl_write(brio_output *out, const brio_write_job *job);
-brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job);
-brio_status brio_glb_write(brio_output *out, const brio_write_job *job);
+/* Returns whether the first bytes are those of a chemical file. Only asked of what is called .xyz, and of standard
+ * input: other texts are not so far from it. */
+bool brio_chemical_starts(const char *bytes, size_t size);
+
+/* --- the table --- */
 
 /** A format's row of the table in format_table.c. */
 typedef struct brio_format_row {
     brio_format_info info;
-    bool (*starts)(const char *bytes,
-                   size_t size); /* whether the first bytes of a file are the format's; NULL: no bytes tell */
-    brio_status (*read)(brio_stream *s, brio_builder *b); /* NULL: read_columns */
-    brio_status (*read_columns)(brio_stream *s, brio_builder *b, const char *columns);
-    const struct brio_row_format *rows;                                /* NULL: not written row by row */
-    brio_status (*write)(brio_output *out, const brio_write_job *job); /* NULL: not written as a whole */
-    bool about_origin;         /* single precision is that of distances from an origin, which the writer chooses */
+    const brio_codec *codec;
     brio_colours colours;      /* how a file that is written has colours */
     brio_colours face_colours; /* likewise of the faces */
     bool scans;                /* whether the writer makes scans (scans.h): the reader then tells places and grids */
@@ -84,9 +71,8 @@ brio_format brio_format_that_starts(const char *bytes, size_t size);
 /** Returns the format one of whose extensions `has` finds at a path, or BRIO_FORMAT_AUTO. */
 brio_format brio_format_with(const char *path, bool (*has)(const char *path, const char *extension));
 
-enum { BRIO_FORMAT_LIST = 256 };
-/** Lists the extensions of all formats that are read, or written: ".ply .off .vtu". */
-void brio_format_list(bool written, char text[BRIO_FORMAT_LIST]);
+/** Lists the extensions of formats whose columns can be named, as brio_format_list does. */
+void brio_format_list_columns(char *text, size_t size);
 
 /** Returns whether the format holds coordinates in single precision, by itself or by the options. */
 bool brio_is_single(brio_format format, const brio_write_options *options);
@@ -104,23 +90,6 @@ brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format
 
 /** Refuses coordinates beyond single precision.   Returns BRIO_OK or BRIO_ERR_ARGUMENT. */
 brio_status brio_check_single(brio_context *ctx, const char *path, const brio_mesh *m);
-
-/** Return whether the first bytes of a file are those of a format. */
-bool brio_ply_starts(const char *bytes, size_t size);
-bool brio_off_starts(const char *bytes, size_t size);
-bool brio_vtu_starts(const char *bytes, size_t size); /* VTP, too */
-bool brio_vtp_starts(const char *bytes, size_t size);
-bool brio_vtk_legacy_starts(const char *bytes, size_t size);
-bool brio_las_starts(const char *bytes, size_t size); /* LAZ, too */
-bool brio_laz_starts(const char *bytes, size_t size);
-bool brio_pcd_starts(const char *bytes, size_t size);
-bool brio_npy_starts(const char *bytes, size_t size);
-bool brio_glb_starts(const char *bytes, size_t size);
-bool brio_e57_starts(const char *bytes, size_t size);
-bool brio_npz_starts(const char *bytes, size_t size);
-/* Returns whether the first bytes are those of a chemical file. Only asked of what is called .xyz, and of standard
- * input: other texts are not so far from it. */
-bool brio_chemical_starts(const char *bytes, size_t size);
 
 /** Returns whether this build can compress VTU and VTP. */
 bool brio_vtk_has_zlib(void);

@@ -76,7 +76,7 @@ static brio_status read_node_row(brio_text *t, brio_builder *b) {
     return brio_text_row_end(t);
 }
 
-brio_status brio_node_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_text t = {s, '#', NULL};
     uint64_t counts[4];
@@ -134,7 +134,7 @@ static bool is_marker(const brio_property *p) {
     return p->type == BRIO_SCALAR_INT32 && !strcmp(p->name, marker_name);
 }
 
-brio_status brio_node_write(brio_output *out, const brio_write_job *job) {
+static brio_status write_node(brio_output *out, const brio_write_job *job) {
     const brio_mesh *m = job->mesh;
     const brio_property *marker = brio_mesh_property(m, marker_name);
     if (marker && !is_marker(marker)) marker = NULL;
@@ -182,7 +182,7 @@ typedef brio_status (*node_writer)(brio_output *out, const node_job *job);
 /* --- the files --- */
 
 static brio_status write_points(brio_output *out, const node_job *job) {
-    return brio_node_write(out, job->job);
+    return write_node(out, job->job);
 }
 
 static brio_status write_tetrahedra(brio_output *out, const node_job *job) {
@@ -312,3 +312,5 @@ done:
     brio_release(ctx, own.neighbours);
     return status;
 }
+
+const brio_codec brio_node_codec = {.read = read_file, .write = write_node};

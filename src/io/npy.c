@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-bool brio_npy_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     return size >= 6 && !memcmp(bytes, "\x93NUMPY", 6);
 }
 
@@ -206,5 +206,7 @@ static brio_status end(brio_output *out, const brio_write_job *job, void *state)
     return brio_output_patch(out, w->at, text, w->room);
 }
 
-const brio_row_format brio_npy_rows = {
+static const brio_row_format rows = {
     .state = sizeof(npy_writer), .counts = true, .begin = begin, .rows = write_rows, .end = end};
+
+const brio_codec brio_npy_codec = {.starts = starts, .read = brio_npy_read, .rows = &rows};

@@ -335,7 +335,7 @@ static brio_status read_statements(obj_reader *r) {
     return BRIO_OK;
 }
 
-brio_status brio_obj_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     obj_reader r = {.text = {s, '#', NULL}, .builder = b};
     b->index_base = 1;
@@ -371,7 +371,7 @@ static brio_status write_normals(brio_output *out, const brio_mesh *m, const bri
     return BRIO_OK;
 }
 
-brio_status brio_obj_write(brio_output *out, const brio_write_job *job) {
+static brio_status write_file(brio_output *out, const brio_write_job *job) {
     const brio_mesh *m = job->mesh;
     brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
     BRIO_FORWARD(brio_output_comment(out, "# ", job->options->comment));
@@ -389,3 +389,5 @@ brio_status brio_obj_write(brio_output *out, const brio_write_job *job) {
     }
     return BRIO_OK;
 }
+
+const brio_codec brio_obj_codec = {.read = read_file, .write = write_file};

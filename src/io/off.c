@@ -45,7 +45,7 @@ static const char *scan_keyword(const char *p, off_kind *kind) {
     return !*p || brio_is_blank(*p) || *p == '#' || (*p >= '0' && *p <= '9') ? p : NULL;
 }
 
-bool brio_off_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     char start[16] = "";
     off_kind kind;
     memcpy(start, bytes, size < sizeof start - 1 ? size : sizeof start - 1);
@@ -250,7 +250,7 @@ static brio_status read_binary(brio_stream *s, brio_builder *b, off_kind *kind) 
     return BRIO_OK;
 }
 
-brio_status brio_off_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_text t = {s, '#', NULL};
     off_kind kind = {.num_extra = 0};
@@ -288,7 +288,7 @@ static brio_status write_face(brio_output *out, const brio_mesh *m, const brio_c
     return brio_output_string(out, "\n");
 }
 
-brio_status brio_off_write(brio_output *out, const brio_write_job *job) {
+static brio_status write_file(brio_output *out, const brio_write_job *job) {
     const brio_mesh *m = job->mesh, faces = brio_mesh_faces_as_points(m);
     const brio_channels colour = brio_colour_of(&faces);
     BRIO_FORWARD(brio_output_string(out, "OFF\n"));
@@ -301,3 +301,5 @@ brio_status brio_off_write(brio_output *out, const brio_write_job *job) {
     for (size_t f = 0; f < m->num_faces; f++) BRIO_FORWARD(write_face(out, m, &colour, f));
     return BRIO_OK;
 }
+
+const brio_codec brio_off_codec = {.starts = starts, .read = read_file, .write = write_file};

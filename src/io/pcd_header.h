@@ -61,4 +61,7 @@ typedef struct brio_pcd_header {
 brio_status brio_pcd_header_read(brio_stream *s, brio_pcd_header *h);
 void brio_pcd_header_free(brio_context *ctx, brio_pcd_header *h);
 
+/* How points are written. */
+extern const struct brio_row_format brio_pcd_rows;
+
 #endif

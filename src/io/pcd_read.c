@@ -31,7 +31,7 @@ typedef struct {
     bool rounded; /* whether an integer of 64 bits is beyond 2^53 */
 } pcd_reader;
 
-bool brio_pcd_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     return size >= 6 && !memcmp(bytes, "# .PCD", 6);
 }
 
@@ -258,7 +258,7 @@ static brio_status check_points(brio_stream *s, const brio_pcd_header *h, bool s
     return BRIO_OK;
 }
 
-brio_status brio_pcd_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_pcd_header header;
     pcd_reader r = {.stream = s, .builder = b, .header = &header};
@@ -283,3 +283,5 @@ done:
     brio_pcd_header_free(s->ctx, &header);
     return status;
 }
+
+const brio_codec brio_pcd_codec = {.starts = starts, .read = read_file, .rows = &brio_pcd_rows};

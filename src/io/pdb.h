@@ -1,4 +1,5 @@
-/* Atoms of molecules in the format of the Protein Data Bank. */
+/* Atoms of molecules in the format of the Protein Data Bank; chemical elements: symbols, atomic numbers and van der
+ * Waals radii. */
 #ifndef BRIO_IO_PDB_H
 #define BRIO_IO_PDB_H
 
@@ -11,5 +12,15 @@
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_FORMAT (with file and line; also for a file without atoms),
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_pdb_read(brio_stream *s, brio_atom **atoms, size_t *num_atoms);
+
+enum { BRIO_LAST_ELEMENT = 118 };
+
+/** Returns the atomic number of a symbol of `length` letters, in capitals or not; D and T are hydrogen. 0 if there is
+ *  no such element. */
+int brio_element_of(const char *symbol, size_t length);
+
+/** Returns the van der Waals radius in angstrom of an element, 1.8 where the table has none (mostly metals) and for
+ *  0. */
+double brio_van_der_waals_radius(int atomic_number);
 
 #endif

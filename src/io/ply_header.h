@@ -55,4 +55,7 @@ const char *brio_ply_type_name(brio_scalar type);
 brio_status brio_ply_header_read(brio_stream *s, bool may_end_early, brio_ply_header *header);
 void brio_ply_header_free(brio_context *ctx, brio_ply_header *header);
 
+/* How points are written. */
+extern const struct brio_row_format brio_ply_rows;
+
 #endif

@@ -32,7 +32,7 @@ typedef struct {
     double *of_face; /* numbers of the face that is being read */
 } ply_reader;
 
-bool brio_ply_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     return size >= 4 && !memcmp(bytes, "ply", 3) && brio_is_blank(bytes[3]);
 }
 
@@ -363,7 +363,7 @@ static brio_status read_element(ply_reader *r, const brio_ply_element *e) {
     return read_blocks(r, e);
 }
 
-brio_status brio_ply_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_ply_header header;
     ply_reader r = {.stream = s, .builder = b, .text = {s, 0, NULL}};
@@ -379,3 +379,5 @@ done:
     brio_ply_header_free(b->ctx, &header);
     return status;
 }
+
+const brio_codec brio_ply_codec = {.starts = starts, .read = read_file, .rows = &brio_ply_rows};

@@ -75,7 +75,7 @@ static brio_status find_format(brio_stream *s, const char *path, brio_read_job *
                  "%s: a PDB file of atoms, which only brio iso reads: it makes a surface of them", s->name);
     if (job->format == BRIO_FORMAT_AUTO) {
         char known[BRIO_FORMAT_LIST];
-        brio_format_list(false, known);
+        brio_format_list(0, 0, known, sizeof known);
         status = brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: unknown format, expected one of %s", s->name, known);
     }
 done:
@@ -85,7 +85,7 @@ done:
 static brio_status read_stream(brio_stream *s, brio_builder *b, brio_format format, const char *columns) {
     const brio_format_row *row = brio_format_row_of(format);
     if (!row) return brio_fail(s->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", s->name, (int)format);
-    return row->read ? row->read(s, b) : row->read_columns(s, b, columns);
+    return row->codec->read ? row->codec->read(s, b) : row->codec->read_columns(s, b, columns);
 }
 
 /* Reads the tetrahedra in the .ele file beside a .node file. The file may be missing unless `asked_for` is set. */
@@ -107,11 +107,11 @@ done:
 /* Refuses names of columns for a format that has none. */
 static brio_status check_columns(const brio_stream *s, brio_format format, const char *columns) {
     const brio_format_row *row = brio_format_row_of(format);
-    if (!columns || !row || row->read_columns) return BRIO_OK;
-    return brio_fail(
-        s->ctx, BRIO_ERR_ARGUMENT,
-        "%s: columns are named (--columns), but only texts of points (.xyz .pts .txt .csv .asc .tsv) have columns",
-        s->name);
+    char texts[BRIO_FORMAT_LIST];
+    if (!columns || !row || row->codec->read_columns) return BRIO_OK;
+    brio_format_list_columns(texts, sizeof texts);
+    return brio_fail(s->ctx, BRIO_ERR_ARGUMENT,
+                     "%s: columns are named (--columns), but only texts of points (%s) have columns", s->name, texts);
 }
 
 /* Opens a file, or memory under its name.   path  of the file to open, which is not always the job's own. */

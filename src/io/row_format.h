@@ -40,9 +40,6 @@ typedef struct brio_row_format {
 /** Returns the functions of a format, or NULL if the format needs the whole mesh. */
 const brio_row_format *brio_row_format_of(brio_format format);
 
-extern const brio_row_format brio_ply_rows, brio_xyz_rows, brio_npy_rows, brio_las_rows, brio_laz_rows, brio_pcd_rows,
-    brio_e57_rows, brio_ptx_rows;
-
 /** A file that is written block by block. */
 typedef struct brio_row_writer {
     brio_context *ctx;

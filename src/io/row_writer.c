@@ -69,7 +69,7 @@ done:
 
 const brio_row_format *brio_row_format_of(brio_format format) {
     const brio_format_row *row = brio_format_row_of(format);
-    return row ? row->rows : NULL;
+    return row ? row->codec->rows : NULL;
 }
 
 /* --- what a format can hold --- */
@@ -118,7 +118,7 @@ static brio_status make_names(const brio_row_writer *w, const char *path, const 
 bool brio_is_single(brio_format format, const brio_write_options *o) {
     const brio_format_row *row = brio_format_row_of(format);
     unsigned holds = row ? row->info.holds : 0;
-    if (!(holds & BRIO_HOLDS_SINGLES) || row->about_origin) return false;
+    if (!(holds & BRIO_HOLDS_SINGLES) || holds & BRIO_HOLDS_ORIGIN) return false;
     return o->float32 || !(holds & BRIO_HOLDS_DOUBLES);
 }
 

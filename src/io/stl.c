@@ -185,7 +185,7 @@ static bool is_text(const brio_stream *s) {
     return !memchr(bytes, 0, left < HEADER + TRIANGLE ? left : HEADER + TRIANGLE);
 }
 
-brio_status brio_stl_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_weld weld = {.size = 0};
     BRIO_TRY(brio_stream_fill(s, HEADER + TRIANGLE));
@@ -260,7 +260,7 @@ static brio_status write_header(brio_output *out, const brio_write_job *job, uin
     return brio_output_bytes(out, header, sizeof header);
 }
 
-brio_status brio_stl_write(brio_output *out, const brio_write_job *job) {
+static brio_status write_file(brio_output *out, const brio_write_job *job) {
     const brio_mesh *m = job->mesh;
     uint64_t count = 0;
     for (size_t f = 0; f < m->num_faces; f++) {
@@ -279,3 +279,5 @@ brio_status brio_stl_write(brio_output *out, const brio_write_job *job) {
     if (job->options->ascii) BRIO_FORWARD(brio_output_string(out, "endsolid brio\n"));
     return BRIO_OK;
 }
+
+const brio_codec brio_stl_codec = {.read = read_file, .write = write_file};

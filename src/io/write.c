@@ -12,9 +12,11 @@
 
 brio_status brio_check_compress(brio_context *ctx, const char *path, brio_format format,
                                 const brio_write_options *options) {
+    char others[BRIO_FORMAT_LIST];
     if (!options->compress) return BRIO_OK;
+    brio_format_list(1, BRIO_HOLDS_COMPRESSED, others, sizeof others);
     BRIO_EXPECT(ctx, brio_format_holds(format, BRIO_HOLDS_COMPRESSED), BRIO_ERR_ARGUMENT,
-                "%s: a file of this format cannot be compressed; .vtu, .vtp and .pcd can", path);
+                "%s: a file of this format cannot be compressed; %s can", path, others);
     BRIO_EXPECT(ctx, !options->ascii, BRIO_ERR_ARGUMENT, "%s: text is not compressed", path);
     BRIO_EXPECT(ctx, format == BRIO_FORMAT_PCD || brio_vtk_has_zlib(), BRIO_ERR_ARGUMENT,
                 "%s: this brio was built without zlib, which compresses", path);
@@ -33,7 +35,7 @@ brio_status brio_check_written(brio_context *ctx, const char *path, brio_format 
     const brio_format_info *info = brio_format_facts(format);
     if (!info) {
         char known[BRIO_FORMAT_LIST];
-        brio_format_list(true, known);
+        brio_format_list(1, 0, known, sizeof known);
         return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s: unknown format, expected one of %s", path, known);
     }
     BRIO_EXPECT(ctx, info->written[0], BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
@@ -44,9 +46,11 @@ brio_status brio_check_written(brio_context *ctx, const char *path, brio_format 
 
 static brio_status check_holds(brio_context *ctx, const char *path, const brio_mesh *m, brio_format format,
                                const brio_write_options *options) {
+    char others[BRIO_FORMAT_LIST];
     BRIO_FORWARD(brio_check_written(ctx, path, format));
+    brio_format_list(1, BRIO_HOLDS_TETRAHEDRA, others, sizeof others);
     BRIO_EXPECT(ctx, !m->num_tetrahedra || brio_format_holds(format, BRIO_HOLDS_TETRAHEDRA), BRIO_ERR_ARGUMENT,
-                "%s: %s cannot hold tetrahedra; .ply, .vtu and .node can", path, brio_format_facts(format)->name);
+                "%s: %s cannot hold tetrahedra; %s can", path, brio_format_facts(format)->name, others);
     bool beside = options->neighbours || options->faces || options->edges;
     BRIO_EXPECT(ctx, !beside || format == BRIO_FORMAT_NODE, BRIO_ERR_ARGUMENT,
                 "%s: neighbours, faces and edges are written beside .node only", path);
@@ -81,7 +85,7 @@ static brio_status write_one(brio_context *ctx, const char *path, const brio_wri
     BRIO_TRY(brio_colour_show(ctx, &colours, job->mesh, &shown));
     of_shown.mesh = &shown;
     BRIO_TRY(brio_output_open(&out, ctx, path, job->expected));
-    BRIO_TRY(row->write(&out, &of_shown));
+    BRIO_TRY(row->codec->write(&out, &of_shown));
     if (job->options->colours_rounded) *job->options->colours_rounded = brio_colour_lost(&colours);
     BRIO_TRY(brio_output_finish(&out));
     BRIO_TRY(brio_output_publish(&out));

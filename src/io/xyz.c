@@ -42,4 +42,6 @@ static brio_status write_rows(brio_output *out, const brio_write_job *job, void 
     return BRIO_OK;
 }
 
-const brio_row_format brio_xyz_rows = {.comments = true, .begin = begin, .rows = write_rows};
+static const brio_row_format rows = {.comments = true, .begin = begin, .rows = write_rows};
+
+const brio_codec brio_xyz_codec = {.read_columns = brio_xyz_read, .rows = &rows};

@@ -7,6 +7,7 @@ import shutil
 import struct
 import subprocess
 
+import formats
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
 COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide", "simplify", "terrain",
@@ -123,14 +124,14 @@ class Usage(CliTest):
         self.usage("cannot hold", "delaunay", "missing.xyz", "-o", "out.off")
 
     def test_formats_that_are_only_read_are_refused_before_the_input_is_read(self):
-        for name in ["out.npz", "out.bnpts"]:
+        for name in ["out" + kind["read"][0] for kind in formats.formats() if not kind["written"]]:
             self.usage("read, not written", "interpolate", "missing.xyz", "--at", "b", "--property", "p", "-o", name)
             self.usage("read, not written", "generate", "cube", "-n", "9", "-o", name)
 
     def test_surfaces_of_every_command_are_written_in_the_same_formats(self):
         points, mesh = self.cloud("a.ply", 300, "ball"), self.path("mesh.ply")
         for how in [("hull",), ("alpha", "--alpha", "auto"), ("surface",), ("delaunay", "--plane", "xy")]:
-            for extension in ["ply", "obj", "off", "stl", "vtu", "vtp"]:
+            for extension in formats.holding("faces"):
                 self.expect(0, how[0], points, *how[1:], "-o", self.path("out." + extension))
         self.expect(0, "hull", points, "-o", mesh)
         self.expect(0, "subdivide", mesh, "-o", self.path("out.vtp"))

@@ -5,6 +5,7 @@ import os
 import re
 import struct
 
+import formats
 import whole_files
 from brio_cli import OCTAHEDRON, OCTAHEDRON_FACES, CliTest, main
 
@@ -191,9 +192,9 @@ class SinglePrecision(LossTest):
     def test_a_stl_file_that_would_merge_the_points_is_refused_before_the_work(self):
         points, ground = self.far(2.0), self.box()
         for how in [("surface",), ("hull",), ("offset", "-D", "1"), ("alpha", "--alpha", "auto")]:
-            self.usage(r"far.xyz: .* would move points by up to 0.\d+, and most are 0.\d+ from the next: a STL", how[0],
+            self.usage(r"far.xyz: .* would move points by up to 0.\d+, and most are 0.\d+ from the next: an STL", how[0],
                        points, *how[1:], "-o", "out.stl")
-            self.usage(r"box.xyz: .* would merge \d+ of 1728 points with others: a STL", how[0], ground, *how[1:], "-o",
+            self.usage(r"box.xyz: .* would merge \d+ of 1728 points with others: an STL", how[0], ground, *how[1:], "-o",
                        "out.stl")
         self.usage("cannot hold", "hull", self.xyz("huge.xyz", ball(300, radius=1e39)), "-o", "o.stl")
         self.assertFalse(os.path.exists(self.path("out.stl")))
@@ -268,71 +269,10 @@ class Formats(LossTest):
 class Everything(LossTest):
     """A file with everything that its format allows: what is not in the mesh is named."""
 
-    PLY = ("ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 4\nproperty float x\nproperty float y\n"
-           "property float z\nproperty uchar red\nproperty list uchar int near\nelement face 1\n"
-           "property list uchar int vertex_indices\nproperty uchar flags\nproperty list uchar float texcoord\n"
-           "element tristrips 1\nproperty list int int vertex_indices\nelement tetrahedron 1\n"
-           "property list uchar int vertex_indices\nproperty int region\nelement edge 1\nproperty int vertex1\n"
-           "property int vertex2\nproperty uchar crease\nelement camera 1\nproperty float view_px\nend_header\n"
-           "0 0 0 1 1 1\n1 0 0 2 0\n0 1 0 3 0\n0 0 1 4 0\n3 0 2 1 5 2 0.5 0.5\n3 0 1 3\n4 0 1 2 3 9\n0 1 1\n0.5\n")
-    OBJ = ("mtllib a.mtl\no thing\ng part\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 0 0 1 1 1 1 0.5\nvt 0 0\n"
-           "vn 0 0 1\nvn 0 1 0\nvp 0.5\nusemtl m\ns 1\nf 1/1/1 2/1/1 3/1/1\nf 1/1/2 2/1/2 4/1/2\nl 1 2\n"
-           "#MRGB ff336699ffff0000ff00ff00ff4080bf\n")
-    OFF = "STCNOFF\n3 1 0\n" + "0 0 0 0 0 1 255 0 0 255 0.5 0.5\n" * 3 + "3 0 1 2 255 0 0\n"
-    PCD = ("# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb normal_x normal_y normal_z stamp _\nSIZE 4 4 4 4 4 4 4 8 1\n"
-           "TYPE F F F U F F F U U\nCOUNT 1 1 1 1 1 1 1 1 4\nWIDTH 1\nHEIGHT 2\nVIEWPOINT 1 2 3 1 0 0 0\nPOINTS 2\n"
-           "DATA ascii\n0 0 0 255 0 0 1 9007199254740993 1 1 1 1\n1 0 0 255 0 0 1 2 0 0 0 0\n")
-    XYZ = "# x y z R G B Nx Ny Nz Intensity id label\n0 0 0 1 2 3 0 0 1 0.5 9007199254740993 wall\n"
-    VTK = ["time of the file", "wide", "label", "area of cells that are no polygons"]
-    LAS = ["intensity", "return_number", "number_of_returns", "scan_direction_flag", "edge_of_flight_line", "classification",
-           "classification_flags", "scan_angle_rank", "user_data", "point_source_id", "gps_time"]
-    METADATA = ["crs"] + ["las." + name for name in "records system software date gps_time returns extras".split()]
-    # format: the file, what stays as properties, what is named as left out, metadata that PLY has no place for
-    FILES = {
-        "ply": (PLY, ["red"], ["near", "textures", "flags of face", "texcoord of face", "region of tetrahedron",
-                               "crease of edge", "camera"]),
-        "obj": (OBJ, ["red", "green", "blue"],
-                ["alpha", "materials", "objects", "groups", "texture coordinates", "free-form geometry", "smoothing groups",
-                 "lines", "#MRGB", "normals of corners"]),
-        "off": (OFF, "nx ny nz red green blue alpha s t".split(), []),
-        "pcd": (PCD, "red green blue nx ny nz stamp".split(), ["integers beyond 2^53", "viewpoint", "order in rows"]),
-        "xyz": (XYZ, "red green blue nx ny nz intensity id".split(), ["label"]),
-        "e57": (whole_files.e57_of_everything(), "intensity red green blue row_index".split(),
-                ["images", "date of the file", "names of scans", "descriptions of scans", "sensors", "elements of extensions",
-                 "weather", "times", "groups of points", "spherical coordinates", "own:label", "poses"]),
-        "las": (whole_files.las_of_everything(), LAS + ["wide", "large"],
-                ["waveforms", "COPC index", "LAStools index", "odd (extra bytes of a reserved type)",
-                 "blob (extra bytes without a type)", "extra bytes that nothing describes",
-                 "last digits of integers of 64 bits"],
-                METADATA),
-        "laz": (None, LAS + ["wide", "large"], ["COPC index"], METADATA),
-        "npy": (whole_files.npy_of_everything(), "red green blue id".split(), ["label", "time", "integers beyond 2^53"]),
-        "npz": (whole_files.npz_of_everything(), ["heat", "id"],
-                ["integers beyond 2^53", "words", "other", "files that are no arrays"]),
-        "glb": (whole_files.glb_of_everything(), "nx ny nz HEAT3_0 HEAT3_1 HEAT3_2 red green blue".split(),
-                ["other scenes", "materials", "textures", "animations", "skins", "cameras", "lights",
-                 "names of nodes and meshes", "morph targets", "texture coordinates", "further colours", "tangents"]),
-        "vtp": (whole_files.vtp_of_everything(), "red green blue nx ny nz heat".split(), VTK),
-        "vtu": (whole_files.vtu_of_everything(), "red green blue nx ny nz heat".split(),
-                VTK + ["cells of other types", "curved sides of cells"]),
-        "vtk": (whole_files.vtk_of_everything(), "heat|nx|ny|nz|my flow_0|my flow_1|my flow_2|red|green|blue|t_0|t_1".split("|"),
-                ["time of the file", "area of cells that are no polygons", "tables of colours", "label", "on", "wide", "cells of other types",
-                 "curved sides of cells"]),
-        "stl": (whole_files.stl_of_everything(), [], ["attributes of faces"]),
-        "ptx": ("2\n2\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n" + "1 0 0 0.5 1 2 3\n" * 4,
-                "intensity red green blue".split(), ["order in rows", "poses"]),
-        "node": ("2 3 1 1\n1 0 0 0 5 1\n2 1 0 0 6 0\n", ["attribute1", "boundary_marker"], []),
-        "bnpts": (struct.pack("<6f", 1, 2, 3, 0, 0, 1), ["nx", "ny", "nz"], []),
-        "extxyz": ('1\nLattice="1 0 0 0 1 0 0 0 1" Properties=species:S:1:pos:R:3:name:S:1:charge:R:1 energy=2\nH 0 0 0 one 1.5\n',
-                   ["atomic_number", "radius", "charge"], ["name", "comment"])}
-    # what has another extension, but is the same; and formats whose own tests have such files
-    SAME = {"gltf": "glb", "ele": "node", "chemical": "extxyz", "pts": "xyz", "txt": "xyz", "csv": "xyz", "asc": "xyz",
-            "xyzrgb": "xyz", "xyzn": "xyz", "tsv": "xyz", "dat": "xyz"}
-
     def test_there_is_a_file_for_every_format(self):
-        text = self.expect(0, "info", "--help").text
-        read = set(re.findall(r"\.(\w+)", text.split("reads:")[1].split("\n\n")[0]))
-        self.assertEqual(read, set(self.FILES) | set(self.SAME))
+        for kind in formats.formats():
+            self.assertTrue(formats.everything_of(kind), "%s: tests/cli/formats.py has no file of it: add a row to EVERYTHING, "
+                            "with a file that has all that the format allows" % kind["name"])
 
     def compressed(self):
         """The LAS file as LAZ, which brio writes without waveforms, with an index."""
@@ -341,7 +281,7 @@ class Everything(LossTest):
             return whole_files.with_index(f.read())
 
     def test_what_is_not_read_is_named(self):
-        for extension, (content, kept, left_out, *metadata) in self.FILES.items():
+        for extension, (content, kept, left_out, *metadata) in formats.EVERYTHING.items():
             name = self.file("all." + extension, content or self.compressed())
             facts = self.facts("info", name)
             self.assertEqual(list(facts["properties"]), kept, extension)
@@ -351,11 +291,11 @@ class Everything(LossTest):
 
     def test_what_stays_of_faces(self):
         """The kinds of files above that say something of faces; in PLY, strips beside the faces would have nothing."""
-        ply = self.PLY.replace("element tristrips 1\n", "element tristrips 0\n").replace("3 0 1 3\n", "")
-        for name, content, kept in [("a.ply", ply, {"flags": "uint8"}), ("a.vtp", self.FILES["vtp"][0], {"area": "float32"}),
-                                    ("a.vtu", self.FILES["vtu"][0], {"area": "float32"}),
-                                    ("a.vtk", self.FILES["vtk"][0], {"area": "float32"}),
-                                    ("a.off", self.OFF, {c: "float64" for c in ["red", "green", "blue"]})]:
+        ply = formats.PLY.replace("element tristrips 1\n", "element tristrips 0\n").replace("3 0 1 3\n", "")
+        for name, content, kept in [("a.ply", ply, {"flags": "uint8"}), ("a.vtp", formats.EVERYTHING["vtp"][0], {"area": "float32"}),
+                                    ("a.vtu", formats.EVERYTHING["vtu"][0], {"area": "float32"}),
+                                    ("a.vtk", formats.EVERYTHING["vtk"][0], {"area": "float32"}),
+                                    ("a.off", formats.OFF, {c: "float64" for c in ["red", "green", "blue"]})]:
             self.assertEqual(self.facts("info", self.file(name, content))["face_properties"], kept, name)
 
     def test_properties_of_faces_that_a_format_cannot_hold(self):

@@ -3,10 +3,19 @@
 In a command line {i} is the folder of inputs, {o} that of outputs, {s} that of scratch files."""
 
 import os
+import pathlib
+import re
 import subprocess
 
-# The first byte of a file of tests/fuzz/corpus/read is a place in this list: fuzz_read.c.
-EXTENSIONS = "ply xyz csv obj off vtu vtp node las laz pcd ptx stl npy npz glb txt gltf e57 pts ? bnpts extxyz".split()
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def extensions():
+    """What the first byte of a file of tests/fuzz/corpus/read says: places in the list of corpus.h. None: a wrapping."""
+    text = (ROOT / "tests/unit/corpus.h").read_text(encoding="utf-8")
+    names = re.search(r"corpus_names\[CORPUS_CHOICES\] = \{(.*?)\};", text, re.S).group(1)
+    return [name or None for name in re.findall(r'"a\.(\w+)"|NULL', names)]
+
 
 MADE = [
     "generate sphere -n 150 -o sphere.ply", "generate cube -n 120 -o cube.xyz", "generate grid -n 5 -o grid.xyz",
@@ -29,12 +38,12 @@ def make_inputs(brio, folder, corpus):
         for i in range(4):
             f.write("ATOM  %5d  C   ALA A   1    %8.3f%8.3f%8.3f  1.00  0.00           C\n" % (i, i, i % 2, 0))
         f.write("END\n")
-    formats = []
+    formats, known = [], extensions()
     for name in sorted(os.listdir(corpus)):
         with open(os.path.join(corpus, name), "rb") as f:
             choice, content = f.read(1)[0], f.read()
-        if choice < len(EXTENSIONS) and EXTENSIONS[choice] != "?":
-            file = "%s.%s" % (name, EXTENSIONS[choice])
+        if choice < len(known) and known[choice]:
+            file = "%s.%s" % (name, known[choice])
             with open(os.path.join(folder, file), "wb") as f:
                 f.write(content)
             if subprocess.run([brio, "info", file], cwd=folder, capture_output=True).returncode == 0:

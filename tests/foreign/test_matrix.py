@@ -24,7 +24,6 @@ LONG = bool(os.environ.get("BRIO_LONG"))
 COUNT = 40
 WKT = 'PROJCS["own",GEOGCS["base"],UNIT["m",1],AUTHORITY["EPSG","32633"]]'
 COLOURS, NORMALS = ["red", "green", "blue"], ["nx", "ny", "nz"]
-TARGETS = ["ply", "las", "laz", "pcd", "npy", "e57", "ptx", "vtu", "vtp", "vtk", "glb", "csv", "txt", "obj", "off", "node"]
 
 
 # --- what is written ---
@@ -366,6 +365,20 @@ READERS = {"ply": (read_ply, []), "las": (read_las, ["laspy"]), "laz": (read_las
            "off": (read_off, []), "node": (read_node, [])}
 
 
+def read_by_brio(path):
+    """For formats that no other program here reads."""
+    subprocess.run([BRIO, "convert", path, path + ".npy", "--quiet"], check=True)
+    return read_npy(path + ".npy")
+
+
+def targets():
+    """The extensions that are written, each with its reader and the packages that this needs."""
+    listed = json.loads(subprocess.run([BRIO, "help", "formats", "--json"], stdout=subprocess.PIPE, check=True).stdout)["formats"]
+    others = {kind["format"]: (read_by_brio, []) for kind in listed
+              if "properties" in kind["holds"] and not any(e[1:] in READERS for e in kind["written"])}
+    return {**READERS, **others}
+
+
 def depth(values):
     """What white is."""
     kind = values.dtype.str[1:]
@@ -460,8 +473,7 @@ class MatrixTest(ForeignTest):
             path, rows, system = self.source(source, words, grid)
             if path is None:
                 continue
-            for target in TARGETS:
-                reader, packages = READERS[target]
+            for target, (reader, packages) in targets().items():
                 if missing(*packages):
                     skipped.add(target)
                     continue

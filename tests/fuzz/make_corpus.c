@@ -5,7 +5,7 @@
 #include "laz_samples.h"
 #include "packed_samples.h"
 
-/* The first byte of an input of fuzz_read: the place in its list of names. */
+/* The first byte of an input of fuzz_read: the place in the list of corpus.h. */
 enum { PLY, XYZ, CSV, OBJ, OFF, VTU, VTP, NODE, LAS, LAZ, PCD, PTX, STL, NPY, NPZ, GLB, TXT, GLTF, E57, PTS };
 enum { NONE = 20, BNPTS, CHEMICAL, IN_E57, IN_NPZ, IN_GZIP, IN_ZSTD };
 

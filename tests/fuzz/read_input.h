@@ -4,6 +4,7 @@
 #ifndef BRIO_TESTS_READ_INPUT_H
 #define BRIO_TESTS_READ_INPUT_H
 
+#include "corpus.h"
 #include "fuzz.h"
 #include "wrapped_input.h"
 
@@ -16,14 +17,13 @@ typedef struct {
 
 /** Valid until the next call. */
 static inline read_input fuzz_read_input(fuzz_input *in) {
-    static const char *const names[] = {"a.ply", "a.xyz",  "a.csv", "a.obj", "a.off", "a.vtu",   "a.vtp",   "a.node",
-                                        "a.las", "a.laz",  "a.pcd", "a.ptx", "a.stl", "a.npy",   "a.npz",   "a.glb",
-                                        "a.txt", "a.gltf", "a.e57", "a.pts", NULL,    "a.bnpts", "a.extxyz"};
     static const char *const columns[] = {"x,y,z", "-,x,y,z,nx", "z y x", "x,y,z,x", "x"};
-    enum { NAMES = sizeof names / sizeof *names, COLUMNS = sizeof columns / sizeof *columns };
+    enum { NAMES = 23, COLUMNS = sizeof columns / sizeof *columns };
     static wrapped w;
-    size_t choice = fuzz_below(in, 32);
-    if (choice < NAMES) return (read_input){names[choice], NULL, in->at, in->left};
+    uint8_t first = fuzz_byte(in);
+    size_t choice = first % CORPUS_CHOICES;
+    const char *name = corpus_name(first);
+    if (name || choice < NAMES) return (read_input){name, NULL, in->at, in->left};
     if (choice >= NAMES + WRAPPINGS) return (read_input){"a.csv", columns[choice % COLUMNS], in->at, in->left};
     wrap(&w, (wrapping)(choice - NAMES), in->at, in->left);
     return (read_input){w.name, NULL, w.bytes, w.size};

@@ -34,8 +34,6 @@ MOST_SHOWN, BOUND, RUNS = 40, 0.02, 5
 
 COMMANDS = ("surface medial hull alpha offset iso delaunay restricted voronoi terrain locate interpolate check compare convert "
             "info generate subdivide simplify").split()
-FORMATS = "ply las laz pcd npy e57 ptx vtu vtp vtk glb csv txt xyz pts obj off stl node".split()
-READ = FORMATS + "npz gltf bnpts chemical extxyz ele dat asc tsv".split()
 
 INPUTS = [  # made by OLD: name, arguments
     ("ball.ply", "generate ball -n 900"),
@@ -163,10 +161,17 @@ def files_below(folder, version):
             for p in sorted(folder.rglob("*")) if p.is_file()}
 
 
+def extensions(program, command, title):
+    """The extensions that the help of a command lists."""
+    text = subprocess.run([program, "help", command], capture_output=True, check=True).stdout.decode()
+    return re.findall(r"\.(\w+)", text.split("\n" + title)[1].split("\n\n")[0].split("\nwrites:")[0])
+
+
 class Comparison:
     def __init__(self, programs, folder):
         self.programs, self.folder, self.runs, self.different, self.parts = programs, folder, 0, 0, {}
         self.part = ""
+        self.written, self.read = extensions(programs[0], "convert", "writes:"), extensions(programs[0], "info", "reads:")
         self.versions = {p: subprocess.run([p, "--version"], capture_output=True).stdout.strip() for p in programs}
 
     def run(self, program, words):
@@ -239,7 +244,7 @@ def formats(c):
     """Each format into each other one; returns the file of each format that can be written."""
     c.part = "formats"
     made = {}
-    for name in FORMATS:
+    for name in c.written:
         source = "surface.ply" if name in ("stl",) else "rich.ply"
         c.line("a." + name, "convert " + source)
         for option in ("--ascii", "--float32", "--compress"):
@@ -252,7 +257,7 @@ def formats(c):
             made[name] = c.folder / ("f." + name)
     for a in made:
         c.words(["info", "f." + a, "--json"])
-        for b in FORMATS:
+        for b in c.written:
             c.line("a." + b, "convert f." + a, "--json")
     return made
 
@@ -283,7 +288,7 @@ def corpus(c, long):
         (c.folder / "c1").write_bytes(content[1:])  # the first byte is the fuzzer's choice
         c.words(["info", "c", "--json"])
         own = re.match("[a-z0-9]*", path.name).group()
-        for name in READ if long else {own if own in READ else "ply": 0, READ[i % len(READ)]: 0}:
+        for name in c.read if long else {own if own in c.read else "ply": 0, c.read[i % len(c.read)]: 0}:
             c.line("a.csv", "convert c1 --input-format " + name, "--json")
 
 

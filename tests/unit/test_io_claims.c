@@ -1,19 +1,11 @@
 /* Files that claim more than they hold, of every format: refused, or read, without memory for what is not there.
  *
- * The samples are those of tests/fuzz/corpus/read, whose first byte chooses the format (fuzz_read.c). Each number of a text, and
- * each four and eight bytes of a file, become numbers that are large, or wrap when they are multiplied. */
-#include "harness.h"
+ * The samples are those of corpus.h. Each number of a text, and each four and eight bytes of a file, become numbers that are large, or wrap when they are multiplied. */
+#include "corpus.h"
 #include <ctype.h>
-#include <dirent.h>
-#include <stdbool.h>
-#include <string.h>
-
-static const char *const names[] = {"a.ply", "a.xyz",  "a.csv", "a.obj", "a.off", "a.vtu",   "a.vtp",   "a.node",
-                                    "a.las", "a.laz",  "a.pcd", "a.ptx", "a.stl", "a.npy",   "a.npz",   "a.glb",
-                                    "a.txt", "a.gltf", "a.e57", "a.pts", NULL,    "a.bnpts", "a.extxyz"};
 
 /* MOST: bytes that a reader may have at once, besides 64 times the file: its buffers; a window of E57 has 4 MiB. */
-enum { NAMES = sizeof names / sizeof *names, LARGEST = 1 << 13, DIGITS = 20, MOST = 24 << 20 };
+enum { LARGEST = 1 << 13, DIGITS = 20, MOST = 24 << 20 };
 
 static const uint64_t NUMBERS[] = {0xffffffff,          0xfffffffe,         0x7fffffff,         0x10000001, 0x02000000,
                                    0xffffffffffffffffU, 0x8000000000000001, 0x2000000000000001, 0x100000001};
@@ -70,24 +62,14 @@ static void claim_in_text(const char *sample, const char *name, const char *byte
     }
 }
 
+static void claim_in(const char *file, const char *name, const char *bytes, size_t size) {
+    if (size > LARGEST) size = LARGEST;
+    claim_in_bytes(file, name, bytes, size);
+    claim_in_text(file, name, bytes, size);
+}
+
 static void claims_beyond_the_file_take_no_memory(void) {
-    DIR *folder = opendir(BRIO_CORPUS);
-    size_t samples = 0;
-    EXPECT(folder != NULL, "%s", BRIO_CORPUS);
-    for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        static char path[4096], bytes[LARGEST];
-        snprintf(path, sizeof path, "%s/%s", BRIO_CORPUS, entry->d_name);
-        FILE *f = entry->d_name[0] == '.' ? NULL : fopen(path, "rb");
-        if (!f) continue;
-        size_t size = fread(bytes, 1, sizeof bytes, f);
-        fclose(f);
-        unsigned choice = size ? (unsigned char)bytes[0] % 32 : NAMES;
-        if (choice >= NAMES || !names[choice]) continue;
-        samples++;
-        claim_in_bytes(entry->d_name, names[choice], bytes + 1, size - 1);
-        claim_in_text(entry->d_name, names[choice], bytes + 1, size - 1);
-    }
-    if (folder) closedir(folder);
+    size_t samples = corpus_each(BRIO_CORPUS, claim_in);
     fprintf(stderr, "%zu samples: %zu files read, %zu refused\n", samples, read_files, refused_files);
     EXPECT(samples > 20 && read_files && refused_files);
 }

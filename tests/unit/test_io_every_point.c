@@ -1,19 +1,17 @@
 /* Files that fail at every point: each request for memory is refused, the caller cancels at each report of progress, the disk
- * is full behind each byte; in reading and converting the samples of tests/fuzz/corpus/read, in writing their meshes, cells and
+ * is full behind each byte; in reading and converting the samples of corpus.h, in writing their meshes, cells and
  * filtrations. Each failure is its status, nothing stays, and the old file stays. Builds with small blocks (io/blocks.h) have
  * a point between any two parts of a file. */
+#include "corpus.h"
 #include "failing_allocator.h"
 #include "io/blocks.h"
 #include "io_files.h"
 #include <sys/resource.h>
 
-static const char *const samples[] = {"a.ply", "a.xyz",  "a.csv", "a.obj", "a.off", "a.vtu",   "a.vtp",   "a.node",
-                                      "a.las", "a.laz",  "a.pcd", "a.ptx", "a.stl", "a.npy",   "a.npz",   "a.glb",
-                                      "a.txt", "a.gltf", "a.e57", "a.pts", NULL,    "a.bnpts", "a.extxyz"};
 static const char *const targets[] = {"t.ply", "t.xyz",  "t.csv", "t.obj", "t.off", "t.vtu",
                                       "t.vtp", "t.node", "t.las", "t.stl", "t.npy", "t.glb"};
 
-enum { SAMPLES = sizeof samples / sizeof *samples, TARGETS = sizeof targets / sizeof *targets, LONGEST = 1 << 16 };
+enum { TARGETS = sizeof targets / sizeof *targets };
 
 typedef brio_status (*work_fn)(brio_context *ctx);
 
@@ -136,29 +134,24 @@ static void expect_every_point(work_fn work, bool writes) {
 
 /* --- samples --- */
 
-/* Puts a file of the corpus into the folder. Returns whether this build can read it. */
-static bool take_sample(const char *name) {
-    static char bytes[LONGEST];
-    char path[1024];
-    snprintf(path, sizeof path, "%s/%s", BRIO_CORPUS, name);
-    FILE *f = name[0] == '.' ? NULL : fopen(path, "rb");
-    size_t size = f ? fread(bytes, 1, sizeof bytes, f) : 0;
-    if (f) fclose(f);
-    size_t choice = size ? (unsigned char)bytes[0] % 32 : SAMPLES;
-    if (choice >= SAMPLES || !samples[choice]) return false;
-    sample = samples[choice];
+static void (*test_of_sample)(void);
+static size_t taken;
+
+/* Puts a file into the folder, and tests it if this build can read it. */
+static void take_sample(const char *file, const char *name, const char *bytes, size_t size) {
+    char copy[32];
+    (void)file;
+    snprintf(copy, sizeof copy, "%s", name);
+    sample = copy;
     io_empty_folder();
-    io_put(sample, bytes + 1, size - 1);
-    return read_sample(io_ctx) == BRIO_OK;
+    io_put(sample, bytes, size);
+    if (read_sample(io_ctx) == BRIO_OK) test_of_sample(), taken++;
 }
 
 static void for_each_sample(void (*test)(void)) {
-    DIR *folder = opendir(BRIO_CORPUS);
-    size_t taken = 0;
-    EXPECT(folder != NULL, "%s", BRIO_CORPUS);
-    for (struct dirent *entry; folder && (entry = readdir(folder));)
-        if (take_sample(entry->d_name)) test(), taken++;
-    if (folder) closedir(folder);
+    test_of_sample = test;
+    taken = 0;
+    corpus_each(BRIO_CORPUS, take_sample);
     EXPECT(taken > 20, "%zu samples", taken);
 }
 

@@ -152,4 +152,7 @@ brio_status brio_e57_section_check(const brio_e57_pages *p, const brio_e57_scans
 brio_status brio_e57_section_read(brio_e57_pages *p, const brio_e57_section *section, const brio_e57_field *fields,
                                   brio_e57_decoder *decoders, size_t count);
 
+/* How points are written. */
+extern const struct brio_row_format brio_e57_rows;
+
 #endif

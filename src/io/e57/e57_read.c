@@ -328,7 +328,7 @@ typedef struct {
     size_t first;               /* its first vertex */
 } e57_reader;
 
-bool brio_e57_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     return size >= 8 && !memcmp(bytes, "ASTM-E57", 8);
 }
 
@@ -467,7 +467,7 @@ done:
     return status;
 }
 
-brio_status brio_e57_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     e57_reader r = {.builder = b};
     BRIO_TRY(brio_e57_pages_open(&r.pages, s));
@@ -484,3 +484,5 @@ done:
     brio_e57_pages_close(&r.pages);
     return status;
 }
+
+const brio_codec brio_e57_codec = {.starts = starts, .read = read_file, .rows = &brio_e57_rows};

@@ -3,6 +3,7 @@
 #define BRIO_IO_GLB_H
 
 #include "io/builder.h"
+#include "io/formats.h"
 
 /* --- the JSON --- */
 
@@ -110,5 +111,8 @@ typedef struct brio_glb_file {
 /** Adds the meshes of the scene.
  *  Returns BRIO_OK, BRIO_ERR_FORMAT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_glb_add_scene(const brio_glb_file *file, brio_builder *b);
+
+/** Writes a mesh as GLB. */
+brio_status brio_glb_write(brio_output *out, const brio_write_job *job);
 
 #endif

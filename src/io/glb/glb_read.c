@@ -15,7 +15,7 @@
 enum { MAGIC = 0x46546c67, VERSION = 2, HEADER = 12, CHUNK_HEADER = 8, PART = 1 << 20 };
 static const uint32_t JSON = 0x4e4f534a, BINARY = 0x004e4942;
 
-bool brio_glb_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     return size >= 4 && brio_le32(bytes) == MAGIC;
 }
 
@@ -65,13 +65,13 @@ static brio_status read_container(brio_stream *s, brio_glb_file *file, char **js
     return BRIO_OK;
 }
 
-brio_status brio_glb_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_glb_file file = {.ctx = s->ctx, .name = s->name};
     char *json = NULL;
     uint64_t size = 0;
     BRIO_TRY(brio_stream_fill(s, 4));
-    if (brio_glb_starts(s->buffer + s->begin, brio_stream_left(s)))
+    if (starts(s->buffer + s->begin, brio_stream_left(s)))
         BRIO_TRY(read_container(s, &file, &json, &size));
     else
         BRIO_TRY(read_block(s, UINT64_MAX, &json, &size));
@@ -86,3 +86,5 @@ done:
     brio_release(s->ctx, json);
     return status;
 }
+
+const brio_codec brio_glb_codec = {.starts = starts, .read = read_file, .write = brio_glb_write};

@@ -152,4 +152,7 @@ brio_status brio_las_read_points(brio_stream *s, brio_builder *b, const brio_las
 /** Reads points that are compressed. */
 brio_status brio_laz_read(brio_stream *s, brio_builder *b, const brio_las_header *h, const brio_las_plan *plan);
 
+/* How points are written, plain and compressed. */
+extern const struct brio_row_format brio_las_rows, brio_laz_rows;
+
 #endif

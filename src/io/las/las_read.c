@@ -286,13 +286,13 @@ done:
 /* Both chosen: a block fits in the second-level cache, and a thread's part is worth waking it. */
 enum { BLOCK_BYTES = 1 << 16, LEAST_ROWS = 1 << 12 };
 
-bool brio_laz_starts(const char *bytes, size_t size) {
-    enum { POINT_FORMAT = 104, COMPRESSED = 0xc0 };
-    return brio_las_starts(bytes, size) && size > POINT_FORMAT && (bytes[POINT_FORMAT] & COMPRESSED);
+static bool las_starts(const char *bytes, size_t size) {
+    return size >= 4 && !memcmp(bytes, "LASF", 4);
 }
 
-bool brio_las_starts(const char *bytes, size_t size) {
-    return size >= 4 && !memcmp(bytes, "LASF", 4);
+static bool laz_starts(const char *bytes, size_t size) {
+    enum { POINT_FORMAT = 104, COMPRESSED = 0xc0 };
+    return las_starts(bytes, size) && size > POINT_FORMAT && (bytes[POINT_FORMAT] & COMPRESSED);
 }
 
 typedef struct {
@@ -361,7 +361,7 @@ static brio_status end_pipe(brio_stream *s, brio_builder *b, brio_las_header *h,
 }
 
 /* Reads a file. A pipe with colours is not handed on in blocks: what the colours are is known at its end. */
-brio_status brio_las_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     brio_las_header h;
     atomic_bool rounded = false;
@@ -387,3 +387,6 @@ done:
     brio_las_header_free(b->ctx, &h);
     return status;
 }
+
+const brio_codec brio_las_codec = {.starts = las_starts, .read = read_file, .rows = &brio_las_rows};
+const brio_codec brio_laz_codec = {.starts = laz_starts, .read = read_file, .rows = &brio_laz_rows};

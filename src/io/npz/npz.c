@@ -206,7 +206,7 @@ typedef struct {
     double *table;         /* of an array of indices in Fortran's order: all of it, row by row */
 } npz_reader;
 
-bool brio_npz_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     return size >= 4 && (!memcmp(bytes, "PK\3\4", 4) || !memcmp(bytes, "PK\5\6", 4));
 }
 
@@ -334,7 +334,7 @@ done:
 
 /* --- all of them --- */
 
-brio_status brio_npz_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     npz_reader r = {.builder = b};
     b->sink = NULL; /* which would take the points before their properties are read */
@@ -351,3 +351,5 @@ done:
     npz_close(&r.npz);
     return status;
 }
+
+const brio_codec brio_npz_codec = {.starts = starts, .read = read_file};

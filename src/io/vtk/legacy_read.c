@@ -42,7 +42,7 @@ typedef struct {
 
 static const char mark[] = "# vtk DataFile Version ";
 
-bool brio_vtk_legacy_starts(const char *bytes, size_t size) {
+static bool starts(const char *bytes, size_t size) {
     return size >= strlen(mark) && !memcmp(bytes, mark, strlen(mark));
 }
 
@@ -467,7 +467,7 @@ static brio_status take_header(legacy_reader *r) {
     return BRIO_OK;
 }
 
-brio_status brio_vtk_legacy_read(brio_stream *s, brio_builder *b) {
+static brio_status read_file(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     legacy_reader r = {.stream = s, .builder = b, .cell_data.of_cells = true};
     BRIO_TRY(take_header(&r));
@@ -491,3 +491,5 @@ done:
     brio_vtk_data_free(s->ctx, &r.cell_data);
     return status;
 }
+
+const brio_codec brio_vtk_codec = {.starts = starts, .read = read_file, .write = brio_vtk_legacy_write};

@@ -5,6 +5,7 @@
 #include "base/context.h"
 #include "io/base64.h"
 #include "io/builder.h"
+#include "io/formats.h"
 #include "io/stream.h"
 
 /* --- tags --- */
@@ -263,5 +264,10 @@ brio_status brio_vtk_add_cells(brio_builder *b, const brio_vtk_cells *cells, bri
 /** Makes properties of faces of the columns that all cells have.   num_cells  of all pieces. */
 brio_status brio_vtk_finish_cell_data(brio_vtk_data *data, brio_builder *b, const brio_vtk_face_rows *rows,
                                       uint64_t num_cells);
+
+/* Writers, each in its own file. */
+brio_status brio_vtu_write(brio_output *out, const brio_write_job *job);
+brio_status brio_vtp_write(brio_output *out, const brio_write_job *job);
+brio_status brio_vtk_legacy_write(brio_output *out, const brio_write_job *job);
 
 #endif

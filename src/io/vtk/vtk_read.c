@@ -222,11 +222,11 @@ static const char *root_of(const char *bytes, size_t size) {
     return size >= strlen(file) && !memcmp(bytes, file, strlen(file)) ? bytes : NULL;
 }
 
-bool brio_vtu_starts(const char *bytes, size_t size) {
+static bool vtu_starts(const char *bytes, size_t size) {
     return root_of(bytes, size) != NULL;
 }
 
-bool brio_vtp_starts(const char *bytes, size_t size) {
+static bool vtp_starts(const char *bytes, size_t size) {
     static const char kind[] = "PolyData";
     const char *root = root_of(bytes, size);
     const char *end = root ? memchr(root, '>', size - (size_t)(root - bytes)) : NULL;
@@ -446,7 +446,7 @@ static void free_reader(vtk_reader *r) {
     brio_vtk_header_free(ctx, &r->header);
 }
 
-brio_status brio_vtk_read(brio_stream *s, brio_builder *b) {
+static brio_status read_vtk(brio_stream *s, brio_builder *b) {
     brio_status status = BRIO_OK;
     vtk_reader r = {.stream = s, .builder = b, .decoder.stream = s, .cell_data.of_cells = true};
     r.decoder.header = &r.header;
@@ -462,3 +462,6 @@ done:
     free_reader(&r);
     return status;
 }
+
+const brio_codec brio_vtu_codec = {.starts = vtu_starts, .read = read_vtk, .write = brio_vtu_write};
+const brio_codec brio_vtp_codec = {.starts = vtp_starts, .read = read_vtk, .write = brio_vtp_write};

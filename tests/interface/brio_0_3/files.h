@@ -12,10 +12,10 @@ extern "C" {
 typedef struct brio_read_options brio_read_options;
 typedef struct brio_write_options brio_write_options;
 
-/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of vertices and polygons; skips other elements.
- *  What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in threads. A file
- *  compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or libzstd; messages
- *  then count lines and bytes of what was decompressed.
+/** Reads a file. Keeps vertices, polygons, tetrahedra and every scalar property of vertices and polygons; skips other
+ *  elements. What is read, kept and lost of each format is in docs/formats.md. Chunks of LAZ files are decoded in
+ *  threads. A file compressed by gzip or zstd is decompressed while it is read, if the library was built with zlib or
+ *  libzstd; messages then count lines and bytes of what was decompressed.
  *  path  "-" reads standard input.   options  NULL for the defaults.   out  owned by the caller; NULL on error.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (columns of a format that has none, or that lack x, y or z), BRIO_ERR_OPEN,
  *  BRIO_ERR_FORMAT (the message names the file, the line or byte offset, and what was expected), BRIO_ERR_NOT_FINITE
@@ -26,20 +26,23 @@ BRIO_API brio_status brio_read(brio_context *ctx, const char *path, const brio_r
 /** Writes a mesh. Writes a temporary file beside the target, flushes it, and renames it to the target, so that no
  *  half-written file is ever left. A symbolic link stays, and the file that it leads to is made or replaced. The
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
- *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a descriptor
- *  of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The process
- *  receives neither SIGPIPE nor SIGXFSZ. Edges are written to PLY, VTU, VTP and GLB only; faces not to
- *  texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners not to STL and GLB. In the names of properties, formats
- *  that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a coordinate; a comment of
- *  several lines becomes several comments. Of several files (.node and those beside it) none gets its name before all are
- *  complete.
+ *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a
+ *  descriptor of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The
+ *  process receives neither SIGPIPE nor SIGXFSZ. What a format cannot hold is left out: properties by STL, edges by all
+ *  but PLY, VTU, VTP, VTK and GLB, faces by texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners
+ *  by STL and GLB; brio_format_facts tells what a format holds. In the names of
+ *  properties, formats that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a
+ *  coordinate; a comment of several lines becomes several comments. Of several files (.node and those beside it) none
+ *  gets its name before all are complete.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the format cannot hold the mesh, an index is out of range, or three tetrahedra
  *  whose neighbours are asked for share a facet), BRIO_ERR_NOT_FINITE, before a file is opened, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh,
                                 const brio_write_options *options);
 
-/** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the format. */
+/** File formats. BRIO_FORMAT_AUTO decides by the extension, and by the content of the file where it tells the
+ *  format. A format need not have a name here: brio_format_of finds the number of each, up to BRIO_FORMAT_MOST, and
+ *  numbers for which brio_format_facts returns NULL are free. */
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
     BRIO_FORMAT_PLY = 1,
@@ -53,7 +56,7 @@ typedef enum brio_format {
     BRIO_FORMAT_LAZ = 9, /* LAS, compressed as by LASzip; written in formats 0 to 3 and 6 to 8 */
     BRIO_FORMAT_PCD = 10,
     BRIO_FORMAT_PTX = 11,
-    BRIO_FORMAT_STL = 12,      /* corners at the same position become one vertex */
+    BRIO_FORMAT_STL = 12,      /* single precision; where it is read, corners at the same position become one vertex */
     BRIO_FORMAT_NPY = 13,      /* NumPy: an array of rows of coordinates, or of records with names */
     BRIO_FORMAT_GLB = 14,      /* glTF 2.0: .glb; .gltf is read, not written. Single precision about an origin */
     BRIO_FORMAT_E57 = 15,      /* read where brio was built with the library expat; written to files, not to pipes */
@@ -61,7 +64,7 @@ typedef enum brio_format {
     BRIO_FORMAT_BNPTS = 17,    /* oriented points of Kazhdan's Poisson programs: read, not written */
     BRIO_FORMAT_NPZ = 18,      /* NumPy's zip of arrays: read, not written */
     BRIO_FORMAT_VTK = 19,      /* VTK's legacy files of polygonal data and unstructured grids */
-    BRIO_FORMAT_END
+    BRIO_FORMAT_MOST = 255     /* no number is larger */
 } brio_format;
 
 /** Returns the format of a file name or of an extension with or without its dot; BRIO_FORMAT_AUTO if it is unknown. */
@@ -83,7 +86,9 @@ enum {
     BRIO_HOLDS_NORMALS = 2048,         /* nx, ny and nz, though not all properties */
     BRIO_HOLDS_INTENSITY = 4096,       /* intensity, though not all properties */
     BRIO_HOLDS_FACE_PROPERTIES = 8192, /* of the faces, any of them */
-    BRIO_HOLDS_FACE_COLOURS = 16384    /* red, green, blue and alpha of the faces, though not all properties */
+    BRIO_HOLDS_FACE_COLOURS = 16384,   /* red, green, blue and alpha of the faces, though not all properties */
+    BRIO_HOLDS_ORIGIN = 32768,         /* an origin, from which coordinates in single precision are counted */
+    BRIO_HOLDS_PLACES = 65536          /* places of its parts, known at its end: it goes to a file, not into a pipe */
 };
 
 /** What is known of a format. */
@@ -100,6 +105,13 @@ typedef struct brio_format_info {
 
 /** Returns what is known of a format, valid for ever; NULL for BRIO_FORMAT_AUTO and what is no format. */
 BRIO_API const brio_format_info *brio_format_facts(brio_format format);
+
+enum { BRIO_FORMAT_LIST = 512 }; /* bytes that a list of all extensions fits in */
+/** Lists extensions, as messages do: ".ply .vtp .vtu".
+ *  written  1: those that are written; 0: those that are read.
+ *  holds    BRIO_HOLDS_FACES and so on: of formats that hold all of that; 0: of all formats.
+ *  text     receives the list; where `size` bytes are too few, extensions are left out. */
+BRIO_API void brio_format_list(int written, unsigned holds, char *text, size_t size);
 
 /** Receives the name of something that a mesh or a file cannot hold, valid during the call. */
 typedef void (*brio_lost_fn)(const char *name, void *user);
@@ -143,8 +155,8 @@ struct brio_read_options {
 /** brio_read of a file's bytes in memory, compressed ones included. No file is opened: a .node file's tetrahedra, which
  *  are in another file, are not read.
  *  bytes  size of them, not kept.
- *  name   what messages call the file, "scan.ply"; its extension tells the format where the content does not. NULL is for
- *         none: then bytes in no known format are rows of numbers.
+ *  name   what messages call the file, "scan.ply"; its extension tells the format where the content does not. NULL is
+ *         for none: then bytes in no known format are rows of numbers.
  *  Returns what brio_read returns, but not BRIO_ERR_OPEN. */
 BRIO_API brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
                                       const brio_read_options *options, brio_mesh **out);
@@ -160,13 +172,13 @@ typedef struct brio_file_facts {
 /** Receives a part of a file. `block` is valid during the call. A result other than 0 cancels the reading. */
 typedef int (*brio_rows_fn)(const brio_mesh *block, void *user);
 
-/** Reads a file as brio_read does, and hands over its points in blocks of some 65,536, in the order of the file, each with
- *  its part of the properties: a file of any size needs the memory of a few blocks. All blocks have the same properties; a
- *  file without points is one empty block. Files with polygons or tetrahedra, and formats and orders that do not hold one
- *  point after the other (OBJ, OFF, VTU, NODE, STL, NPZ, NPY in Fortran's order), are one block.
+/** Reads a file as brio_read does, and hands over its points in blocks of some 65,536, in the order of the file, each
+ *  with its part of the properties: a file of any size needs the memory of a few blocks. All blocks have the same
+ *  properties; a file without points is one empty block. Files with polygons or tetrahedra, and formats and orders that
+ *  do not hold one point after the other (OBJ, OFF, VTU, NODE, STL, NPZ, NPY in Fortran's order), are one block.
  *  facts  NULL, or receives what the file is.
- *  Returns what brio_read returns; BRIO_ERR_CANCELLED if the callback asked for it; BRIO_ERR_FORMAT if a row of a text lacks
- *  a column that earlier blocks have. Earlier blocks were handed over when an error is found. */
+ *  Returns what brio_read returns; BRIO_ERR_CANCELLED if the callback asked for it; BRIO_ERR_FORMAT if a row of a text
+ *  lacks a column that earlier blocks have. Earlier blocks were handed over when an error is found. */
 BRIO_API brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_read_options *options,
                                       brio_rows_fn take, void *user, brio_file_facts *facts);
 
@@ -221,24 +233,25 @@ typedef struct brio_convert_stats {
 } brio_convert_stats;
 
 /** Converts a file to another format, or chooses among its points, or both. First come the points in the box, of these
- *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon, tetrahedron
- *  or edge stays if all its vertices stay. Merging comes last; the whole file is then in memory.
- *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text, NPY,
- *  PCD (uncompressed) and PTX to LAS, LAZ, PLY, text, NPY, PCD, E57 and PTX. The input is read twice or three times if the output
- *  must know all points before the first one (LAS, LAZ, E57 and PTX; PLY and NPY into a pipe, if their number is not known), or if outliers are dropped or
- *  points are thinned. Outliers and thinning need the coordinates in memory: 24 bytes a point, and what brio_outliers and
- *  brio_thin take. Where an input that must be read again is no regular file, and for other formats and meshes, the whole
- *  file is in memory.
- *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names of
- *  properties, "NAME of faces" for those of faces, the names of metadata ("crs" for a coordinate system), "faces of dropped points" if outliers or thinning take corners of faces, tetrahedra or edges,
- *  and "precision" if coordinates, or whole numbers of a text, are rounded; and so is what brio does not read of the
- *  input, by the names of brio_read_options.left_out. What is only renamed goes to options->renamed.
- *  With options->crs an input without a coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written.
- *  Progress begins anew where a text is read again because late rows lack a column.
+ *  those that are no outliers, of these a thinned set; the points keep their order and all properties. A polygon,
+ *  tetrahedron or edge stays if all its vertices stay. Merging comes last; the whole file is then in memory.
+ *  Memory: files of points are converted block by block, in less than 64 MB with two threads, from LAS, LAZ, PLY, text,
+ *  NPY, PCD (uncompressed) and PTX to LAS, LAZ, PLY, text, NPY, PCD, E57 and PTX. The input is read twice or three
+ *  times if the output must know all points before the first one (LAS, LAZ, E57 and PTX; PLY and NPY into a pipe, if
+ *  their number is not known), or if outliers are dropped or points are thinned. Outliers and thinning need the
+ *  coordinates in memory: 24 bytes a point, and what brio_outliers and brio_thin take. Where an input that must be read
+ *  again is no regular file, and for other formats and meshes, the whole file is in memory.
+ *  What the other format cannot hold is left out and named to options->lost: "faces", "tetrahedra", "edges", the names
+ *  of properties, "NAME of faces" for those of faces, the names of metadata ("crs" for a coordinate system), "faces of
+ *  dropped points" if outliers or thinning take corners of faces, tetrahedra or edges, and "precision" if coordinates,
+ *  or whole numbers of a text, are rounded; and so is what brio does not read of the input, by the names of
+ *  brio_read_options.left_out. What is only renamed goes to options->renamed. With options->crs an input without a
+ *  coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written. Progress begins anew where a
+ *  text is read again because late rows lack a column.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.
- *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and BRIO_ERR_FORMAT if
- *  the input changed between two readings. */
+ *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and
+ *  BRIO_ERR_FORMAT if the input changed between two readings. */
 BRIO_API brio_status brio_convert(brio_context *ctx, const char *from, const char *to,
                                   const brio_convert_options *options, brio_convert_stats *stats);
 
