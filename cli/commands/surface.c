@@ -283,6 +283,8 @@ static void report_unseen(run *r, const brio_surface_stats *s) {
 static void report_labeled_delaunay(run *r, const brio_surface_stats *s) {
     facts *f = &r->facts;
     cli_report_noise(r, s->noise, s->smoothed);
+    cli_fact_real(f, "rounding", s->rounding);
+    if (s->rounding > 0) cli_warn(r, WARNING_STEPS, s->rounding, s->unrounded);
     cli_fact_count(f, "unused", s->unused);
     cli_fact_count(f, "undecided", s->undecided);
     cli_fact_count(f, "specks", s->specks);
@@ -323,7 +325,7 @@ static brio_surface_options labeled_delaunay_options(run *r) {
 
 static brio_status labeled_delaunay(run *r, brio_mesh *points, brio_mesh **surface, outcome *found) {
     brio_surface_options o = labeled_delaunay_options(r);
-    brio_surface_stats s = {0};
+    brio_surface_stats s = {.size = sizeof s};
     const arguments *a = r->arguments;
     uint64_t work = 0;
     size_t usual;
