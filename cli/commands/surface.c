@@ -276,6 +276,8 @@ static void report_unseen(run *r, const brio_surface_stats *s) {
 static void report_labeled_delaunay(run *r, const brio_surface_stats *s) {
     facts *f = &r->facts;
     cli_report_noise(r, s->noise, s->smoothed);
+    cli_fact_real(f, "rounding", s->rounding);
+    if (s->rounding > 0) cli_warn(r, WARNING_STEPS, s->rounding, s->unrounded);
     cli_fact_count(f, "unused", s->unused);
     cli_fact_count(f, "undecided", s->undecided);
     cli_fact_count(f, "specks", s->specks);
@@ -339,7 +341,7 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     const arguments *a = r->arguments;
     int method = method_of(a);
     brio_surface_options o = library_options(r, method);
-    brio_surface_stats s = {0};
+    brio_surface_stats s = {.size = sizeof s};
     uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;

@@ -230,6 +230,10 @@ const glossary_line cli_glossary[] = {
      LINE_PLAIN, STYLE_SPACINGS},
     {POLES, NULL, "smoothed", NULL, "whether the points were smoothed because of it (--noise)", LINE_PLAIN,
      STYLE_PLAIN},
+    {"surface", NULL, "rounding", NULL,
+     "median of the steps, higher than the points are apart, to which depths were rounded; steps became slopes; 0: "
+     "none",
+     LINE_PLAIN, STYLE_UNLESS_ZERO},
     {"surface", NULL, "dropped_components", NULL, "pieces dropped by --keep-largest and --min-component", LINE_PLAIN,
      STYLE_PLAIN},
     {"surface", NULL, "dropped_faces", NULL, "their faces", LINE_PLAIN, STYLE_PLAIN},

@@ -48,8 +48,12 @@
     "%.1f %% of the area spans gaps between the points, where nothing was seen: %zu bridges, the largest at %g %g "    \
     "%g, "                                                                                                             \
     "%g across; --open %s"
-#define WARNING_UNSEEN   "%.1f %% of the area is where no point is near: %zu bridges, the largest at %g %g %g, %g across"
-#define WARNING_ASIDE    "the %s of the points are of no use: they agree with the surface at %.0f %% of these"
+#define WARNING_UNSEEN "%.1f %% of the area is where no point is near: %zu bridges, the largest at %g %g %g, %g across"
+#define WARNING_ASIDE  "the %s of the points are of no use: they agree with the surface at %.0f %% of these"
+#define WARNING_STEPS                                                                                                  \
+    "depths are rounded to steps of about %g, which are higher than the points are apart: %zu points were moved by "   \
+    "at "                                                                                                              \
+    "most half a step, so that steps are slopes; --noise keep leaves them where they are"
 #define WARNING_LEFT_OUT "%zu of %zu points are farther than two spacings from the surface"
 #define WARNING_MORE_FACES                                                                                             \
     "%zu faces are left, more than the %zu asked for: borders and topology stay, and no faces may come to cross"

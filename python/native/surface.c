@@ -162,11 +162,12 @@ static PyObject *report_of(const brio_surface_stats *s) {
     PyObject *bridges = Py_BuildValue("{s:n,s:d,s:d,s:(ddd)}", "number", (Py_ssize_t)s->bridges, "area_share",
                                       s->bridge_share, "largest_radius", s->bridge_radius, "largest_centre",
                                       s->bridge_centre[0], s->bridge_centre[1], s->bridge_centre[2]);
-    PyObject *report = Py_BuildValue("{s:d,s:N,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:N,s:d,s:d,s:s}", "noise", s->noise,
-                                     "smoothed", PyBool_FromLong((long)s->smoothed), COUNT(unused), COUNT(undecided),
-                                     COUNT(specks), COUNT(relabeled), COUNT(handles), COUNT(strays), COUNT(holes),
-                                     COUNT(left_out), "bridges", bridges, "far_area_percent", 100 * s->far_share,
-                                     "uncertain_share", s->uncertain_share, "orientation", by[s->evidence & 3]);
+    PyObject *report =
+        Py_BuildValue("{s:d,s:N,s:d,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:N,s:d,s:d,s:s}", "noise", s->noise, "smoothed",
+                      PyBool_FromLong((long)s->smoothed), "rounding", s->rounding, COUNT(unused), COUNT(undecided),
+                      COUNT(specks), COUNT(relabeled), COUNT(handles), COUNT(strays), COUNT(holes), COUNT(left_out),
+                      "bridges", bridges, "far_area_percent", 100 * s->far_share, "uncertain_share", s->uncertain_share,
+                      "orientation", by[s->evidence & 3]);
 #undef COUNT
     const struct {
         const char *name;
@@ -213,7 +214,7 @@ static PyObject *surface(PyObject *module, PyObject *args) {
     evidence_input e = {.taken = {0}};
     call c;
     brio_status status;
-    brio_surface_stats stats = {0};
+    brio_surface_stats stats = {.size = sizeof stats};
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
     int triangulate = 0;

@@ -176,7 +176,7 @@ ENDS_WITH(brio_distance, diagonal);
 ENDS_WITH(brio_pole_options, reserved);
 ENDS_WITH(brio_pole_stats, reserved);
 ENDS_WITH(brio_surface_options, reserved_int);
-ENDS_WITH(brio_surface_stats, simplify_seconds);
+ENDS_WITH(brio_surface_stats, rounding);
 ENDS_WITH(brio_power_shape_options, redundancy);
 ENDS_WITH(brio_power_shape_stats, shape_seconds);
 ENDS_WITH(brio_evidence, origin_of);

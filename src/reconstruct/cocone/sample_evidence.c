@@ -60,14 +60,20 @@ static int class_of(float cosine) {
     return class < CLASSES ? class : CLASSES - 1;
 }
 
-/* Writes the direction from a sample at x to its scanner; zero where its place is not known. */
-static void towards_scanner(const brio_sample_evidence *e, size_t p, const double x[3], double to[3]) {
+bool brio_scanner_place(const brio_sample_evidence *e, size_t p, double place[3]) {
     const brio_evidence *given = &e->given;
+    if (!given->origins) return false;
     size_t point = e->order[p];
     size_t at = given->origin_of ? given->origin_of[point] : given->num_origins == 1 ? 0 : point;
-    to[0] = to[1] = to[2] = 0;
-    for (size_t k = 0; k < 3 && at < given->num_origins; k++)
-        to[k] = ldexp(given->origins[3 * at + k], -e->exponent) - x[k];
+    if (at >= given->num_origins) return false;
+    for (size_t k = 0; k < 3; k++) place[k] = ldexp(given->origins[3 * at + k], -e->exponent);
+    return true;
+}
+
+/* Writes the direction from a sample at x to its scanner; zero where its place is not known. */
+static void towards_scanner(const brio_sample_evidence *e, size_t p, const double x[3], double to[3]) {
+    bool is_known = brio_scanner_place(e, p, to);
+    for (size_t k = 0; k < 3; k++) to[k] = is_known ? to[k] - x[k] : 0;
 }
 
 /* Returns the cosine between an axis and the direction that the evidence of a sample at x gives; 0 where there is

@@ -32,6 +32,10 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e
 brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c,
                                     uint8_t *turned, float **own, unsigned *used);
 
+/** Writes the place of the scanner that saw sample p, scaled as the samples are. Returns whether it is known; it may not be
+ *  finite. */
+bool brio_scanner_place(const brio_sample_evidence *e, size_t p, double place[3]);
+
 /** Finds the directions from the samples to their scanners.
  *  points  #P by 3: the samples.
  *  out     #P, owned by the caller (brio_release): unit vectors, zero where no place is known.

@@ -224,7 +224,7 @@ static brio_status make_mesh(brio_reconstruction *r, const double *points, brio_
                              .order = r->order,
                              .placed = r->points,
                              .exponent = r->exponent,
-                             .moved = r->stats.smoothed,
+                             .moved = r->stats.smoothed || r->stats.unrounded > 0,
                              .spacing = r->spacing,
                              .confidence = r->confidence,
                              .bridge = r->of_faces.bridge,

@@ -39,8 +39,6 @@ static brio_status orient_by_evidence(brio_reconstruction *r) {
     brio_cocones cocones = {0};
     unsigned *used = &r->stats.evidence;
     size_t candidates;
-    r->evidence.order = r->order;
-    r->evidence.exponent = r->exponent;
     if (!r->evidence.given.normals && !r->evidence.given.origins) return BRIO_OK;
     BRIO_TRY(brio_cocones_new(r->ctx, &r->dual, &cocones));
     BRIO_TRY(brio_cocones_select(r->ctx, &cocones, &candidates));
