@@ -107,7 +107,7 @@ static void print_words(FILE *out, const option *row) {
     const char *words;
     option_choice c;
     for (size_t i = 0; cli_has_choices(row) && (c = cli_choice(row, i, &words)).name; i++)
-        if (words) print_entry(out, c.name, words, 6, COLUMN);
+        if (words) cli_print_entry(out, c.name, words, 6, COLUMN);
 }
 
 static void print_options(FILE *out, const char *title, const option *rows) {
