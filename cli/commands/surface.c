@@ -341,7 +341,7 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     const arguments *a = r->arguments;
     int method = method_of(a);
     brio_surface_options o = library_options(r, method);
-    brio_surface_stats s = {.size = sizeof s};
+    brio_surface_stats s = {0};
     uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;

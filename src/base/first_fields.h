@@ -37,7 +37,7 @@
 #define BRIO_FIRST_brio_restricted_stats      cut_seconds
 #define BRIO_FIRST_brio_spanning_tree_stats   tree_seconds
 #define BRIO_FIRST_brio_surface_options       reserved_int
-#define BRIO_FIRST_brio_surface_stats         simplify_seconds
+#define BRIO_FIRST_brio_surface_stats         rounding
 #define BRIO_FIRST_brio_write_options         reserved_int
 
 #endif

@@ -19,9 +19,10 @@ typedef struct brio_cells_options {
     size_t num_planes;    /* box and planes together must bound a polytope with a volume */
 } brio_cells_options;
 
-/** Cells and their faces, #C cells and #F faces. Cell c has the faces face_offsets[c] to face_offsets[c+1] - 1, and face f
- *  has the corners corner_offsets[f] to corner_offsets[f+1] - 1, counterclockwise seen from outside the cell. Arrays that
- *  were not asked for are NULL. A face between two cells is listed in both. Later versions may append fields. */
+/** Cells and their faces, #C cells and #F faces. Cell c has the faces face_offsets[c] to face_offsets[c+1] - 1, and
+ *  face f has the corners corner_offsets[f] to corner_offsets[f+1] - 1, counterclockwise seen from outside the cell.
+ *  Arrays that were not asked for are NULL. A face between two cells is listed in both. Later versions may append
+ *  fields. */
 typedef struct brio_cells {
     size_t size; /* of the struct in the library that runs */
     brio_context *context;
@@ -45,29 +46,29 @@ typedef struct brio_cells {
     double *vertices; /* #vertices by 3 */
 } brio_cells;
 
-/** Computes the Voronoi cell of every vertex or, with weights, the power cell: the points of space whose distance (power
- *  distance) from the vertex is the least. Duplicates and hidden points have no cells. Without a region (box or planes),
- *  cells of vertices on the convex hull are unbounded.
+/** Computes the Voronoi cell of every vertex or, with weights, the power cell: the points of space whose distance
+ *  (power distance) from the vertex is the least. Duplicates and hidden points have no cells. Without a region (box or
+ *  planes), cells of vertices on the convex hull are unbounded.
  *  Faces: two cells share a face if they meet in a polygon; cells that meet in an edge or a point, as many cells of a
- *  lattice do, share none. This is decided exactly. A face can have a computed area of 0 if it is too small for doubles.
- *  In a region, a cell that lies outside has the volume 0 and no faces. What the walls cut off is decided exactly, too: two
- *  cells share a face if a part of it with an area is in the region, and a face that lies in a wall is the wall's. Of a
- *  region of planes that are no box, which corners it has is decided by rounded coordinates.
+ *  lattice do, share none. This is decided exactly. A face can have a computed area of 0 if it is too small for
+ *  doubles. In a region, a cell that lies outside has the volume 0 and no faces. What the walls cut off is decided
+ *  exactly, too: two cells share a face if a part of it with an area is in the region, and a face that lies in a wall
+ *  is the wall's. Of a region of planes that are no box, which corners it has is decided by rounded coordinates.
  *  Vertices: a vertex at the centre of tetrahedra is listed once, however many tetrahedra share it; a vertex that
- *  clipping made belongs to one cell. An unbounded face lists its finite vertices in order, from the end of one ray to the
- *  end of the other; unbounded cells of points of dimension 2 or less list none.
+ *  clipping made belongs to one cell. An unbounded face lists its finite vertices in order, from the end of one ray to
+ *  the end of the other; unbounded cells of points of dimension 2 or less list none.
  *  Accuracy: vertices are rounded to doubles, after an error of 2^-44 of their distance from their sites. Errors of
- *  vertices cancel in the sum of the volumes: in a region it is region_volume up to about 1e-13 relative, if all cells are
- *  there, and up to about 2^-50 times the distance from 0 or from the sites to the region, divided by its side, where that is
- *  more. Compare volume_sum with region_volume to see; more than 1 % is BRIO_ERR_NO_ANSWER.
+ *  vertices cancel in the sum of the volumes: in a region it is region_volume up to about 1e-13 relative, if all cells
+ *  are there, and up to about 2^-50 times the distance from 0 or from the sites to the region, divided by its side,
+ *  where that is more. Compare volume_sum with region_volume to see; more than 1 % is BRIO_ERR_NO_ANSWER.
  *  Points of dimension 2 or less have cells too: prisms, slabs, or all of space, bounded in a region alone.
  *  t  the result of brio_delaunay for these points and weights, or NULL to compute it.
  *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
  *  out  owned by the caller, freed with brio_cells_free; NULL on error.
  *  The result has the same bits for every number of threads.
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
- *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes take one pass over
- *  the facets, about as long as brio_delaunay.
+ *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes
+ *  take one pass over the facets, about as long as brio_delaunay.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat, unbounded, or too
  *  small or, 2^600 times, too large beside the points), BRIO_ERR_NO_ANSWER (see Accuracy), and as brio_delaunay.
  *  Based on: [Aurenhammer 1987], [Choi 2003] sections 2.1 and 2.2. */
@@ -94,8 +95,8 @@ typedef enum brio_cells_format {
 BRIO_API brio_cells_format brio_cells_format_of(const char *path);
 
 /** Writes cells to a file, with the care of brio_write. CSV and NPY have a row for each cell: site, volume, area, faces
- *  (their number), bounded, cx, cy, cz (the centroid). FACES_CSV has a row for each face of each cell: site, neighbour, area,
- *  nx, ny, nz. VTU has site, volume, area and faces as data of the cells. The cells
+ *  (their number), bounded, cx, cy, cz (the centroid). FACES_CSV has a row for each face of each cell: site, neighbour,
+ *  area, nx, ny, nz. VTU has site, volume, area and faces as data of the cells. The cells
  *  have areas, centroids and faces; for VTU also vertices.
  *  comment  a line for the header of a VTU file; NULL: none.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an unknown format, or an array is missing), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,

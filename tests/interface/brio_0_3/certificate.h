@@ -22,7 +22,7 @@ typedef struct brio_certificate {
     int64_t *genera; /* of each component, the component with the most faces first; owned by the certificate */
     size_t boundary_edges, boundary_loops;
     size_t nonmanifold_edges, nonmanifold_vertices, flipped_edges;
-    int64_t self_intersections; /* -1: for the caller, who may store here what brio_mesh_self_intersections counts */
+    int64_t self_intersections; /* -1: not counted; a place for what brio_mesh_self_intersections counts */
     double area, volume;        /* volume is positive when the faces are seen counterclockwise from outside */
 } brio_certificate;
 
@@ -32,8 +32,8 @@ typedef struct brio_certificate {
 BRIO_API brio_status brio_mesh_certificate(brio_context *ctx, const brio_mesh *mesh, brio_certificate *out);
 
 /** Counts, exactly, the pairs of faces that meet in more than common corners and edges: faces that cross each other,
- *  touch, or overlap in one plane. Corners at equal positions are common corners. A polygon counts as the fan of triangles
- *  from its first corner; triangles of area 0 meet nothing.
+ *  touch, or overlap in one plane. Corners at equal positions are common corners. A polygon counts as the fan of
+ *  triangles from its first corner; triangles of area 0 meet nothing.
  *  Cost: near-linear for faces of about equal size; 100 bytes a face.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_mesh *mesh, int64_t *pairs);
@@ -56,10 +56,10 @@ typedef struct brio_distance {
 BRIO_API brio_status brio_mesh_distance(brio_context *ctx, const brio_mesh *a, const brio_mesh *b, size_t samples,
                                         uint64_t seed, brio_distance *out);
 
-/** Measures how far points are from a surface: exactly the nearest point of its faces, and the side. Of a closed surface points
- *  inside have negative distances, by the winding number, exactly, whichever way its faces look. Of any other surface points behind
- *  the faces have: by the triangles at the nearest point, and where these disagree by their normals, weighted by angles. Vertices at
- *  one position count as one.   distance  #P, written.
+/** Measures how far points are from a surface: exactly the nearest point of its faces, and the side. Of a closed
+ *  surface points inside have negative distances, by the winding number, exactly, whichever way its faces look. Of any
+ *  other surface points behind the faces have: by the triangles at the nearest point, and where these disagree by their
+ *  normals, weighted by angles. Vertices at one position count as one.   distance  #P, written.
  *  Cost: O(log F) expected a point, with all threads; 50 bytes a triangle.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, or no face of three corners), BRIO_ERR_NOT_FINITE,
  *  BRIO_ERR_NO_ANSWER (doubles cannot hold the distances), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
@@ -83,8 +83,8 @@ typedef struct brio_coverage {
 /** Compares a surface, of any origin, with the points that it is to go through. Polygons count as fans.
  *  bridge  NULL, or #F: receives 1 for faces of bridges.   out  zeros at first.
  *  Cost: about ten nearest points a point and a face; 90 bytes a point and 110 a face.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, no faces or no points), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE,
- *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range, no faces or no points), BRIO_ERR_NOT_FINITE,
+ *  BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_coverage(brio_context *ctx, const brio_mesh *mesh, const double *points,
                                         size_t num_points, uint8_t *bridge, brio_coverage *out);
 

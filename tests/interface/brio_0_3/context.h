@@ -60,23 +60,24 @@ BRIO_API brio_status brio_context_new(const brio_allocator *allocator, brio_cont
 BRIO_API void brio_context_free(brio_context *ctx);
 
 /** Returns the sentence that explains the last failure in this context, such as "point 1842: y is NaN"; "" when there
- *  was none. A call that succeeds leaves the sentence as it was. Valid until the next call with the context. */
+ *  was none. A call that succeeds leaves the sentence as it was, so it tells
+ *  something after a failure only. Valid until the next call with the context. */
 BRIO_API const char *brio_message(const brio_context *ctx);
 
 /** Sets the greatest number of threads that a call uses, the calling thread included. 0 (default) means every processor
- *  that the process may run on. The greatest number that counts is four for each processor, or 64 if that is more. A call
- *  creates threads when its work is large enough for them. The context keeps them, asleep, until it is freed. If the
- *  system refuses a thread, the call goes on with fewer. A child process after fork may use its copy of a context if no
- *  call was running in the parent; the child creates new threads. */
+ *  that the process may run on. The greatest number that counts is four for each processor, or 64 if that is more. A
+ *  call creates threads when its work is large enough for them. The context keeps them, asleep, until it is freed. If
+ *  the system refuses a thread, the call goes on with fewer. A child process after fork may use its copy of a context
+ *  if no call was running in the parent; the child creates new threads. */
 BRIO_API void brio_context_set_threads(brio_context *ctx, int threads);
 /** Returns the greatest number of threads that a call uses: at least 1. A negative number was taken for 0. */
 BRIO_API int brio_context_threads(const brio_context *ctx);
 
-/** A progress callback. Long calls call it from the calling thread, many times a second, with the name of the stage and the
- *  share of the whole call that is done, in [0, 1]. Between stages they repeat what they said last; before the first stage
- *  that is "start" and 0, or what the call before said last. A result other than 0 cancels the call, which then frees
- *  everything and returns BRIO_ERR_CANCELLED: at the latest half a second of processor time after the callback would have
- *  said so, on the machines and inputs of docs/measured/reliability.md. */
+/** A progress callback. Long calls call it from the calling thread, many times a second, with the name of the stage and
+ *  the share of the whole call that is done, in [0, 1]. Between stages they repeat what they said last; before the
+ *  first stage that is "start" and 0, or what the call before said last. A result other than 0 cancels the call, which
+ *  then frees everything and returns BRIO_ERR_CANCELLED: at the latest half a second of processor time after the
+ *  callback would have said so, on the machines and inputs of docs/measured/reliability.md. */
 typedef int (*brio_progress_fn)(const char *stage, double fraction, void *user);
 /** Sets the progress callback; NULL removes it. */
 BRIO_API void brio_context_set_progress(brio_context *ctx, brio_progress_fn progress, void *user);
@@ -89,7 +90,8 @@ BRIO_API void brio_context_set_memory_limit(brio_context *ctx, size_t bytes);
  *  allocated before it is touched: a full disk or a limit on the size of files is BRIO_ERR_NO_MEMORY. NULL returns to
  *  anonymous memory. A context with a caller's allocator has no scratch folder. A mapped file whose disk fails, or that
  *  somebody cuts, raises SIGBUS where it is touched next, in any thread: the library handles no signals, the host may.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, such as an empty name), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, such as an empty name),
+ *  BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_context_set_scratch(brio_context *ctx, const char *folder);
 
 /** Returns the bytes that objects and running calls of this context hold now. */
@@ -99,13 +101,13 @@ BRIO_API size_t brio_context_memory_peak(const brio_context *ctx);
 
 /* Structs that grow. Structs of options, statistics and results begin with `size`, the bytes that the caller was
  * compiled with, so that later versions can append fields: the library touches no byte beyond `size`.
- *   - Options:  brio_surface_options o = {.method = BRIO_SURFACE_COCONE};   A field of 0 is its default, and NULL in place
- *     of options stands for all defaults. The default of a seed is 1.
+ *   - Options:  brio_surface_options o = {.method = BRIO_SURFACE_COCONE};   A field of 0 is its default, and NULL in
+ *     place of options stands for all defaults. The default of a seed is 1.
  *   - Statistics and results:  brio_surface_stats stats = {0};
- *   - A `size` of 0 stands for the fields that the struct had in version 0.3. Fields that came later say so; a program that
- *     uses one of them sets the size:  {.size = sizeof o, ...}. The library ignores them without it.
- *   - Structs that the library made (brio_mesh, brio_delaunay_stats) are as long as their `size`: a program that may run
- *     with an older library looks at it before it reads a field that the older version did not have.
+ *   - A `size` of 0 stands for the fields that the struct had in version 0.3. Fields that came later say so; a program
+ *     that uses one of them sets the size:  {.size = sizeof o, ...}. The library ignores them without it.
+ *   - Structs that the library made (brio_mesh, brio_delaunay_stats) are as long as their `size`: a program that may
+ *     run with an older library looks at it before it reads a field that the older version did not have.
  * An impossible `size`, as of a struct that was not set to zeros, is BRIO_ERR_ARGUMENT. Fields whose names begin with
  * `reserved` stay 0. Elements of arrays (brio_tetrahedron, brio_round, brio_property) and brio_allocator, brio_edges,
  * brio_incidences, brio_edge_walk never change. */

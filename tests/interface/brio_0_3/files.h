@@ -28,9 +28,8 @@ BRIO_API brio_status brio_read(brio_context *ctx, const char *path, const brio_r
  *  permissions of an existing file stay. "-" writes to standard output; the format must then be given. Standard output,
  *  pipes and devices are written in place, and the progress callback can cancel a wait for their readers. So is a
  *  descriptor of the process (/dev/stdout, /dev/fd/7, /proc/self/fd/7), at its place, also when it leads to a file. The
- *  process receives neither SIGPIPE nor SIGXFSZ. What a format cannot hold is left out: properties by STL, edges by all
- *  but PLY, VTU, VTP, VTK and GLB, faces by texts of points, LAS, LAZ, NPY and NODE, those of fewer than three corners
- *  by STL and GLB; brio_format_facts tells what a format holds. In the names of
+ *  process receives neither SIGPIPE nor SIGXFSZ. What a format cannot hold is left out: properties, edges, faces, as
+ *  brio_format_facts tells; faces of fewer than three corners by STL and GLB. In the names of
  *  properties, formats that cannot quote have _ for blanks and commas, and _2 behind a name that is taken, also by a
  *  coordinate; a comment of several lines becomes several comments. Of several files (.node and those beside it) none
  *  gets its name before all are complete.

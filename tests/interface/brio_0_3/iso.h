@@ -19,8 +19,8 @@ typedef struct brio_iso_surface_options {
 } brio_iso_surface_options;
 
 /** Computes the iso-surface of a density in a file, as a closed triangle mesh. The file is a CCP4 or MRC map (.map .mrc
- *  .ccp4), whose surface is cut off flat where it leaves the map, or atoms in a PDB file (.pdb .ent), each a Gaussian that
- *  alone has level 1 at the atom's van der Waals radius. "-" reads standard input.
+ *  .ccp4), whose surface is cut off flat where it leaves the map, or atoms in a PDB file (.pdb .ent), each a Gaussian
+ *  that alone has level 1 at the atom's van der Waals radius. "-" reads standard input.
  *  level  of the surface, in the unit of the map or of the density of atoms.   options  NULL for the defaults.
  *  Memory: 4 bytes a value of the map or 40 bytes an atom; the mesh; two layers of cells with 36 bytes a cell.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_ANSWER (nothing is above the level, or the map is one value thin),

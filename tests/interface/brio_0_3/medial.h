@@ -35,22 +35,22 @@ typedef struct brio_power_shape_stats {
 } brio_power_shape_stats;
 
 /** Computes the power shape of samples of a surface, an approximation of its medial axis. Its vertices are the poles on
- *  the chosen sides that have a power cell; its edges, triangles and tetrahedra are those of the regular triangulation of
- *  the poles whose vertices are all on one side. The inner shape is homotopy equivalent to the union of the inner cells:
- *  unless an inner pole is on the hull of the poles, its Euler characteristic (vertices - edges + triangles - tetrahedra)
- *  is that of the solid inside the power crust. As samples of a smooth surface get denser, their poles converge to the
- *  medial axis. Poles of the bounding points around the samples are not part of the shape.
+ *  the chosen sides that have a power cell; its edges, triangles and tetrahedra are those of the regular triangulation
+ *  of the poles whose vertices are all on one side. The inner shape is homotopy equivalent to the union of the inner
+ *  cells: unless an inner pole is on the hull of the poles, its Euler characteristic (vertices - edges + triangles -
+ *  tetrahedra) is that of the solid inside the power crust. As samples of a smooth surface get denser, their poles
+ *  converge to the medial axis. Poles of the bounding points around the samples are not part of the shape.
  *  points   #P by 3.   options  NULL for the defaults.   stats  NULL, or receives what was found.
  *  shape    owned by the caller: vertices with the properties "radius" (float64) and "side" (int8: -1 inner, 1 outer),
  *           edges, triangles as faces, positive tetrahedra.
- *  crust    NULL, or receives the power crust of the balls that simplification left: closed, manifold, oriented; owned by
- *           the caller.
+ *  crust    NULL, or receives the power crust of the balls that simplification left: closed, manifold, oriented; owned
+ *           by the caller.
  *  Simplification leaves a larger ball within max((S - 1) (R - r), E R) of every ball that it leaves out, r being the
  *  radius of the smaller and R of the larger ball. It leaves out balls without a power cell first; these lie within the
  *  union of the others.
  *  Cost: as BRIO_SURFACE_POWER_CRUST; with simplification, one more triangulation of the poles.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, no pole is on a chosen side, doubles cannot hold a vertex, or
- *  the mesh `solid` is not closed), and as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (the poles span no solid, no pole is on a chosen side, doubles cannot hold a
+ *  vertex, or the mesh `solid` is not closed), and as brio_delaunay.
  *  Based on: [Amenta Choi Kolluri 2001], [Choi 2003] section 3.3.2, [Miklos Giesen Pauly 2010]. */
 BRIO_API brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num_points,
                                       const brio_power_shape_options *options, brio_mesh **shape, brio_mesh **crust,

@@ -12,8 +12,8 @@
 extern "C" {
 #endif
 
-/** A triangle: its three vertices as indices of points, and three mates. The handle 4*t + i names the edge of triangle t
- *  opposite to vertex i: triangle handle / 4, slot handle % 4 (0 to 2). mate[i] is the handle of the edge opposite to
+/** A triangle: its three vertices as indices of points, and three mates. The handle 4*t + i names the edge of triangle
+ *  t opposite to vertex i: triangle handle / 4, slot handle % 4 (0 to 2). mate[i] is the handle of the edge opposite to
  *  vertex[i], seen from the triangle on its other side. As an array of numbers: six to a triangle. */
 typedef struct {
     uint32_t vertex[3], mate[3];
@@ -54,12 +54,13 @@ typedef struct brio_triangulation2 brio_triangulation2;
  *  98; of the result 52 a point.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED.
- *  Based on: [Bowyer 1981], [Watson 1981]; [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties. */
+ *  Based on: [Bowyer 1981], [Watson 1981]; [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for
+ *  ties. */
 BRIO_API brio_status brio_delaunay2(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                     const brio_delaunay2_options *options, brio_triangulation2 **out);
 
-/** Builds the same for points in space that lie in one plane, exactly: inputs for which brio_delaunay returns dimension 2
- *  or less and no tetrahedra. Circles and weights are those of the plane in space, and representatives are those of
+/** Builds the same for points in space that lie in one plane, exactly: inputs for which brio_delaunay returns dimension
+ *  2 or less and no tetrahedra. Circles and weights are those of the plane in space, and representatives are those of
  *  brio_delaunay. Triangles are counterclockwise as seen from the side to which the plane's normal points; of the two
  *  normals the one whose last coordinate that is not 0 is positive. So a plane of constant z is seen as its x and y are
  *  by brio_delaunay2.
@@ -79,14 +80,14 @@ typedef struct brio_plane_frame {
     double thickness;  /* the greatest distance of a point from the plane, or from the line */
 } brio_plane_frame;
 
-/** Finds the plane of points in space: the one that they are in, up to 2^-49 of the greatest coordinate, or that of least
- *  squares of their distances. Points on a line and at one position, up to the same rounding, are of dimension 1 and 0. Does
- *  not depend on the order of the points. In a plane of constant z the coordinates are x and y, of constant x or y the two
- *  after it, cyclically, exactly.
+/** Finds the plane of points in space: the one that they are in, up to 2^-49 of the greatest coordinate, or that of
+ *  least squares of their distances. Points on a line and at one position, up to the same rounding, are of dimension 1
+ *  and 0. Does not depend on the order of the points. In a plane of constant z the coordinates are x and y, of constant
+ *  x or y the two after it, cyclically, exactly.
  *  points  #P by 3.   frame  zeros at first.
  *  Cost: O(n), for points off a plane O(n log n). Memory: 24 bytes a point, for points off a plane 44.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an impossible size), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY.
- *  Based on: [Pearson 1901]. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an impossible size), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE,
+ *  BRIO_ERR_NO_MEMORY. Based on: [Pearson 1901]. */
 BRIO_API brio_status brio_plane_fit(brio_context *ctx, const double *points, size_t num_points,
                                     brio_plane_frame *frame);
 
@@ -100,8 +101,8 @@ BRIO_API void brio_triangulation2_free(brio_triangulation2 *t);
 BRIO_API const brio_delaunay2_stats *brio_triangulation2_stats(const brio_triangulation2 *t);
 
 /** Returns the triangles + hull_edges triangles, finite ones first. A finite triangle is counterclockwise. An infinite
- *  triangle (a, b, BRIO_INFINITE) has the hull edge ab, and (a, b, x) is counterclockwise for x outside the hull. The view
- *  is valid until the triangulation is freed. */
+ *  triangle (a, b, BRIO_INFINITE) has the hull edge ab, and (a, b, x) is counterclockwise for x outside the hull. The
+ *  view is valid until the triangulation is freed. */
 BRIO_API const brio_triangle *brio_triangulation2_triangles(const brio_triangulation2 *t);
 
 /** Returns #P indices: for each point the vertex that represents it, which is the point itself if it is a vertex. The
@@ -126,22 +127,24 @@ BRIO_API const uint32_t *brio_triangulation2_line(const brio_triangulation2 *t, 
 BRIO_API brio_status brio_triangulation2_check(brio_context *ctx, const brio_triangulation2 *t, const double *points,
                                                const double *weights, size_t num_points);
 
-/** Computes a hash of the set of triangles in terms of the lexicographic ranks of their vertices; of points on a line, a
- *  hash of their number of vertices. It does not depend on the order of points or triangles, and stays the same when all
- *  points are scaled by a power of two.
+/** Computes a hash of the set of triangles in terms of the lexicographic ranks of their vertices; of points on a line,
+ *  a hash of their number of vertices. It does not depend on the order of points or triangles, and stays the same when
+ *  all points are scaled by a power of two.
  *  points  as they were given.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_triangulation2_checksum(brio_context *ctx, const brio_triangulation2 *t, const double *points,
                                                   uint64_t *checksum);
 
-/* Queries of a triangulation of the plane. What is said of brio_locator and of its queries holds here, with `queries` #Q by
- * 2, but queries are not sorted. Only NATURAL takes workspace: for each thread, lists as long as its largest cavity. */
+/* Queries of a triangulation of the plane. What is said of brio_locator and of its queries holds here, with `queries`
+ * #Q by 2, but queries are not sorted. Only NATURAL takes workspace: for each thread, lists as long as its largest
+ * cavity. */
 
 typedef struct brio_locator2 brio_locator2;
 
 /** Makes a locator of a triangulation of the plane. It needs neither the triangulation nor the points afterwards.
- *  points, weights, num_points  as they were given to brio_delaunay2; triangulations by brio_delaunay2_flat are refused.
- *  out  owned by the caller, freed with brio_locator2_free; NULL on error. Several threads, each with a context of its own,
- *       may query one locator.
+ *  points, weights, num_points  as they were given to brio_delaunay2; triangulations by brio_delaunay2_flat are
+ *                               refused.
+ *  out  owned by the caller, freed with brio_locator2_free; NULL on error. Several threads, each with a context of its
+ *       own, may query one locator.
  *  Memory: 25 bytes a triangle and 36 a point, for points on a line 36 a point.   Cost: O(n).
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation, or they are points in space),
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY. */
@@ -159,8 +162,8 @@ BRIO_API void brio_locator2_free(brio_locator2 *locator);
 BRIO_API brio_status brio_locator2_triangles(brio_context *ctx, const brio_locator2 *locator, const double *queries,
                                              size_t num_queries, uint32_t *triangles);
 
-/** Finds the vertex of least power distance |x - p|^2 - w from each query x; without weights, the nearest vertex. Ties are
- *  lexicographic. Works in every dimension.
+/** Finds the vertex of least power distance |x - p|^2 - w from each query x; without weights, the nearest vertex. Ties
+ *  are lexicographic. Works in every dimension.
  *  vertices  #Q: indices of points that are vertices; BRIO_INFINITE if there are no points.
  *  Cost: one walk, and a descent along edges from there. */
 BRIO_API brio_status brio_locator2_least_power(brio_context *ctx, const brio_locator2 *locator, const double *queries,
@@ -168,8 +171,8 @@ BRIO_API brio_status brio_locator2_least_power(brio_context *ctx, const brio_loc
 
 /** Interpolates values at the vertices, at each query, as brio_locator_interpolate does: NATURAL weighs the natural
  *  neighbours of the query x by the areas that the Voronoi cell of x would take from their cells.
- *  Points on a line, up to the rounding of their coordinates, are interpolated linearly along the line: queries are projected
- *  to it.
+ *  Points on a line, up to the rounding of their coordinates, are interpolated linearly along the line: queries are
+ *  projected to it.
  *  results  #Q by components: NaN for queries outside the hull, and for every query if there are no points.
  *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights), and
  *  BRIO_ERR_NO_ANSWER if all points are at one position.
@@ -191,10 +194,11 @@ typedef struct brio_diagram2 {
 } brio_diagram2;
 
 /** Computes the Voronoi diagram from a triangulation. Points of dimension 1 or less have no vertices and empty regions.
- *  points, weights, num_points  as they were given to brio_delaunay2; triangulations by brio_delaunay2_flat are refused.
+ *  points, weights, num_points  as they were given to brio_delaunay2; triangulations by brio_delaunay2_flat are
+ *                               refused.
  *  out  owned by the caller, freed with brio_diagram2_free; NULL on error.
- *  A vertex is wrong by at most 2^-44 times its distance from the points, plus one rounding; NaN where doubles cannot hold
- *  it. The bits of a vertex of three points depend on their positions alone.
+ *  A vertex is wrong by at most 2^-44 times its distance from the points, plus one rounding; NaN where doubles cannot
+ *  hold it. The bits of a vertex of three points depend on their positions alone.
  *  Cost: O(n). Memory: 4 bytes a triangle, 16 a vertex, 8 a point and 4 an item; meanwhile 36 a point more.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation, or they are points in space),
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.

@@ -24,8 +24,8 @@ BRIO_API int brio_insphere_perturbed(const double *a, const double *b, const dou
 
 /** Computes the circumcentre of a tetrahedron that is not flat or, with 4 weights, its orthocentre. The result has the
  *  same bits for every order of the four points.   weights  4, or NULL.
- *  error  NULL, or receives a bound on the error of each coordinate: at most 2^-44 times the distance from the centre to
- *         the lexicographically first of the points, plus one rounding. Where doubles do not reach that bound, the
+ *  error  NULL, or receives a bound on the error of each coordinate: at most 2^-44 times the distance from the centre
+ *         to the lexicographically first of the points, plus one rounding. Where doubles do not reach that bound, the
  *         computation uses higher precision.
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT for a flat tetrahedron or a centre that doubles cannot hold. */
 BRIO_API brio_status brio_circumcentre(const double *a, const double *b, const double *c, const double *d,

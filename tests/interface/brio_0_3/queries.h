@@ -15,13 +15,13 @@ extern "C" {
 
 typedef struct brio_locator brio_locator;
 
-/** Makes a locator. It needs neither the triangulation nor the points afterwards.
+/** Makes a locator. It needs neither the triangulation nor the points afterwards; its answers are indices of them.
  *  points, weights, num_points  as they were given to brio_delaunay.
  *  out  owned by the caller, freed with brio_locator_free; NULL on error. Several threads, each with a context of its
  *       own, may query one locator.
- *  Memory: 32 bytes a tetrahedron, 41 a vertex, 8 more a vertex with weights: about 260 bytes a vertex for evenly spread
- *  points. Before the tetrahedra are copied, 60 bytes a vertex and 32 a point. Of points in a plane or on a line, up to the
- *  rounding of their coordinates, also a brio_locator2; meanwhile 130 bytes a point more.
+ *  Memory: 32 bytes a tetrahedron, 41 a vertex, 8 more a vertex with weights: about 260 bytes a vertex for evenly
+ *  spread points. Before the tetrahedra are copied, 60 bytes a vertex and 32 a point. Of points in a plane or on a
+ *  line, up to the rounding of their coordinates, also a brio_locator2; meanwhile 130 bytes a point more.
  *  Cost: O(n log n).
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the points are not those of the triangulation), BRIO_ERR_NOT_FINITE,
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
@@ -31,14 +31,16 @@ BRIO_API brio_status brio_locator_new(brio_context *ctx, const brio_triangulatio
 /** Frees a locator; NULL is accepted. */
 BRIO_API void brio_locator_free(brio_locator *locator);
 
-/* The functions that answer queries take `queries`, #Q by 3, finite. From 32 queries on they are sorted along a space-filling
- * curve first, with 16 bytes of workspace a query, for 2^20 queries at most. They return BRIO_OK, BRIO_ERR_NOT_FINITE (the
- * message names the first such query), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and what their descriptions say. */
+/* The functions that answer queries take `queries`, #Q by 3, finite. From 32 queries on they are sorted along a
+ * space-filling curve first, with 16 bytes of workspace a query, for 2^20 queries at most. They return BRIO_OK,
+ * BRIO_ERR_NOT_FINITE (the message names the first such query), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, and what their
+ * descriptions say. */
 
 /** Finds the tetrahedron that holds each query: the finite one of lowest index whose closure holds it. So a query on a
  *  facet, on an edge or at a vertex belongs to the first of the tetrahedra that share it.
- *  tetrahedra  #Q: indices of brio_triangulation_tetrahedra; BRIO_INFINITE for a query strictly outside the convex hull,
- *              and for every query if the points have dimension 2 or less. Queries on the hull's boundary are inside.
+ *  tetrahedra  #Q: indices of brio_triangulation_tetrahedra; none, which is UINT32_MAX as BRIO_INFINITE is, for a query
+ *              strictly outside the convex hull, and for every query if the points have dimension 2 or less. Queries on
+ *              the hull's boundary are inside.
  *  Cost: one walk; for a query on an edge, O(tetrahedra at that edge).
  *  Based on: [Devillers Pion Teillaud 2002]. */
 BRIO_API brio_status brio_locator_tetrahedra(brio_context *ctx, const brio_locator *locator, const double *queries,
@@ -76,23 +78,23 @@ typedef struct brio_interpolation {
 } brio_interpolation;
 
 /** Interpolates values at the vertices, at each query. Both methods reproduce the values at the vertices exactly, and
- *  linear functions up to rounding. NATURAL weighs the natural neighbours of the query x by the volumes that the Voronoi
- *  cell of x would take from their cells. On the hull's boundary, and where rounding drowns these volumes very near it,
- *  NATURAL takes the values of LINEAR. LINEAR takes the tetrahedron that brio_locator_tetrahedra names.
- *  Points in a plane or on a line, up to the rounding of their coordinates (brio_plane_fit), are interpolated there, as by
- *  brio_locator2_interpolate: queries are projected to it.
+ *  linear functions up to rounding. NATURAL weighs the natural neighbours of the query x by the volumes that the
+ *  Voronoi cell of x would take from their cells. On the hull's boundary, and where rounding drowns these volumes very
+ *  near it, NATURAL takes the values of LINEAR. LINEAR takes the tetrahedron that brio_locator_tetrahedra names.
+ *  Points in a plane or on a line, up to the rounding of their coordinates (brio_plane_fit), are interpolated there, as
+ *  by brio_locator2_interpolate: queries are projected to it.
  *  options  NULL has no values, which is an error unless there are no points.
  *  results  #Q by components: NaN for queries outside the hull, and for every query if there are no points.
- *  Cost: LINEAR as brio_locator_tetrahedra; NATURAL some microseconds a query, as the insertion of a point. In a plane, 16
- *  bytes a query.
+ *  Cost: LINEAR as brio_locator_tetrahedra; NATURAL some microseconds a query, as the insertion of a point. In a plane,
+ *  16 bytes a query.
  *  Returns also BRIO_ERR_ARGUMENT (options out of range, no values, NATURAL of a triangulation with weights), and
  *  BRIO_ERR_NO_ANSWER if all points are at one position.
  *  Based on: [Sibson 1980], [Sibson 1981], [Ledoux Gold 2005]. */
 BRIO_API brio_status brio_locator_interpolate(brio_context *ctx, const brio_locator *locator, const double *queries,
                                               size_t num_queries, const brio_interpolation *options, double *results);
 
-/** Writes for each point a finite tetrahedron that has it: the one of lowest index. BRIO_INFINITE for points that are no
- *  vertices, and for all points if their dimension is 2 or less.   tetrahedra  #P. */
+/** Writes for each point a finite tetrahedron that has it: the one of lowest index. BRIO_INFINITE for points that are
+ *  no vertices, and for all points if their dimension is 2 or less.   tetrahedra  #P. */
 BRIO_API void brio_triangulation_vertex_tetrahedra(const brio_triangulation *t, uint32_t *tetrahedra);
 
 /** A list of numbers for each point: list p is items[offsets[p]] to items[offsets[p + 1] - 1]. */
@@ -112,8 +114,8 @@ BRIO_API void brio_incidences_free(brio_incidences *incidences);
 BRIO_API brio_status brio_triangulation_incident_tetrahedra(brio_context *ctx, const brio_triangulation *t,
                                                             brio_incidences *out);
 
-/** Lists the vertices that share an edge with each point, in ascending order. The lists of points that are no vertices are
- *  empty; all are if the dimension is 2 or less.
+/** Lists the vertices that share an edge with each point, in ascending order. The lists of points that are no vertices
+ *  are empty; all are if the dimension is 2 or less.
  *  Memory: 8 bytes a point and 8 an edge; meanwhile, what brio_triangulation_incident_tetrahedra takes.
  *  out  freed with brio_incidences_free.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_triangulation_neighbours(brio_context *ctx, const brio_triangulation *t,
@@ -129,15 +131,16 @@ typedef struct brio_edges {
 /** Frees what edges own and sets their fields to 0; NULL is accepted. */
 BRIO_API void brio_edges_free(brio_edges *edges);
 
-/** Lists the edges of a triangulation: every edge between two vertices once, as (a, b) with a < b, in lexicographic order.
- *  There are none if the dimension is 2 or less.   out  freed with brio_edges_free.
+/** Lists the edges of a triangulation: every edge between two vertices once, as (a, b) with a < b, in lexicographic
+ *  order. There are none if the dimension is 2 or less.   out  freed with brio_edges_free.
  *  Memory: as brio_triangulation_neighbours, which it calls, and 8 bytes an edge.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_triangulation_edges(brio_context *ctx, const brio_triangulation *t, brio_edges *out);
 
 /* Neighbourhoods without memory. `tetrahedra` is what brio_triangulation_tetrahedra returns. */
 
-/** A walk through the ring of tetrahedra round an edge, infinite ones included. A step costs one read of a tetrahedron. */
+/** A walk through the ring of tetrahedra round an edge, infinite ones included. A step costs one read of a
+ *  tetrahedron. */
 typedef struct brio_edge_walk {
     const brio_tetrahedron *tetrahedra;
     uint32_t tetrahedron;        /* where the walk is */
@@ -165,8 +168,8 @@ static inline int brio_edge_walk_next(brio_edge_walk *walk) {
     return walk->tetrahedron != walk->first;
 }
 
-/** Collects the tetrahedra round a vertex, infinite ones included, from one of them. Returns their number, or capacity + 1
- *  if there are more than `capacity`.
+/** Collects the tetrahedra round a vertex, infinite ones included, from one of them. Returns their number, or capacity
+ *  + 1 if there are more than `capacity`.
  *  star  room for `capacity` tetrahedra.
  *  Cost: quadratic in the number, about 27 for most vertices; for many or large stars use
  *  brio_triangulation_incident_tetrahedra. */

@@ -1,7 +1,8 @@
 /* brio/shapes.h: convex hulls, restricted Delaunay triangulations, alpha complexes and alpha shapes.
  *
- * Alpha is a squared radius, as in the papers, GUDHI and CGAL. Programs that take a radius (PyVista's delaunay_3d, Open3D,
- * MeshLab) mean its square root: their alpha 0.1 is 0.01 here. Values carry the squared unit of the coordinates.
+ * Alpha is a squared radius, as in the papers, GUDHI and CGAL. Programs that take a radius (PyVista's delaunay_3d,
+ * Open3D, MeshLab) mean its square root: their alpha 0.1 is 0.01 here. Values carry the squared unit of the
+ * coordinates.
  */
 #ifndef BRIO_SHAPES_H
 #define BRIO_SHAPES_H
@@ -40,13 +41,13 @@ typedef struct brio_convex_hull_stats {
     uint64_t exact_calls;        /* signs that floating-point arithmetic did not settle */
 } brio_convex_hull_stats;
 
-/** Computes the convex hull of a point set, exactly. Vertices are the strictly extreme points, in ascending order of their
- *  indices; points inside a facet or an edge of the hull are none, and of coincident points the one with the lowest index
- *  is the vertex. Facets are convex polygons, counterclockwise as seen from outside; the lexicographically least vertex
- *  of a facet comes first, and the facets are sorted by their first two vertices. So the hull depends on the points only,
- *  not on their order or the number of threads.
- *  Points of dimension 2 have one facet. It is seen counterclockwise from the end of the first of the axes z, x, y that is
- *  not parallel to its plane. Its boundary is open: the hull has area and no inside. Points of dimension 1 have two
+/** Computes the convex hull of a point set, exactly. Vertices are the strictly extreme points, in ascending order of
+ *  their indices; points inside a facet or an edge of the hull are none, and of coincident points the one with the
+ *  lowest index is the vertex. Facets are convex polygons, counterclockwise as seen from outside; the lexicographically
+ *  least vertex of a facet comes first, and the facets are sorted by their first two vertices. So the hull depends on
+ *  the points only, not on their order or the number of threads.
+ *  Points of dimension 2 have one facet. It is seen counterclockwise from the end of the first of the axes z, x, y that
+ *  is not parallel to its plane. Its boundary is open: the hull has area and no inside. Points of dimension 1 have two
  *  vertices and one edge (brio_mesh.edges), points of dimension 0 one vertex, no points none.
  *  points   #P by 3.   num_points  less than 2^32 - 16.   options  NULL for the defaults.
  *  out      owned by the caller.
@@ -73,24 +74,25 @@ typedef struct brio_restricted_stats {
     double delaunay_seconds, cut_seconds;
 } brio_restricted_stats;
 
-/** Computes the restricted Delaunay triangulation of samples on a known surface: the Delaunay triangles whose Voronoi edges
- *  meet the surface. Which cells, facets and edges of the Voronoi diagram do is decided exactly.
- *  Guarantees: if stats->closed_ball is 1, the triangles are homeomorphic to the surface [Edelsbrunner Shah 1997]. That is a
- *  proof for these samples and this mesh; it asks for no bound on the density. If it is 0, they may still be.
- *  Ties are decided as if the surface were moved by (e, e^2, e^3) for an infinitely small e > 0, and the samples by less, as
- *  brio_delaunay does. So the answer is that for a surface and samples as near as one likes to these.
- *  Does not guarantee: that the samples are an r-sample. A mesh has local feature size 0 at its edges, so no finite set is an
- *  r-sample of it. The samples need not lie on the surface.
- *  points   #P by 3: the samples.   surface  triangles that form a closed manifold; it may cross itself, and have any number
- *  of components.
+/** Computes the restricted Delaunay triangulation of samples on a known surface: the Delaunay triangles whose Voronoi
+ *  edges meet the surface. Which cells, facets and edges of the Voronoi diagram do is decided exactly.
+ *  Guarantees: if stats->closed_ball is 1, the triangles are homeomorphic to the surface [Edelsbrunner Shah 1997]. That
+ *  is a proof for these samples and this mesh; it asks for no bound on the density. If it is 0, they may still be.
+ *  Ties are decided as if the surface were moved by (e, e^2, e^3) for an infinitely small e > 0, and the samples by
+ *  less, as brio_delaunay does. So the answer is that for a surface and samples as near as one likes to these.
+ *  Does not guarantee: that the samples are an r-sample. A mesh has local feature size 0 at its edges, so no finite set
+ *  is an r-sample of it. The samples need not lie on the surface.
+ *  points   #P by 3: the samples.   surface  triangles that form a closed manifold; it may cross itself, and have any
+ *  number of components.
  *  out      owned by the caller, NULL on error. Its vertices are the samples, with the same indices, also those that no
- *           triangle uses. Each triangle is oriented as the face that its Voronoi edge meets. The property "closed_ball" is 1
- *           at a sample whose cell, and all whose facets and edges, meet the surface in closed balls or not at all.
+ *           triangle uses. Each triangle is oriented as the face that its Voronoi edge meets. The property
+ *           "closed_ball" is 1 at a sample whose cell, and all whose facets and edges, meet the surface in closed balls
+ *           or not at all.
  *  stats    NULL, or receives what was found.
- *  Cost: one triangulation; then, for each face of the surface and each cell that it meets, a test of the Voronoi edges of that
- *  cell, mostly in doubles. Memory: 60 bytes a face and 40 a piece of one, beside the triangulation and 60 bytes a tetrahedron.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (the surface is not closed, no manifold, or not of triangles), BRIO_ERR_NO_ANSWER (the
- *  samples are in a plane), and as brio_delaunay.
+ *  Cost: one triangulation; then, for each face of the surface and each cell that it meets, a test of the Voronoi edges
+ *  of that cell, mostly in doubles. Memory: 60 bytes a face and 40 a piece of one, beside the triangulation and 60
+ *  bytes a tetrahedron. Returns BRIO_OK, BRIO_ERR_ARGUMENT (the surface is not closed, no manifold, or not of
+ *  triangles), BRIO_ERR_NO_ANSWER (the samples are in a plane), and as brio_delaunay.
  *  Based on: [Edelsbrunner Shah 1997], [Choi 2003] section 2.7. */
 BRIO_API brio_status brio_restricted_delaunay(brio_context *ctx, const double *points, size_t num_points,
                                               const brio_mesh *surface, brio_mesh **out, brio_restricted_stats *stats);
@@ -108,8 +110,8 @@ typedef struct brio_alpha_complex {
     uint32_t *simplices[4];
     /** counts[k]: the least alpha at which the simplex is in the complex. */
     double *values[4];
-    /** counts[k]: the least value of a tetrahedron that contains the simplex. From its own value to this one the simplex is
-     *  singular: in the complex, and a face of no tetrahedron there. */
+    /** counts[k]: the least value of a tetrahedron that contains the simplex. From its own value to this one the
+     *  simplex is singular: in the complex, and a face of no tetrahedron there. */
     double *solid[4];
     /** counts[k]: 1 if no vertex is strictly inside the smallest orthosphere of the simplex. */
     uint8_t *gabriel[4];
@@ -117,13 +119,13 @@ typedef struct brio_alpha_complex {
 } brio_alpha_complex;
 
 /** Computes the alpha filtration. A simplex that is Gabriel, which is decided exactly, has the squared radius of its
- *  smallest circumscribed sphere or, with weights, of its smallest orthosphere: the sphere of a vertex of weight w has the
- *  squared radius -w, and values may be negative. Any other simplex has the least value of the simplices that contain it.
- *  Vertices have the value 0 without weights. Values are rounded from double-doubles, to a few units in the last place
- *  except in tetrahedra too flat for those; a value that doubles cannot hold is INFINITY, and one below 2^-1022, which has
- *  fewer bits, may be 0: such values may be equal where the squared radii are not, so scale points whose radii are beyond
- *  2^511 or below 2^-511. Rounding leaves every value at most that of the simplices that contain the simplex. Duplicates
- *  and hidden points are in no simplex.
+ *  smallest circumscribed sphere or, with weights, of its smallest orthosphere: the sphere of a vertex of weight w has
+ *  the squared radius -w, and values may be negative. Any other simplex has the least value of the simplices that
+ *  contain it. Vertices have the value 0 without weights. Values are rounded from double-doubles, to a few units in the
+ *  last place except in tetrahedra too flat for those; a value that doubles cannot hold is INFINITY, and one below
+ *  2^-1022, which has fewer bits, may be 0: such values may be equal where the squared radii are not, so scale points
+ *  whose radii are beyond 2^511 or below 2^-511. Rounding leaves every value at most that of the simplices that contain
+ *  the simplex. Duplicates and hidden points are in no simplex.
  *  t        the triangulation of these points and weights, of dimension 3.   weights  #P, or NULL.
  *  out      zeros at first; freed with brio_alpha_complex_free.
  *  Cost: a few times that of the triangulation, most of it with all threads. For the result and the work 48 bytes a
@@ -134,13 +136,13 @@ typedef struct brio_alpha_complex {
 BRIO_API brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, const double *points,
                                        const double *weights, size_t num_points, brio_alpha_complex *out);
 
-/** Computes the alpha filtration of points in the plane: as brio_alpha_values, with triangles in place of tetrahedra and
- *  circles in place of spheres. counts[3] is 0, and `solid` is the least value of a triangle. brio_alpha_order and
+/** Computes the alpha filtration of points in the plane: as brio_alpha_values, with triangles in place of tetrahedra
+ *  and circles in place of spheres. counts[3] is 0, and `solid` is the least value of a triangle. brio_alpha_order and
  *  brio_alpha_auto take the complex, brio_alpha_shape does not.
  *  t        made of these points and weights by brio_delaunay2 or brio_delaunay2_flat, of dimension 2.
- *  points   #P by the coordinates of t.   weights  #P, or NULL.   out  zeros at first; freed with brio_alpha_complex_free.
- *  Cost: linear, one thread. For the result and the work 29 bytes a triangle, 25 an edge and 57 a point.
- *  Returns what brio_alpha_values returns; BRIO_ERR_NO_ANSWER for points on a line.
+ *  points   #P by the coordinates of t.   weights  #P, or NULL.   out  zeros at first; freed with
+ *  brio_alpha_complex_free. Cost: linear, one thread. For the result and the work 29 bytes a triangle, 25 an edge and
+ *  57 a point. Returns what brio_alpha_values returns; BRIO_ERR_NO_ANSWER for points on a line.
  *  Based on: [Edelsbrunner Kirkpatrick Seidel 1983], [Edelsbrunner 1995] for weights. */
 BRIO_API brio_status brio_alpha_values2(brio_context *ctx, const brio_triangulation2 *t, const double *points,
                                         const double *weights, size_t num_points, brio_alpha_complex *out);
@@ -155,8 +157,8 @@ BRIO_API void brio_alpha_complex_free(brio_alpha_complex *complex);
 BRIO_API brio_status brio_alpha_order(brio_context *ctx, const brio_alpha_complex *complex, uint32_t *order);
 
 /** Finds the least alpha at which the tetrahedra of the complex are one solid, joined across facets, that has all
- *  vertices of the triangulation; in the plane, at which the triangles are one region, joined across edges. There is one:
- *  the greatest value of a tetrahedron (triangle) at the latest.
+ *  vertices of the triangulation; in the plane, at which the triangles are one region, joined across edges. There is
+ *  one: the greatest value of a tetrahedron (triangle) at the latest.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (alpha is INFINITY, or alpha and the values of all vertices are closer to 0 than
  *  2^-1022: scale the points), BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha);
@@ -172,12 +174,12 @@ typedef struct brio_alpha_shape_stats {
 } brio_alpha_shape_stats;
 
 /** Makes the boundary of an alpha shape: of the union of the tetrahedra with values of at most alpha. Its triangles are
- *  seen counterclockwise from outside. The mesh is closed and manifold: where parts of the solid touch in a vertex or an
- *  edge only, vertices are doubled. Singular simplices are counted, and are not in the mesh.
- *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or receives what was found.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN, or the complex is of the plane), BRIO_ERR_NO_ANSWER (no tetrahedron
- *  has a value of at most alpha, or alpha is closer to 0 than brio_alpha_auto finds one), BRIO_ERR_NO_MEMORY.
- *  Based on: [Edelsbrunner Muecke 1994]. */
+ *  seen counterclockwise from outside. The mesh is closed and manifold: where parts of the solid touch in a vertex or
+ *  an edge only, vertices are doubled. Singular simplices are counted, and are not in the mesh.
+ *  points  as they were given to brio_alpha_values.   out  owned by the caller.   stats  NULL, or receives what was
+ *  found. Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN, or the complex is of the plane), BRIO_ERR_NO_ANSWER (no
+ *  tetrahedron has a value of at most alpha, or alpha is closer to 0 than brio_alpha_auto finds one),
+ *  BRIO_ERR_NO_MEMORY. Based on: [Edelsbrunner Muecke 1994]. */
 BRIO_API brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
                                       double alpha, brio_mesh **out, brio_alpha_shape_stats *stats);
 
@@ -191,8 +193,8 @@ typedef enum brio_filtration_format {
     BRIO_FILTRATION_END
 } brio_filtration_format;
 
-/** Writes the simplices of a complex with their values, in an order from brio_alpha_order. Vertices are indices of points,
- *  from 0 on. Replaces the file when it is complete, as brio_write does; "-" writes to standard output.
+/** Writes the simplices of a complex with their values, in an order from brio_alpha_order. Vertices are indices of
+ *  points, from 0 on. Replaces the file when it is complete, as brio_write does; "-" writes to standard output.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write_filtration(brio_context *ctx, const char *path, const brio_alpha_complex *complex,
                                            const uint32_t *order, brio_filtration_format format);

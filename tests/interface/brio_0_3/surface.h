@@ -4,8 +4,8 @@
  *     status = brio_surface(ctx, points, num_points, NULL, &surface, NULL);
  *
  * There are five methods, of one call, one struct of options, one result and one struct of statistics. The default is
- * the one that is right most often; docs/which-method.md tells when another one is better. The result of every method is
- * the same for every order of the points and every number of threads.
+ * the one that is right most often; docs/which-method.md tells when another one is better. The result of every method
+ * is the same for every order of the points and every number of threads.
  */
 #ifndef BRIO_SURFACE_H
 #define BRIO_SURFACE_H
@@ -20,18 +20,20 @@ typedef struct brio_surface_options brio_surface_options;
 typedef struct brio_surface_stats brio_surface_stats;
 
 /** Makes a surface through points.
- *  points   #P by 3.   options  NULL for the defaults.   stats  NULL, or receives what was found, as far as it came to it.
- *  out      owned by the caller: triangles, counterclockwise seen from outside. The property "sample" (int32; float64 from
- *           2^31 points on) of a vertex is the index of its point, or -1 if it is none: all of POWER_CRUST and OFFSET. A
- *           vertex has the position of its point, unless points were smoothed. Below, methods go by the ends of their names.
- *           LABELED: vertices in the order of their points; with `simplify`, "sample" is that of the vertex before edges
- *           collapsed. Faces have the property "bridge" (uint8): 1 for those that span gaps of the points. With `confidence`
- *           vertices have "confidence" (float32), the probability that the surface is right there: a logistic regression on
- *           the votes round the vertex, measured on generated solids; vertices under 0.7 are guesses (docs/algorithms.md
- *           tells how often those of real models were wrong). Faces have theirs, fitted to simulated scans.
- *           COCONE, TIGHT_COCONE: vertex v is point v, also where no face uses it. `density` adds "feature_size", the
- *           distance to the nearest pole, "r", an estimate of the sampling density, 0 at a point on no face, and with
- *           `boundaries` "boundary", 1 at a boundary point.
+ *  points   #P by 3.   options  NULL for the defaults.
+ *  stats    NULL, or receives what was found, also before a failure.
+ *  out      owned by the caller: triangles, counterclockwise seen from outside. Methods go by the ends of their names
+ *           here. The property "sample" (int32; float64 from 2^31 points on) of a vertex is the index of its point, by
+ *           which brio_mesh_carry_properties gives it the properties of that point; -1 for all vertices of POWER_CRUST
+ *           and OFFSET, which are no points. A vertex has the position of its point, unless points were smoothed or
+ *           edges collapsed (`simplify`); the vertex that two became keeps the point of one of them.
+ *           LABELED: vertices in the order of their points. Faces have the property "bridge" (uint8): 1 for those that
+ *           span gaps of the points. With `confidence` vertices have "confidence" (float32), the probability that the
+ *           surface is right there: a logistic regression on the votes round the vertex, measured on generated solids;
+ *           vertices under 0.7 are guesses (docs/algorithms.md tells how often those of real models were wrong). Faces
+ *           have theirs, fitted to simulated scans. COCONE, TIGHT_COCONE: vertex v is point v, also where no face uses
+ *           it. `density` adds "feature_size", the distance to the nearest pole, "r", an estimate of the sampling
+ *           density, 0 at a point on no face, and with `boundaries` "boundary", 1 at a boundary point.
  *           POWER_CRUST, OFFSET: vertices that only rounding keeps apart from a point are at the point, and the faces
  *           between them have no area.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (no inside found, no triangle found, all of the surface spans holes, an inward
@@ -39,41 +41,66 @@ typedef struct brio_surface_stats brio_surface_stats;
 BRIO_API brio_status brio_surface(brio_context *ctx, const double *points, size_t num_points,
                                   const brio_surface_options *options, brio_mesh **out, brio_surface_stats *stats);
 
-/** The methods of brio_surface. A mesh is "manifold" if each edge has one or two faces and the faces at each vertex form one
- *  fan, "oriented" if neighbouring faces are seen counterclockwise from the same side, and "closed" if each edge has two
- *  faces. These hold for the connections of the mesh, whatever its coordinates are: faces may still cross each other
- *  where points are too few (brio_mesh_self_intersections counts the pairs). */
+/** The methods of brio_surface. A mesh is "manifold" if each edge has one or two faces and the faces at each vertex
+ *  form one fan, "oriented" if neighbouring faces are seen counterclockwise from the same side, and "closed" if each
+ *  edge has two faces. These hold for the connections of the mesh, whatever its coordinates are: faces may still cross
+ *  each other where points are too few (brio_mesh_self_intersections counts the pairs). */
 typedef enum brio_surface_method {
-    /* The labeled Delaunay triangulation: the boundary between tetrahedra that are labeled inner and outer. A point votes
-     * on the sides of the tetrahedra in its Voronoi cell, and the labels are those of least votes against them and least
-     * area. Also for noisy points, and for points that show a part of a surface. The vertices are the points that the
-     * surface uses. Always manifold and oriented; with BRIO_HOLES_CLOSED closed.
+    /* The labeled Delaunay triangulation: the boundary between tetrahedra that are labeled inner and outer. A point
+     * votes on the sides of the tetrahedra in its Voronoi cell, and the labels are those of least votes against them
+     * and least area. Also for noisy points, and for points that show a part of a surface. The vertices are the points
+     * that the surface uses. Always manifold and oriented; with BRIO_HOLES_CLOSED closed.
      * Cost: one triangulation, and the labels, about as long; about 1,000 bytes a point at the peak.
      * Based on: [Labatut Pons Keriven 2009], [Dey Goswami 2003], [Amenta Bern 1999]. */
     BRIO_SURFACE_LABELED = 0,
-    /* The power crust. The poles of a point are the vertices of its Voronoi cell that are farthest from it on either side
-     * of the surface; a polar ball is the empty ball round a pole. The crust is what separates the inner from the outer
-     * balls. Closed (unless `open` is set), manifold and oriented, for sharp edges without points on them. On a dense
-     * sample of a smooth closed surface it is close to it, and has its topology. Its vertices are not the points.
-     * Cost: two triangulations, of the points and of about twice as many poles; 1,300 to 1,700 bytes a point at the peak.
-     * Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
+    /* The power crust. The poles of a point are the vertices of its Voronoi cell that are farthest from it on either
+     * side of the surface; a polar ball is the empty ball round a pole. The crust is what separates the inner from the
+     * outer balls. Closed (unless `open` is set), manifold and oriented, for sharp edges without points on them. On a
+     * dense sample of a smooth closed surface it is close to it, and has its topology. Its vertices are not the points.
+     * Cost: two triangulations, of the points and of about twice as many poles; 1,300 to 1,700 bytes a point at the
+     * peak. Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
     BRIO_SURFACE_POWER_CRUST = 1,
     /* The co-cone: Delaunay triangles that lie along the surface at all their corners. Manifold and oriented, unless
      * `extraction` says otherwise; with `boundaries` open where the points end. The vertices are all points, in their
      * order. On an r-sample with r <= 0.08, BRIO_EXTRACTION_WALK is proven to have the surface's topology, and
      * BRIO_EXTRACTION_LABELS tested to.
-     * Cost: one triangulation, and about 50 bytes a tetrahedron; with `pieces` the memory of one piece, and 60 bytes a point.
-     * Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
+     * Cost: one triangulation, and about 50 bytes a tetrahedron; with `pieces` the memory of one piece, and 60 bytes a
+     * point. Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
      *           [Dey Giesen Hudson 2001]. */
     BRIO_SURFACE_COCONE = 2,
     /* The tight co-cone: the same, closed. Based on: [Dey Goswami 2003]. */
     BRIO_SURFACE_TIGHT_COCONE = 3,
-    /* The power crust, moved outwards by `distance`, or inwards if that is negative. Parts that meet are merged, and parts
-     * that are too thin vanish. Its error is that of the polar balls; of a mesh, brio_mesh_offset has a proven one.
-     * Based on: [Choi 2003] section 3.3.4. */
+    /* The power crust, moved outwards by `distance`, or inwards if that is negative. Parts that meet are merged, and
+     * parts that are too thin vanish. Its error is that of the polar balls; of a mesh, brio_mesh_offset has a proven
+     * one. Based on: [Choi 2003] section 3.3.4. */
     BRIO_SURFACE_OFFSET = 4,
     BRIO_SURFACE_END
 } brio_surface_method;
+
+/** What holds for every surface of a method, as bits of brio_surface_method_info.traits. */
+enum {
+    BRIO_METHOD_ALL_POINTS = 1,   /* vertex v is point v */
+    BRIO_METHOD_OWN_VERTICES = 2, /* no vertex is a point */
+    BRIO_METHOD_MAY_END = 4,      /* it ends where the points do, unless `holes` closes it */
+    BRIO_METHOD_AT_DISTANCE = 8   /* it is not through the points, but at `distance` from them */
+};
+
+/** What is known of a method. */
+typedef struct brio_surface_method_info {
+    size_t size; /* of the struct in the library that runs */
+    brio_surface_method method;
+    const char *name;    /* as the command line and Python call it: "tight-cocone" */
+    const char *words;   /* what it is good for, in a line of help; options in it are those of the command line */
+    const char *options; /* the fields of brio_surface_options that it has, besides method and seed, blanks between:
+                            "noise open poles.sharp" */
+    unsigned traits;     /* BRIO_METHOD_ALL_POINTS and so on */
+} brio_surface_method_info;
+
+/** Returns what is known of a method; NULL for a number that names none. */
+BRIO_API const brio_surface_method_info *brio_surface_method_facts(brio_surface_method method);
+
+/** Returns 1 if a method has an option of the list in its info, 0 if it has not, or if there is no such method. */
+BRIO_API int brio_surface_method_has(brio_surface_method method, const char *option);
 
 /** What becomes of holes of the points: places where a surface goes on and no point shows it. */
 typedef enum brio_holes {
@@ -93,8 +120,8 @@ typedef enum brio_noise {
     BRIO_NOISE_END
 } brio_noise;
 
-/** Evidence of the side from which points were seen: that is outside. It is weighed, so that a part of it may be wrong: how
- *  often neighbours agree is measured, and evidence drawn by lot weighs nothing. The arrays are not kept. */
+/** Evidence of the side from which points were seen: that is outside. It is weighed, so that a part of it may be wrong:
+ *  how often neighbours agree is measured, and evidence drawn by lot weighs nothing. The arrays are not kept. */
 typedef struct brio_evidence {
     size_t size;
     const double *normals; /* #P by 3, of any length; NULL: none. Where one is 0 or not finite nothing is known */
@@ -159,8 +186,10 @@ typedef enum brio_extraction {
     BRIO_EXTRACTION_END
 } brio_extraction;
 
+enum { BRIO_BOUNDARIES_AUTO = 2 }; /* for brio_surface_options.boundaries */
+
 /** Options of brio_surface. A field of 0 is the default. One that is set and that the method does not have is
- *  BRIO_ERR_ARGUMENT; the methods that have it are named first. */
+ *  BRIO_ERR_ARGUMENT; the methods that have it are named first, as brio_surface_method_facts lists them. */
 struct brio_surface_options {
     size_t size;
     brio_surface_method method;
@@ -171,13 +200,15 @@ struct brio_surface_options {
     /* All but OFFSET: NULL, or receives #P by 3: the unit normal of the surface at each point, outwards. */
     double *normals;
     /* LABELED, POWER_CRUST: K > 0 leaves open the holes whose radius is over K spacings: for LABELED that of the widest
-     * empty circle along the surface, whatever `holes` is. POWER_CRUST leaves out faces whose two balls intersect at an
-     * angle over pi / 4 while the smaller ball's radius is that large. 0: LABELED goes by `holes`, POWER_CRUST is closed. */
+     * empty circle along the surface; `holes` then does not count. POWER_CRUST leaves out faces whose two balls
+     * intersect at an angle over pi / 4 while the smaller ball's radius is that large. 0: LABELED goes by `holes`,
+     * POWER_CRUST is closed. */
     double open;
-    brio_holes holes; /* LABELED */
-    /* LABELED, POWER_CRUST, OFFSET, 1: about a quarter as many triangles, as far as the shape allows. Edges collapse while
-     * the vertices stay within a tenth of a spacing of the planes of their triangles: edges of up to four spacings of
-     * LABELED, and those much shorter than the spacing of the others. The surface stays the same as a manifold. */
+    brio_holes holes; /* LABELED; BRIO_HOLES_CLOSED is taken by all but COCONE, as they are closed */
+    /* LABELED, POWER_CRUST, OFFSET, 1: about a quarter as many triangles, as far as the shape allows. Edges collapse
+     * while the vertices stay within a tenth of a spacing of the planes of their triangles: edges of up to four
+     * spacings of LABELED, and those much shorter than the spacing of the others. The surface stays the same as a
+     * manifold. */
     int simplify;
     int confidence;          /* LABELED, 1: adds the property "confidence" of vertices and of faces */
     int polygons;            /* POWER_CRUST, OFFSET, 1: keeps polygons, uncut; not with `simplify` */
@@ -185,11 +216,12 @@ struct brio_surface_options {
     brio_pole_options poles; /* POWER_CRUST, OFFSET */
     double theta;            /* COCONE, TIGHT_COCONE: half the opening angle in radians, below pi/2; 0: pi/8 */
     /* COCONE, TIGHT_COCONE, 1: finds points at boundaries and where the sampling is too sparse by the shape of their
-     * Voronoi cells, and rejects triangles all of whose vertices are such points. */
+     * Voronoi cells, and rejects triangles all of whose vertices are such points. BRIO_BOUNDARIES_AUTO: likewise,
+     * unless over 15 % of the points are such, which tells nothing. */
     int boundaries;
     int density; /* COCONE, TIGHT_COCONE, 1: estimates the sampling density, and adds it as properties of the vertices */
-    /* COCONE: N > 1 is the super co-cone. It triangulates the points in about N pieces, one after the other, and matches
-     * the surfaces at the seams; on dense points the triangles are the same. Not with `extraction`. */
+    /* COCONE: N > 1 is the super co-cone. It triangulates the points in about N pieces, one after the other, and
+     * matches the surfaces at the seams; on dense points the triangles are the same. Not with `extraction`. */
     size_t pieces;
     brio_extraction extraction; /* COCONE */
     int reserved_int;
@@ -215,8 +247,11 @@ struct brio_surface_stats {
     unsigned evidence;      /* bits BRIO_EVIDENCE_NORMALS, BRIO_EVIDENCE_ORIGINS: what was of use; 0: inside and outside
                                are a guess */
     unsigned reserved;
-    size_t told;          /* samples of which evidence tells the outside */
-    double agreement;     /* the share of these whose side in the result is what evidence tells */
+    size_t told;              /* samples of which evidence tells the outside */
+    double agreement;         /* the share of what evidence tells of these that is so in the result */
+    size_t normals, origins;  /* samples with a normal, and with a place of the scanner, be they of use or not */
+    double normals_agreement; /* the shares of these whose side in the result is what the normal, or the place, tells */
+    double origins_agreement;
     size_t strays;        /* samples that lie alone, far from all others: left out, unless noise is BRIO_NOISE_KEEP */
     size_t holes;         /* left open */
     size_t bridges;       /* gaps of the samples that the surface spans: triangles several times larger than usual */
@@ -236,11 +271,16 @@ struct brio_surface_stats {
     brio_pole_stats poles; /* of OFFSET: of the balls that are left */
     double noise_seconds, delaunay_seconds, poles_seconds, candidates_seconds, labels_seconds, manifold_seconds,
         open_seconds, density_seconds, crust_seconds, simplify_seconds;
+    /* LABELED, unless noise is BRIO_NOISE_KEEP */
+    size_t
+        unrounded; /* points whose depths, from a scanner, were rounded to steps of over a spacing: moved by at most half
+                         a step, so that steps are slopes */
+    double rounding; /* the median of these steps; 0: there are none */
 };
 
-/** Finds the oriented unit normals of the points that a surface was made from. A point that is a vertex has the vertex's
- *  normal, as brio_mesh_add_normals finds it, and so have its duplicates. Every other point has the normal of the surface
- *  where the surface is nearest to it, interpolated between vertices.
+/** Finds the oriented unit normals of the points that a surface was made from. A point that is a vertex has the
+ *  vertex's normal, as brio_mesh_add_normals finds it, and so have its duplicates. Every other point has the normal of
+ *  the surface where the surface is nearest to it, interpolated between vertices.
  *  surface  its vertices are points, maybe moved.
  *  samples  #V: the point of each vertex, such as the data of the property "sample"; NULL: vertex v is point v.
  *  normals  #P by 3, written.

@@ -30,15 +30,15 @@ typedef struct brio_generate_options {
     int reserved_int;
 } brio_generate_options;
 
-/** Makes n points of a kind; the same seed gives the same points. A scan has about n points, as many as its rays hit, and
- *  the property "view".   options  NULL for the defaults.   out  owned by the caller.
+/** Makes n points of a kind; the same seed gives the same points. A scan has about n points, as many as its rays hit,
+ *  and the property "view".   options  NULL for the defaults.   out  owned by the caller.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (also where noise moves points of a scan farther than doubles can hold),
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
                                    brio_mesh **out);
 
-/** Makes the surface that BRIO_KIND_SCAN scans: a closed triangle mesh from a grid of `resolution` cells along the longest
- *  side of its box (4 to 32,768; 0: 160).
+/** Makes the surface that BRIO_KIND_SCAN scans: a closed triangle mesh from a grid of `resolution` cells along the
+ *  longest side of its box (4 to 32,768; 0: 160).
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh **out);
 
@@ -51,8 +51,8 @@ typedef enum brio_solid_kind {
 
 /** Makes the surface of a random solid, to judge surface reconstruction by. It is a closed, manifold, oriented mesh of
  *  triangles, centred, in a box of diagonal 1. It has one to three components, seldom a void; its genus is what the
- *  certificate counts. Where an even sampling of 20,000 points has the spacing s, walls, gaps and bars are at least 1.2 s
- *  thick, most of them 3 to 10 s. Sharp edges and corners are on edges and vertices of the mesh.
+ *  certificate counts. Where an even sampling of 20,000 points has the spacing s, walls, gaps and bars are at least 1.2
+ *  s thick, most of them 3 to 10 s. Sharp edges and corners are on edges and vertices of the mesh.
  *  The seed determines the solid, and with the resolution the mesh, for any number of threads.
  *  resolution  cells along the longest side of the box, 16 to 1,024; 0: 144.   out  owned by the caller.
  *  Cost: some seconds; about 8 R^2 triangles at resolution R.

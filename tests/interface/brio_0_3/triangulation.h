@@ -1,4 +1,5 @@
-/* brio/triangulation.h: Delaunay and regular triangulations of points in space, and their checks. */
+/* brio/triangulation.h: Delaunay and regular triangulations of points in space, and their checks. Questions to them,
+ * such as which tetrahedron holds a position, are in queries.h. */
 #ifndef BRIO_TRIANGULATION_H
 #define BRIO_TRIANGULATION_H
 
@@ -10,8 +11,8 @@ extern "C" {
 
 #define BRIO_INFINITE UINT32_MAX
 
-/** A tetrahedron: its four vertices as indices of points, and four mates. mate[i] is the handle of the facet opposite to
- *  vertex[i], seen from the tetrahedron on its other side. As an array of numbers: eight to a tetrahedron. */
+/** A tetrahedron: its four vertices as indices of points, and four mates. mate[i] is the handle of the facet opposite
+ *  to vertex[i], seen from the tetrahedron on its other side. As an array of numbers: eight to a tetrahedron. */
 typedef struct {
     uint32_t vertex[4], mate[4];
 } brio_tetrahedron;
@@ -32,10 +33,10 @@ typedef enum brio_order {
 } brio_order;
 
 /** Strategies of point location: how the insertion finds the tetrahedron that holds a point. All give the same
- *  tetrahedra. Only the walk works with several threads. TRACE locates a point that no edge reaches as HISTORY does, and
- *  NEIGHBOUR as WALK does. Memory in bytes beyond the walk's: JUMP 4 a point; HIERARCHY about 17 a point; NEIGHBOUR 8 a
- *  point and 8 an edge; TRACE 16 a point and 8 an edge; HISTORY and TRACE also 20 for each tetrahedron ever created and 4
- *  for each tetrahedron of the result. */
+ *  tetrahedra. Only the walk works with several threads. TRACE locates a point that no edge reaches as HISTORY does,
+ *  and NEIGHBOUR as WALK does. Memory in bytes beyond the walk's: JUMP 4 a point; HIERARCHY about 17 a point; NEIGHBOUR
+ *  8 a point and 8 an edge; TRACE 16 a point and 8 an edge; HISTORY and TRACE also 20 for each tetrahedron ever created
+ *  and 4 for each tetrahedron of the result. */
 typedef enum brio_location {
     BRIO_LOCATION_WALK = 0,      /* from the point inserted last [Devillers Pion Teillaud 2002] */
     BRIO_LOCATION_JUMP = 1,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
@@ -89,9 +90,9 @@ typedef struct brio_delaunay_stats {
     double locate_seconds;        /* of the insertion: point location, extrapolated from every 64th one; 1 thread */
     double order_seconds, insert_seconds; /* insert_seconds includes the canonical sort of the result */
     uint64_t history_conflicts; /* of the history_tests with first_conflict or all_conflicts: nodes in conflict */
-    /* With page_bytes: pages of the records, of the tetrahedra and of the history; how often one was touched; and how often
-     * the cache, which drops the page that was least recently used, did not have it. An insertion touches what its
-     * location comes to, what it tests in conflict, what lies behind that, and what it writes. These depend on the
+    /* With page_bytes: pages of the records, of the tetrahedra and of the history; how often one was touched; and how
+     * often the cache, which drops the page that was least recently used, did not have it. An insertion touches what
+     * its location comes to, what it tests in conflict, what lies behind that, and what it writes. These depend on the
      * sequence of insertions alone, not on the machine. */
     uint64_t pages, page_touches, page_faults;
 } brio_delaunay_stats;
@@ -105,11 +106,12 @@ typedef struct brio_triangulation brio_triangulation;
  *  num_points  less than 2^31 - 16, or less than 2^32 - 16 with a scratch folder.
  *  options  NULL for the defaults.    out      owned by the caller, freed with brio_triangulation_free; NULL on error.
  *  Cost: expected O(n log n) time for points of realistic inputs. Memory while points are inserted: 33 bytes a
- *  tetrahedron and 41 a point (45 with several threads; with weights 4 more); while the result is sorted: 41 a tetrahedron and 16 a point. Up
- *  to an eighth is reserved for growth.
+ *  tetrahedron and 41 a point (45 with several threads; with weights 4 more); while the result is sorted: 41 a
+ *  tetrahedron and 16 a point. Up to an eighth is reserved for growth.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED.
- *  Based on: [Bowyer 1981], [Watson 1981]; [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for ties. */
+ *  Based on: [Bowyer 1981], [Watson 1981]; [Amenta Choi Rote 2003] for the order, [Devillers Teillaud 2011] for
+ *  ties. */
 BRIO_API brio_status brio_delaunay(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                    const brio_delaunay_options *options, brio_triangulation **out);
 
@@ -120,8 +122,8 @@ BRIO_API void brio_triangulation_free(brio_triangulation *t);
 BRIO_API const brio_delaunay_stats *brio_triangulation_stats(const brio_triangulation *t);
 
 /** Returns the tetrahedra + hull_facets tetrahedra, finite ones first. A finite tetrahedron is positive. An infinite
- *  tetrahedron (a, b, c, BRIO_INFINITE) has the hull facet abc, and (a, b, c, x) is positive for x outside the hull. The
- *  array is the same for every number of threads. The view is valid until the triangulation is freed. */
+ *  tetrahedron (a, b, c, BRIO_INFINITE) has the hull facet abc, and (a, b, c, x) is positive for x outside the hull.
+ *  The array is the same for every number of threads. The view is valid until the triangulation is freed. */
 BRIO_API const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triangulation *t);
 
 /** Returns #P indices: for each point the vertex that represents it, which is the point itself if it is a vertex. With
@@ -129,8 +131,8 @@ BRIO_API const brio_tetrahedron *brio_triangulation_tetrahedra(const brio_triang
  *  triangulation is freed. */
 BRIO_API const uint32_t *brio_triangulation_representatives(const brio_triangulation *t);
 
-/** Returns the hash of the points and weights that the triangulation was made of, as brio_points_hash has it. So a caller
- *  who keeps points beside a triangulation can see whether they are still its points. */
+/** Returns the hash of the points and weights that the triangulation was made of, as brio_points_hash has it. So a
+ *  caller who keeps points beside a triangulation can see whether they are still its points. */
 BRIO_API uint64_t brio_triangulation_points_hash(const brio_triangulation *t);
 
 /** Returns a hash of points in their order.
@@ -138,11 +140,11 @@ BRIO_API uint64_t brio_triangulation_points_hash(const brio_triangulation *t);
 BRIO_API uint64_t brio_points_hash(const double *points, const double *weights, size_t num_points, int coordinates);
 
 /** Checks a triangulation exactly and completely against its points. It passes if and only if it is the result of
- *  brio_delaunay, up to the order of the finite tetrahedra, the order of the infinite ones, and even permutations of the
- *  vertices of a tetrahedron. Checked are: the tetrahedra cover the convex hull once and meet in common faces; no point is
- *  inside the sphere (orthosphere) of a tetrahedron; ties are broken by the symbolic perturbation; mates, infinite
- *  tetrahedra and every representative are right; the statistics' dimension and numbers of vertices, duplicates, hidden
- *  points, tetrahedra and hull facets are right.
+ *  brio_delaunay, up to the order of the finite tetrahedra, the order of the infinite ones, and even permutations of
+ *  the vertices of a tetrahedron. Checked are: the tetrahedra cover the convex hull once and meet in common faces; no
+ *  point is inside the sphere (orthosphere) of a tetrahedron; ties are broken by the symbolic perturbation; mates,
+ *  infinite tetrahedra and every representative are right; the statistics' dimension and numbers of vertices,
+ *  duplicates, hidden points, tetrahedra and hull facets are right.
  *  points, weights, num_points  as they were given to brio_delaunay.
  *  Cost: O(t) for t tetrahedra, and one walk for each point that is no vertex; inputs of dimension 1 and 2 are
  *  triangulated again.
@@ -165,8 +167,8 @@ BRIO_API brio_status brio_tetrahedra_check(brio_context *ctx, const double *poin
                                            size_t num_points, const uint32_t *tetrahedra, size_t stride,
                                            size_t num_tetrahedra, int *canonical);
 
-/** Computes a hash of the set of tetrahedra in terms of the lexicographic ranks of their vertices. It does not depend on
- *  the order of points or tetrahedra, and stays the same when all points are scaled by a power of two.
+/** Computes a hash of the set of tetrahedra in terms of the lexicographic ranks of their vertices. It does not depend
+ *  on the order of points or tetrahedra, and stays the same when all points are scaled by a power of two.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
                                                  uint64_t *checksum);
