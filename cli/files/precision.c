@@ -184,8 +184,9 @@ static bool rounds(const brio_write_options *o) {
     return has_singles_alone(o->format) || (o->float32 && has(o->format, BRIO_HOLDS_SINGLES | BRIO_HOLDS_DOUBLES));
 }
 
-static void tell_idle(run *r, const char *path, brio_format format) {
-    cli_tell_idle(r, path, has(format, BRIO_HOLDS_TEXT), has(format, BRIO_HOLDS_SINGLES));
+static void tell_idle(run *r, const char *path, const brio_write_options *o) {
+    cli_tell_idle(r, path, has(o->format, BRIO_HOLDS_TEXT), has(o->format, BRIO_HOLDS_SINGLES));
+    if (has(o->format, BRIO_HOLDS_RARE_DOUBLES) && !o->float32) cli_warn(r, WARNING_RARE_DOUBLES, path);
 }
 
 /* Takes back --float32 if the loss is harmful. Returns the number of points that merge. */
@@ -206,7 +207,7 @@ static size_t settle(run *r, const char *path, const single_loss *l, brio_write_
 brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh, brio_write_options *o,
                                  size_t *merged) {
     single_loss l = {.points = 0};
-    tell_idle(r, path, o->format);
+    tell_idle(r, path, o);
     if (rounds(o)) FORWARD(cli_single_loss(r, mesh, &l));
     *merged = settle(r, path, &l, o);
     return BRIO_OK;
@@ -215,7 +216,7 @@ brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh
 brio_status cli_settle_conversion(run *r, const char *from, const char *to, const brio_convert_options *o,
                                   brio_write_options *written, size_t *merged) {
     single_loss l = {.points = 0};
-    tell_idle(r, to, written->format);
+    tell_idle(r, to, written);
     if (rounds(written)) FORWARD(single_loss_of_file(r, from, o, &l));
     *merged = settle(r, to, &l, written);
     return BRIO_OK;

@@ -23,7 +23,8 @@ static const struct {
             {BRIO_HOLDS_TEXT, "text", "as text"},
             {BRIO_HOLDS_BINARY, "binary", "binary"},
             {BRIO_HOLDS_COMPRESSED, "compressed", "compressed"},
-            {BRIO_HOLDS_PLACES, "places", "no pipes"}};
+            {BRIO_HOLDS_PLACES, "places", "no pipes"},
+            {BRIO_HOLDS_RARE_DOUBLES, "rare_doubles", "--float32 for most readers"}};
 
 enum { NUM_HELD = sizeof held / sizeof *held };
 

@@ -18,7 +18,8 @@ enum {
 /* The codec of each format, in the format's own file. */
 extern const brio_codec brio_ply_codec, brio_off_codec, brio_vtp_codec, brio_vtu_codec, brio_vtk_codec, brio_laz_codec,
     brio_las_codec, brio_pcd_codec, brio_npy_codec, brio_glb_codec, brio_e57_codec, brio_npz_codec, brio_stl_codec,
-    brio_obj_codec, brio_node_codec, brio_ptx_codec, brio_bnpts_codec, brio_chemical_codec, brio_xyz_codec;
+    brio_obj_codec, brio_node_codec, brio_ptx_codec, brio_bnpts_codec, brio_chemical_codec, brio_pts_codec,
+    brio_xyzrgb_codec, brio_xyzn_codec, brio_xyz_codec;
 
 /* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
 static const brio_format_row table[] = {
@@ -56,7 +57,7 @@ static const brio_format_row table[] = {
      .colours = BRIO_COLOURS_16,
      .keeps = "crs. las."},
     {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "pcd",
-      POINTS | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS - 3},
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_RARE_DOUBLES | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS - 3},
      .codec = &brio_pcd_codec,
      .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPY, "an NPY file", "npy", "npy",
@@ -96,8 +97,19 @@ static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_CHEMICAL, "a chemical XYZ file", "chemical extxyz", "",
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .codec = &brio_chemical_codec},
-    {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz pts txt csv asc xyzrgb xyzn tsv dat",
-      "xyz pts txt csv asc xyzrgb xyzn tsv", POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS - 3},
+    {{sizeof(brio_format_info), BRIO_FORMAT_PTS, "a PTS file", "pts", "pts",
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_INTENSITY | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .codec = &brio_pts_codec,
+     .colours = BRIO_COLOURS_8},
+    {{sizeof(brio_format_info), BRIO_FORMAT_XYZRGB, "a text of points with colours", "xyzrgb", "xyzrgb",
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .codec = &brio_xyzrgb_codec,
+     .colours = BRIO_COLOURS_UNIT},
+    {{sizeof(brio_format_info), BRIO_FORMAT_XYZN, "a text of points with normals", "xyzn", "xyzn",
+      BRIO_HOLDS_NORMALS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+     .codec = &brio_xyzn_codec},
+    {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz txt csv asc tsv dat", "xyz txt csv asc tsv",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS - 3},
      .codec = &brio_xyz_codec}};
 
 enum { NUM_FORMATS = sizeof table / sizeof *table };

@@ -1,4 +1,4 @@
-/* Writes points as rows of numbers: .xyz .pts .txt .csv .asc .tsv. A line of names comes first. */
+/* Writes points as rows of numbers: .xyz .txt .csv .asc .tsv. A line of names comes first. */
 #include "io/row_format.h"
 #include <string.h>
 #include <strings.h>

@@ -148,6 +148,7 @@ ROWS = {
     "WARNING_NAMES": ("delaunay values.ply -o out.node", 0, [Silent("delaunay values.ply -o out.ply")]),
     "WARNING_PROPERTIES": ("hull values.ply -o out.off", 0, [Silent("hull values.ply -o out.ply")]),
     "WARNING_IDLE_ASCII": ("generate cube -n 9 -o out.las --ascii", 0, [Silent("generate cube -n 9 -o out.las")]),
+    "WARNING_RARE_DOUBLES": ("generate cube -n 9 -o out.pcd", 0, [Silent("generate cube -n 9 -o out.pcd --float32")]),
     "WARNING_IDLE_FLOAT32": ("generate cube -n 9 -o out.xyz --float32", 0, [Silent("generate cube -n 9 -o out.xyz")]),
     "WARNING_NOT_FINITE": ("interpolate missing.csv --at few.xyz --property q -o out.csv", 0,
                            [Silent("interpolate values.csv --at few.xyz --property q -o out.csv")]),

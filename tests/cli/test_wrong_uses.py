@@ -262,7 +262,7 @@ class WrongUses(CliTest):
     def test_pictures_and_empty_files(self):
         self.expect_table(("info png." + e, 2, "png.%s: " % e) for e in EXTENSIONS)
         self.expect_table(("info void." + e, 2, "void.%s: " % e) for e in EXTENSIONS
-                          if e not in ("obj", "xyz", "bnpts"))  # no points are a file of these
+                          if e not in ("obj", "xyz", "pts", "xyzrgb", "xyzn", "bnpts"))  # no points are a file of these
 
     def test_control_characters_of_a_name_do_not_reach_the_terminal(self):
         for name in ("\x1b[31mred.xyz", "bell\x07\x7f.xyz"):

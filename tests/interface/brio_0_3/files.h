@@ -45,7 +45,7 @@ BRIO_API brio_status brio_write(brio_context *ctx, const char *path, const brio_
 typedef enum brio_format {
     BRIO_FORMAT_AUTO = 0,
     BRIO_FORMAT_PLY = 1,
-    BRIO_FORMAT_XYZ = 2, /* .xyz .pts .txt .csv .asc .xyzrgb .xyzn .tsv .dat */
+    BRIO_FORMAT_XYZ = 2, /* .xyz .txt .csv .asc .tsv .dat */
     BRIO_FORMAT_OBJ = 3,
     BRIO_FORMAT_OFF = 4,
     BRIO_FORMAT_VTU = 5,
@@ -63,6 +63,9 @@ typedef enum brio_format {
     BRIO_FORMAT_BNPTS = 17,    /* oriented points of Kazhdan's Poisson programs: read, not written */
     BRIO_FORMAT_NPZ = 18,      /* NumPy's zip of arrays: read, not written */
     BRIO_FORMAT_VTK = 19,      /* VTK's legacy files of polygonal data and unstructured grids */
+    BRIO_FORMAT_PTS = 20,      /* texts without names: the number of points, then x y z, intensity, red green blue */
+    BRIO_FORMAT_XYZRGB = 21,   /* x y z, red green blue from 0 to 1 */
+    BRIO_FORMAT_XYZN = 22,     /* x y z, nx ny nz */
     BRIO_FORMAT_MOST = 255     /* no number is larger */
 } brio_format;
 
@@ -87,7 +90,8 @@ enum {
     BRIO_HOLDS_FACE_PROPERTIES = 8192, /* of the faces, any of them */
     BRIO_HOLDS_FACE_COLOURS = 16384,   /* red, green, blue and alpha of the faces, though not all properties */
     BRIO_HOLDS_ORIGIN = 32768,         /* an origin, from which coordinates in single precision are counted */
-    BRIO_HOLDS_PLACES = 65536          /* places of its parts, known at its end: it goes to a file, not into a pipe */
+    BRIO_HOLDS_PLACES = 65536,         /* places of its parts, known at its end: it goes to a file, not into a pipe */
+    BRIO_HOLDS_RARE_DOUBLES = 131072   /* doubles that the usual readers of the format take for zeros: not singles */
 };
 
 /** What is known of a format. */
