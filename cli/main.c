@@ -101,9 +101,11 @@ static int finish(run *r, brio_status status) {
 
 static brio_status check_operands(run *r) {
     const command *c = r->command;
-    if (r->num_operands < c->min_operands)
+    if (r->num_operands < c->min_operands) {
+        if (c->examples) cli_hint(r, HINT_EXAMPLE, (int)strcspn(c->examples, "\n"), c->examples);
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: expected %s, got %s", c->name, c->operands,
                         r->num_operands ? "one argument" : "no argument");
+    }
     if (r->num_operands > c->max_operands)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: one argument too many: '%s'", c->name, r->operands[c->max_operands]);
     if (!c->writes_last || r->num_operands < c->max_operands) return BRIO_OK;

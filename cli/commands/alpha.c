@@ -7,7 +7,7 @@
 #include "cli/steps/hints.h"
 #include "cli/run/interrupt.h"
 #include "cli/steps/properties.h"
-#include "cli/steps/rounding.h"
+#include "cli/files/cloud.h"
 #include "cli/steps/weights.h"
 #include <errno.h>
 #include <float.h>

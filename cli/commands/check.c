@@ -89,8 +89,10 @@ static brio_status check(run *r) {
     TRY(cli_check_weights_options(r, &a->weights));
     if (r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "check writes no file; -o has no meaning here");
     TRY(cli_read(r, r->operands[0], &mesh));
-    if (!mesh->num_faces && !mesh->num_tetrahedra)
+    if (!mesh->num_faces && !mesh->num_tetrahedra) {
+        cli_hint(r, HINT_SURFACE);
         FAIL(r, BRIO_ERR_FORMAT, "%s: expected faces or tetrahedra to check, found points only", r->operands[0]);
+    }
     TRY(refuse_idle(r, a, mesh));
     cli_fact_count(&r->facts, "vertices", mesh->num_vertices);
     cli_fact_count(&r->facts, "faces", mesh->num_faces);

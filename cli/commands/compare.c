@@ -4,7 +4,7 @@
 #include "cli/run/run.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/properties.h"
-#include "cli/steps/rounding.h"
+#include "cli/files/cloud.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -179,9 +179,11 @@ static brio_status compare(run *r) {
         goto done;
     }
     int cloud = mesh[0]->num_faces ? 1 : 0;
-    if (!mesh[1 - cloud]->num_faces)
+    if (!mesh[1 - cloud]->num_faces) {
+        cli_hint(r, HINT_SURFACE);
         FAIL(r, BRIO_ERR_FORMAT, "%s, %s: expected a surface at least once, found no faces", r->operands[0],
              r->operands[1]);
+    }
     if (chosen->samples)
         FAIL(r, BRIO_ERR_ARGUMENT, "--samples is for two surfaces, and %s has points alone", r->operands[cloud]);
     if (!mesh[cloud]->num_vertices) FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points", r->operands[cloud]);

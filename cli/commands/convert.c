@@ -2,7 +2,7 @@
 #include "cli/run/commands.h"
 #include "cli/files/files.h"
 #include "cli/run/interrupt.h"
-#include "cli/files/precision.h"
+#include "cli/files/lost.h"
 #include "cli/files/read_write.h"
 #include <math.h>
 #include <stdlib.h>

@@ -61,8 +61,10 @@ static brio_status cli_mesh_edges(run *r, const brio_mesh *mesh, brio_location l
     brio_status status = BRIO_OK;
     bool fitting = subgraph == SUBGRAPH_FITTING;
     brio_subgraph kind = (brio_subgraph)subgraph;
-    if (!mesh->num_faces)
+    if (!mesh->num_faces) {
+        cli_hint(r, HINT_SURFACE);
         return cli_fail(r, BRIO_ERR_FORMAT, "%s: expected a surface mesh to go along, found no faces", r->operands[0]);
+    }
     if (fitting) kind = location == BRIO_LOCATION_TRACE ? BRIO_SUBGRAPH_BOUNDED : BRIO_SUBGRAPH_ALL;
     status = brio_mesh_subgraph(r->ctx, mesh, kind, out);
     if (status == BRIO_ERR_NO_ANSWER && fitting) {
@@ -167,8 +169,8 @@ static brio_status check_arguments(run *r, const arguments *a) {
     TRY(cli_require_output(r, true));
     const char *output = r->common.output;
     if (output && cli_is_single(output) && r->common.format && brio_format_of(r->common.format) == BRIO_FORMAT_NODE)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele",
-                        strcmp(output, "-") ? output : "standard output");
+        return cli_fail_output(r, "%s cannot hold the two files .node and .ele",
+                               strcmp(output, "-") ? output : "standard output");
     if (a->rounds && a->record_every) return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --rounds and --record-every");
     if (a->all_conflicts && a->first_conflict)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "only one of --first-conflict and --all-conflicts");

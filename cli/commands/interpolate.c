@@ -39,7 +39,10 @@ static brio_status check_arguments(run *r, const arguments *a) {
 
 static brio_status values_of(run *r, const brio_mesh *points, const char *name, double **values) {
     const brio_property *property = brio_mesh_property(points, name);
-    if (!property) return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have no property '%s'", r->operands[0], name);
+    if (!property) {
+        cli_hint(r, HINT_PROPERTIES);
+        return cli_fail(r, BRIO_ERR_FORMAT, "%s: its points have no property '%s'", r->operands[0], name);
+    }
     *values = malloc((2 * points->num_vertices + 1) * sizeof **values);
     if (!*values) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu values", points->num_vertices);
     size_t none = 0;

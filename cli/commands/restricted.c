@@ -60,7 +60,10 @@ static brio_status restricted(run *r) {
     TRY(cli_require_output(r, true));
     TRY(cli_read_points(r, r->operands[0], &samples));
     TRY(cli_read(r, a->surface, &surface));
-    if (!surface->num_faces) FAIL(r, BRIO_ERR_FORMAT, "%s: expected a surface, found no faces", a->surface);
+    if (!surface->num_faces) {
+        cli_hint(r, HINT_SURFACE);
+        FAIL(r, BRIO_ERR_FORMAT, "%s: expected a surface, found no faces", a->surface);
+    }
     TRY(cli_delaunay_bytes(r, samples, NULL, &o, &bytes));
     TRY(cli_require_memory(r, 2 * bytes + 100.0 * (double)surface->num_faces));
     TRY(brio_restricted_delaunay(r->ctx, samples->vertices, samples->num_vertices, surface, &triangles, &s));

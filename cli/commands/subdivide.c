@@ -19,7 +19,10 @@ static const arguments defaults = {.levels = 1};
 enum { MOST_LEVELS = 15 };
 
 static brio_status check_mesh(run *r, const arguments *a, const brio_mesh *mesh) {
-    if (!mesh->num_faces) return cli_fail(r, BRIO_ERR_NO_ANSWER, "%s: has no faces", r->operands[0]);
+    if (!mesh->num_faces) {
+        cli_hint(r, HINT_SURFACE);
+        return cli_fail(r, BRIO_ERR_NO_ANSWER, "%s: has no faces", r->operands[0]);
+    }
     return cli_require_work(r, BRIO_OK, NULL, brio_estimate_mesh_subdivide(mesh->num_faces, a->levels));
 }
 

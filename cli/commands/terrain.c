@@ -3,7 +3,7 @@
 #include "cli/steps/estimate.h"
 #include "cli/files/raster.h"
 #include "cli/files/read_write.h"
-#include "cli/steps/rounding.h"
+#include "cli/files/cloud.h"
 #include "cli/steps/selection.h"
 #include <errno.h>
 #include <math.h>
@@ -71,8 +71,10 @@ static brio_status choose_classes(run *r, const char *text, terrain *t) {
     uint8_t *chosen = NULL;
     TRY(read_classes(r, text, wanted));
     const brio_property *class = brio_mesh_property(t->points, "classification");
-    if (!class)
+    if (!class) {
+        cli_hint(r, HINT_PROPERTIES);
         FAIL(r, BRIO_ERR_FORMAT, "%s: the points have no property classification, which --class needs", r->operands[0]);
+    }
     chosen = malloc(n + 1);
     if (!chosen) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu points", n);
     for (size_t i = 0; i < n; i++) {

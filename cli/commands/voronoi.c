@@ -118,7 +118,7 @@ static brio_status require_output(run *r, brio_cells_format *format) {
     brio_status status = a->faces ? cli_check_beside(r, "faces", a->faces) : BRIO_OK;
     if (status != BRIO_OK) return status;
     if (!c->output && (c->json || a->faces)) return BRIO_OK;
-    if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
+    if (!c->output) return cli_fail_output(r, "no output: -o FILE is missing");
     if (c->format)
         *format = brio_cells_format_of(c->format);
     else if (strcmp(c->output, "-") != 0)
@@ -126,8 +126,7 @@ static brio_status require_output(run *r, brio_cells_format *format) {
     else
         return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format: vtu, npy or csv");
     if (*format == BRIO_CELLS_FORMAT_AUTO)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold cells, expected .vtu .npy or .csv",
-                        c->output);
+        return cli_fail_output(r, "%s: a file of this format cannot hold cells, expected .vtu .npy or .csv", c->output);
     if (c->compress) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress: cells are written without compression");
     return strcmp(c->output, "-") ? cli_check_target(r, c->output) : BRIO_OK;
 }

@@ -1,4 +1,4 @@
-/* Facts of a set of points that need no triangulation. */
+/* Facts of a set of points that need no triangulation, and thresholds that distances equal up to rounding. */
 #ifndef BRIO_CLI_CLOUD_H
 #define BRIO_CLI_CLOUD_H
 
@@ -17,5 +17,12 @@ brio_status cli_cloud_merged(run *r, const double *points, size_t count, size_t 
 /** Finds the typical distance of a point to its nearest neighbour at another position: the median over a random choice
  *  of points, each searched exactly. 0 when no two positions differ. */
 brio_status cli_cloud_spacing(run *r, const double *points, size_t count, double *spacing);
+
+/** Returns by how much the rounding of coordinates may change distances between points of a mesh. */
+double cli_rounding(const brio_mesh *mesh);
+
+/** Returns the greatest distance that counts as equal to a threshold, by a rounding that is at most 2^-14 of it. So a
+ *  grid whose spacing no double holds is treated alike all over. */
+double cli_up_to(double threshold, double rounding);
 
 #endif

@@ -133,9 +133,9 @@ brio_status cli_output_format(run *r, const char *path, const char *extension, b
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
     if (info) return BRIO_OK;
     brio_format_list(1, 0, written, sizeof written);
-    if (extension) return cli_fail(r, BRIO_ERR_ARGUMENT, "--format %s: this version writes %s", extension, written);
+    if (extension) return cli_fail_output(r, "--format %s: this version writes %s", extension, written);
     if (!strcmp(path, "-")) return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format");
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: this version writes %s; name one of these with --format", path, written);
+    return cli_fail_output(r, "%s: this version writes %s; name one of these with --format", path, written);
 }
 
 /* --- files named twice --- */

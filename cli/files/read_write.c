@@ -2,7 +2,6 @@
 #include "cli/files/read_write.h"
 #include "cli/files/files.h"
 #include "cli/files/lost.h"
-#include "cli/files/precision.h"
 #include "cli/run/interrupt.h"
 #include <string.h>
 #include <strings.h>
@@ -34,7 +33,7 @@ static bool names_output(const run *r) {
 
 brio_status cli_require_output_for(run *r, const char *name, bool given) {
     if (!given || r->common.output) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: --%s needs -o FILE", name);
+    return cli_fail_output(r, "no output: --%s needs -o FILE", name);
 }
 
 /* Refuses options about a file that is not written. */
@@ -154,12 +153,12 @@ brio_status cli_require_output_holding(run *r, cli_holds holds, bool optional) {
     const common_options *c = &r->common;
     brio_format format;
     if (!c->output && (optional || c->json)) return BRIO_OK;
-    if (!c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
+    if (!c->output) return cli_fail_output(r, "no output: -o FILE is missing");
     FORWARD(cli_output_format(r, c->output, c->format, &format));
     const brio_format_info *info = brio_format_facts(format);
     if ((info->holds & holds) != holds)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a file of this format cannot hold the result of '%s'", c->output,
-                        r->command->name);
+        return cli_fail_output(r, "%s: a file of this format cannot hold the result of '%s'", c->output,
+                               r->command->name);
     if (info->holds & BRIO_HOLDS_PLACES && cli_is_single(c->output))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: the beginning of %s is written last: that needs a file, no pipe",
                         strcmp(c->output, "-") ? c->output : "standard output", info->name);

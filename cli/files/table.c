@@ -33,7 +33,7 @@ bool cli_is_table(const run *r, const char *extension) {
 brio_status cli_require_table(run *r) {
     const char *path = r->common.output;
     if (!path && r->common.json) return BRIO_OK;
-    if (!path) return cli_fail(r, BRIO_ERR_ARGUMENT, "no output: -o FILE is missing");
+    if (!path) return cli_fail_output(r, "no output: -o FILE is missing");
     if (!strcmp(path, "-") && !r->common.format) return cli_fail(r, BRIO_ERR_ARGUMENT, "-o - needs --format");
     if (!cli_is_table(r, "csv") && !cli_is_table(r, "npy"))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: '%s' writes .csv and .npy", path, r->command->name);

@@ -109,6 +109,17 @@ brio_status cli_fail(run *r, brio_status status, const char *format, ...) {
     return status;
 }
 
+brio_status cli_fail_output(run *r, const char *format, ...) {
+    char outputs[BRIO_FORMAT_LIST];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->message, sizeof r->message, format, arguments);
+    va_end(arguments);
+    cli_list_outputs(r->command, outputs);
+    if (*outputs) cli_hint(r, HINT_OUTPUTS, r->command->name, outputs);
+    return BRIO_ERR_ARGUMENT;
+}
+
 const char *cli_message(const run *r, brio_status status) {
     if (r->message[0]) return r->message;
     if (r->ctx && brio_message(r->ctx)[0]) return brio_message(r->ctx);
@@ -201,6 +212,7 @@ bool cli_limits_memory(const run *r) {
 brio_status cli_require_memory(run *r, double bytes) {
     const common_options *c = &r->common;
     if (!cli_limits_memory(r) || bytes <= (double)c->max_memory) return BRIO_OK;
+    r->over_limit = true;
     return cli_fail(r, BRIO_ERR_NO_MEMORY, "about %.1f MiB needed, over the limit of %.1f MiB (--max-memory)",
                     bytes / 0x1p20, (double)c->max_memory / 0x1p20);
 }

@@ -104,7 +104,8 @@ typedef struct run {
     bool neighbours, faces, edges; /* whether cli_write writes these files beside .node and .ele */
     char message[1024];            /* of a failure found here; the library's is in the context */
     notes warnings, hints;
-    bool flat; /* a failure is explained by the points: they lie in a plane or on a line */
+    bool flat;       /* a failure is explained by the points: they lie in a plane or on a line */
+    bool over_limit; /* an estimate is over --max-memory */
 } run;
 
 /** Where the help lists a command. */
@@ -141,6 +142,8 @@ void cli_end(run *r);
 
 /** Stores the sentence for a status and returns the status. */
 brio_status cli_fail(run *r, brio_status status, const char *format, ...) __attribute__((format(printf, 3, 4)));
+/** Does the same for an -o that does not fit the command: BRIO_ERR_ARGUMENT, and a hint what the command writes. */
+brio_status cli_fail_output(run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 /** Returns the sentence of the failure, found here or in the library. */
 const char *cli_message(const run *r, brio_status status);
 int cli_exit_code(brio_status status);

@@ -74,7 +74,7 @@ brio_status cli_require_edges(run *r) {
     char others[BRIO_FORMAT_LIST];
     if (brio_format_facts(format)->holds & BRIO_HOLDS_EDGES) return BRIO_OK;
     brio_format_list(1, BRIO_HOLDS_EDGES, others, sizeof others);
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold edges: %s can", r->common.output, others);
+    return cli_fail_output(r, "%s cannot hold edges: %s can", r->common.output, others);
 }
 
 brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed, brio_mesh **out) {

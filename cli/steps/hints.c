@@ -1,5 +1,6 @@
-/* What to try after a failure, by the command, the status and words of the sentence that says what is wrong. A sentence
- * that changes its words loses its hint: tests/cli/test_hints.py holds each of them. */
+/* What to try after a failure, by the command, the status and, of sentences of the library, words that say what is
+ * wrong: a sentence that changes its words loses its hint, and tests/cli/test_hints.py holds each of them. What the
+ * program finds wrong by itself has its hint where it is found. */
 #include "cli/steps/hints.h"
 #include "cli/files/cloud.h"
 #include <math.h>
@@ -13,20 +14,6 @@ static bool says(const run *r, brio_status status, const char *words) {
     return strstr(cli_message(r, status), words) != NULL;
 }
 
-/* Suggests for wrong usage: an example where an operand is missing, the formats where that of -o is wrong. */
-static void suggest_for_argument(run *r) {
-    const command *c = r->command;
-    bool about_output = says(r, BRIO_ERR_ARGUMENT, "cannot hold") || says(r, BRIO_ERR_ARGUMENT, "no output") ||
-                        says(r, BRIO_ERR_ARGUMENT, "this version writes");
-    if (says(r, BRIO_ERR_ARGUMENT, ", got ") && r->num_operands < c->min_operands && c->examples)
-        cli_hint(r, HINT_EXAMPLE, (int)strcspn(c->examples, "\n"), c->examples);
-    else if (about_output && c->has_output) {
-        char outputs[BRIO_FORMAT_LIST];
-        cli_list_outputs(c, outputs);
-        cli_hint(r, HINT_OUTPUTS, c->name, outputs);
-    }
-}
-
 static void suggest_for_poles(run *r) {
     if (says(r, BRIO_ERR_NO_ANSWER, "swallows"))
         cli_hint(r, HINT_DISTANCE);
@@ -37,9 +24,7 @@ static void suggest_for_poles(run *r) {
 }
 
 static void suggest_for_subdivision(run *r) {
-    if (says(r, BRIO_ERR_NO_ANSWER, "has no faces"))
-        cli_hint(r, HINT_SURFACE);
-    else if (says(r, BRIO_ERR_NO_ANSWER, "a mesh of triangles is needed"))
+    if (says(r, BRIO_ERR_NO_ANSWER, "a mesh of triangles is needed"))
         cli_hint(r, HINT_TRIANGLES);
     else
         cli_hint(r, HINT_CHECK);
@@ -51,7 +36,7 @@ static void suggest_for_no_answer(run *r) {
     if (r->flat || says(r, BRIO_ERR_NO_ANSWER, "scale the")) return;
     if (is(r, "alpha") && says(r, BRIO_ERR_NO_ANSWER, "no tetrahedron has a value")) cli_hint(r, HINT_ALPHA);
     if (is(r, "iso")) cli_hint(r, HINT_LEVEL);
-    if (is(r, "subdivide")) suggest_for_subdivision(r);
+    if (is(r, "subdivide") && !r->hints.used) suggest_for_subdivision(r);
     if (is(r, "medial") || is(r, "offset")) suggest_for_poles(r);
     if (is(r, "surface") || is(r, "medial") || is(r, "offset") || is(r, "alpha")) cli_hint(r, HINT_METHODS);
 }
@@ -62,7 +47,7 @@ static bool helps_scratch(const run *r) {
     enum { LEAST_MAPPED = 1 << 20 }; /* bytes of a block of the library that can be in a file */
     size_t bytes;
     if (r->common.scratch) return false;
-    if (says(r, BRIO_ERR_NO_MEMORY, "(--max-memory)")) return true;
+    if (r->over_limit) return true;
     return sscanf(cli_message(r, BRIO_ERR_NO_MEMORY), "out of memory: %zu bytes", &bytes) == 1 && bytes >= LEAST_MAPPED;
 }
 
@@ -87,16 +72,11 @@ static void suggest_for_format(run *r) {
         cli_hint(r, HINT_ISO);
     else if (unknown && !r->common.input_format)
         cli_hint(r, HINT_INPUT_FORMAT);
-    if (says(r, BRIO_ERR_FORMAT, "no faces") || says(r, BRIO_ERR_FORMAT, "points only")) cli_hint(r, HINT_SURFACE);
-    if (says(r, BRIO_ERR_FORMAT, "no property")) cli_hint(r, HINT_PROPERTIES);
 }
 
 void cli_suggest(run *r, brio_status status) {
     if (!r->command) return;
     switch (status) {
-    case BRIO_ERR_ARGUMENT:
-        suggest_for_argument(r);
-        break;
     case BRIO_ERR_NO_ANSWER:
         suggest_for_no_answer(r);
         break;

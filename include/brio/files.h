@@ -110,7 +110,7 @@ typedef struct brio_format_info {
 BRIO_API const brio_format_info *brio_format_facts(brio_format format);
 
 enum { BRIO_FORMAT_LIST = 512 }; /* bytes that a list of all extensions fits in */
-/** Lists extensions, as messages do: ".ply .vtp .vtu".
+/** Lists extensions, as messages do, in the order of the formats' numbers: ".ply .vtu .vtp".
  *  written  1: those that are written; 0: those that are read.
  *  holds    BRIO_HOLDS_FACES and so on: of formats that hold all of that; 0: of all formats.
  *  text     receives the list; where `size` bytes are too few, extensions are left out. */

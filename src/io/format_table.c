@@ -192,9 +192,10 @@ static void append(const char *extensions, char *text, size_t size) {
 
 void brio_format_list(int written, unsigned holds, char *text, size_t size) {
     if (size) text[0] = 0;
-    for (size_t i = 0; i < NUM_FORMATS && size; i++)
-        if ((table[i].info.holds & holds) == holds)
-            append(written ? table[i].info.written : table[i].info.extensions, text, size);
+    for (int number = 1; number <= BRIO_FORMAT_MOST && size; number++) {
+        const brio_format_info *info = brio_format_facts((brio_format)number);
+        if (info && (info->holds & holds) == holds) append(written ? info->written : info->extensions, text, size);
+    }
 }
 
 void brio_format_list_columns(char *text, size_t size) {

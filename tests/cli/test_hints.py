@@ -57,7 +57,7 @@ def advising_errors():
                 continue
             with open(path) as f:
                 text = re.sub(r"/\*.*?\*/", "", f.read(), flags=re.S)
-            for call in re.findall(r"(?:cli_fail|FAIL|brio_fail|BRIO_REQUIRE|BRIO_EXPECT|wrong|unclear\w*)\s*\((.*?);\n", text, re.S):
+            for call in re.findall(r"(?:cli_fail\w*|FAIL|brio_fail|BRIO_REQUIRE|BRIO_EXPECT|wrong|unclear\w*)\s*\((.*?);\n", text, re.S):
                 found.update(s for s in map(joined, re.findall(STRINGS, call)) if ADVISES.search(s))
     return found
 

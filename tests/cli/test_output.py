@@ -249,7 +249,7 @@ class Formats(CliTest):
             self.assertEqual(run.code, 0, run.err)
             self.assertLess(os.path.getsize(packed), os.path.getsize(out))
             self.assertEqual(self.facts("info", out)["box"], self.facts("info", packed)["box"])
-        self.usage("cannot be compressed; \.vtp \.vtu \.pcd can", "generate", "sphere", "-n", 9, "-o", "x.ply", "--compress")
+        self.usage("cannot be compressed; \.vtu \.vtp \.pcd can", "generate", "sphere", "-n", 9, "-o", "x.ply", "--compress")
         self.usage("text is not compressed", "generate", "sphere", "-n", 9, "-o", "x.vtu", "--compress", "--ascii")
         self.usage("without compression", "voronoi", out, "-o", "x.vtu", "--compress")
         self.usage(".glb files are", "generate", "sphere", "-n", 9, "-o", "x.gltf")

@@ -73,7 +73,7 @@ static void refused_options(void) {
     brio_mesh *mesh = io_make(5, 0);
     brio_write_options options = options_of(PACKED);
     EXPECT(brio_write(io_ctx, io_path("a.ply"), mesh, &options) == BRIO_ERR_ARGUMENT);
-    EXPECT(strstr(brio_message(io_ctx), ".vtp .vtu .pcd can"), "%s", brio_message(io_ctx));
+    EXPECT(strstr(brio_message(io_ctx), ".vtu .vtp .pcd can"), "%s", brio_message(io_ctx));
     options.ascii = 1;
     EXPECT(brio_write(io_ctx, io_path("a.vtu"), mesh, &options) == BRIO_ERR_ARGUMENT);
     EXPECT(strstr(brio_message(io_ctx), "text is not compressed"), "%s", brio_message(io_ctx));
