@@ -4,6 +4,7 @@
  * In order: the queries in the order of the boxes of a grid; the library sorts them again. Each line is the median of
  * three runs, in CPU time of all threads. */
 #include <brio/brio.h>
+#include <brio/testdata.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

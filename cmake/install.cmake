@@ -3,7 +3,8 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS brio EXPORT brioTargets)
 install(TARGETS brio-cli)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/brio DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/brio DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
+        PATTERN testdata.h EXCLUDE) # of a library that is not installed
 install(FILES docs/which-method.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}) # errors refer to the first by name
 
 # CMake: find_package(brio), then link with brio::brio.

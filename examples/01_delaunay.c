@@ -1,6 +1,7 @@
 /* Delaunay triangulation of random points, and a walk through it: which tetrahedron holds the centre of the cube, and
  * which vertices look at it across its facets. Facet handle 4*t + i names the facet of tetrahedron t opposite to its
  * vertex i; its mate is the same facet seen from the tetrahedron on the other side. */
+#include "brio/testdata.h"
 #include "common.h"
 
 static const size_t NUM_POINTS = 10000;

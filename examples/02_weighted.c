@@ -1,5 +1,6 @@
 /* Regular triangulation: points with weights. A point whose power cell is empty is hidden: it is no vertex of any
  * tetrahedron, and the vertex that is nearest to it in power distance represents it. */
+#include "brio/testdata.h"
 #include "common.h"
 
 static const size_t NUM_POINTS = 1000;

@@ -1,6 +1,7 @@
 /* Surface reconstruction: points in, closed mesh out, with a certificate of what it is.
  *
  *   04_power_crust [OUT]      writes the mesh when a file is named */
+#include "brio/testdata.h"
 #include "common.h"
 
 static const size_t NUM_POINTS = 4000;

@@ -1,5 +1,6 @@
 /* Progress and cancel: a callback sees how far the work is, and stops it by returning something other than 0. What was
  * begun is freed, and the context can be used again at once. */
+#include "brio/testdata.h"
 #include "common.h"
 
 static const size_t NUM_POINTS = 4000;

@@ -1,4 +1,5 @@
 /* brio generate: test data, the same for the same seed. */
+#include "brio/testdata.h"
 #include "cli/steps/certificate.h"
 #include "cli/run/commands.h"
 #include "cli/steps/estimate.h"

@@ -104,7 +104,6 @@
 #include "curve.h"         /* curves of points in a plane */
 #include "predicates.h"    /* exact signs */
 #include "estimate.h"      /* memory that a call will take */
-#include "testdata.h"      /* points and solids to try */
 #include "laboratory.h"    /* counters for experiments */
 
 #endif

@@ -57,9 +57,6 @@ BRIO_API brio_status brio_estimate_mesh_offset(brio_context *ctx, const brio_mes
 BRIO_API uint64_t brio_estimate_mesh_subdivide(size_t num_faces, int levels);
 /** Returns the estimate for a brio_iso_surface of num_vertices vertices, the map or the atoms not included. */
 BRIO_API uint64_t brio_estimate_iso_surface(size_t num_vertices);
-/** Returns the estimate for brio_generate. */
-BRIO_API uint64_t brio_estimate_generate(size_t num_points);
-
 #ifdef __cplusplus
 }
 #endif

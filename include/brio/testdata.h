@@ -1,4 +1,5 @@
-/* brio/testdata.h: points and solids to try things on. */
+/* brio/testdata.h: points and solids to try things on. They are a library beside libbrio, which the program, the tests
+ * and the examples are linked with, and which is not installed. */
 #ifndef BRIO_TESTDATA_H
 #define BRIO_TESTDATA_H
 
@@ -36,6 +37,9 @@ typedef struct brio_generate_options {
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_generate(brio_context *ctx, brio_kind kind, size_t n, const brio_generate_options *options,
                                    brio_mesh **out);
+
+/** Returns the bytes that brio_generate needs for n points. */
+BRIO_API uint64_t brio_estimate_generate(size_t num_points);
 
 /** Makes the surface that BRIO_KIND_SCAN scans: a closed triangle mesh from a grid of `resolution` cells along the
  *  longest side of its box (4 to 32,768; 0: 160).

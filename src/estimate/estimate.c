@@ -30,7 +30,7 @@ static const double HISTORY_BYTES_A_POINT = 570, LOCATION_BYTES_A_POINT = 8, BYT
 static const double PLANE_BYTES_A_POINT = 88, PLANE_BYTES_A_WEIGHT = 10;
 
 static const double SUBDIVIDE_BYTES_A_FACE = 76; /* of the result, a certificate included */
-static const double ISO_BYTES_A_VERTEX = 71, COORDINATE_BYTES = 24;
+static const double ISO_BYTES_A_VERTEX = 71;
 
 /* Returns a number of bytes as an integer, the greatest integer for larger numbers. */
 static uint64_t bytes_of(double bytes) {
@@ -129,9 +129,4 @@ uint64_t brio_estimate_iso_surface(size_t num_vertices) {
 uint64_t brio_estimate_delaunay2(size_t num_points, int weighted) {
     BRIO_DOOR;
     return bytes_of((double)num_points * (PLANE_BYTES_A_POINT + (weighted ? PLANE_BYTES_A_WEIGHT : 0)));
-}
-
-uint64_t brio_estimate_generate(size_t num_points) {
-    BRIO_DOOR;
-    return bytes_of((double)num_points * COORDINATE_BYTES);
 }

@@ -5,6 +5,7 @@
  * equal on every machine.
  *
  * Based on: Marsaglia. Choosing a point from the surface of a sphere. Annals of Mathematical Statistics 1972. */
+#include "brio/testdata.h"
 #include "base/float_state.h"
 #include "base/versioned.h"
 #include "base/rng.h"
@@ -257,4 +258,9 @@ brio_status brio_generate_truth(brio_context *ctx, size_t resolution, brio_mesh 
         grid.low[k] = 0.5 * (low[k] + high[k] - grid.cells[k] * grid.cell);
     }
     return brio_marched_surface(ctx, &grid, out);
+}
+
+uint64_t brio_estimate_generate(size_t num_points) {
+    BRIO_DOOR;
+    return num_points < UINT64_MAX / 24 ? 24 * (uint64_t)num_points : UINT64_MAX; /* three coordinates */
 }

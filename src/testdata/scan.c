@@ -12,6 +12,7 @@
  *
  * Based on: Hart. Sphere tracing: a geometric method for the antialiased ray tracing of implicit surfaces. The Visual
  * Computer 1996. Marsaglia, Bray. A convenient method for generating normal variables. SIAM Review 1964. */
+#include "brio/testdata.h"
 #include "testdata/scan.h"
 #include "base/finite.h"
 #include "base/rng.h"

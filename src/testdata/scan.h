@@ -2,6 +2,7 @@
 #ifndef BRIO_TESTDATA_SCAN_H
 #define BRIO_TESTDATA_SCAN_H
 
+#include "brio/testdata.h"
 #include "base/memory.h"
 
 /** Scans the sculpture with about n rays that hit. The options are valid. The vertices are listed view by view and row

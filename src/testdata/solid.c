@@ -8,6 +8,7 @@
  *
  * The good solid is meshed finely, its crumbs are dropped, its sharp edges are recovered, and it is scaled. The checks
  * do not depend on the resolution that is asked for, so the seed alone determines the solid. */
+#include "brio/testdata.h"
 #include "base/float_state.h"
 #include "base/vector.h"
 #include "iso/dual_optimize.h"

@@ -5,6 +5,7 @@
  * has 3 F / 2 edges, so its Euler characteristic is V - F / 2. A cell counts its own triangles, and the vertices on the
  * seven edges from its least corner; edges from nodes without a cell are on the border, where all is outside. So the
  * sides of a cell's eight corners give its share, by a table. */
+#include "brio/testdata.h"
 #include "testdata/solid_levels.h"
 
 enum { CORNERS = 8, SIDES = 1 << CORNERS };

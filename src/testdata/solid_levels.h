@@ -2,6 +2,7 @@
 #ifndef BRIO_TESTDATA_SOLID_LEVELS_H
 #define BRIO_TESTDATA_SOLID_LEVELS_H
 
+#include "brio/testdata.h"
 #include "iso/iso_surface.h"
 
 enum { BRIO_SOLID_LEVELS = 3 };

@@ -1,4 +1,5 @@
 /* Parts, box and thin places of a random solid's mesh. */
+#include "brio/testdata.h"
 #include "testdata/solid_parts.h"
 #include "base/team.h"
 #include "base/union_find.h"

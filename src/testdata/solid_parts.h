@@ -2,6 +2,7 @@
 #ifndef BRIO_TESTDATA_SOLID_PARTS_H
 #define BRIO_TESTDATA_SOLID_PARTS_H
 
+#include "brio/testdata.h"
 #include "iso/iso_surface.h"
 
 /** Which components of a mesh are kept. */

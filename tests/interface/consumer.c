@@ -1,6 +1,7 @@
 /* A program of the version whose header it was compiled with: every struct that it hands to the library lies between
  * bytes of its own, which no library may touch. */
 #include <brio/brio.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -38,12 +39,21 @@ static void expect_guard(const char *name, const char *before, const char *after
         if (try_status) printf("%s: %d %s\n", #call, (int)try_status, brio_message(ctx)), broken = 1;                  \
     } while (0)
 
+/* Makes 1500 points on a torus, evenly. */
+static void make_torus(double *places) {
+    for (int i = 0; i < 1500; i++) {
+        double u = 6.283185307179586 * i / 1500, v = 41 * u + 0.3 * sin(7 * u);
+        places[3 * i] = (1 + 0.4 * cos(v)) * cos(u), places[3 * i + 1] = (1 + 0.4 * cos(v)) * sin(u);
+        places[3 * i + 2] = 0.4 * sin(v);
+    }
+}
+
 int main(void) {
+    static double places[3 * 1500];
     brio_context *ctx = NULL;
     brio_mesh *points = NULL, *mesh = NULL, *crust = NULL;
     brio_triangulation *t = NULL;
     if (brio_context_new(NULL, &ctx)) return 1;
-    ZEROS(brio_generate_options, generate);
     ZEROS(brio_delaunay_options, delaunay);
     SIZED(brio_interpolation, interpolation);
     ZEROS(brio_surface_options, surface);
@@ -60,7 +70,9 @@ int main(void) {
     ZEROS(brio_certificate, certificate);
     SIZED(brio_distance, distance);
 
-    TRY(brio_generate(ctx, BRIO_KIND_TORUS, 1500, &generate.value, &points));
+    TRY(brio_mesh_new(ctx, &points));
+    make_torus(places);
+    TRY(brio_mesh_set_vertices(points, places, 1500));
     TRY(brio_delaunay(ctx, points->vertices, NULL, 1500, &delaunay.value, &t));
     printf("dimension %d, %d vertices\n", brio_triangulation_stats(t)->dimension,
            (int)brio_triangulation_stats(t)->vertices);

@@ -1,5 +1,6 @@
 /* Voronoi and power cells: against a brute force that cuts by every bisector, sums of volumes, lattices, flat inputs,
  * vertices, threads, scales, memory that runs out. */
+#include "brio/testdata.h"
 #include "cells/polyhedron.h"
 #include "failing_allocator.h"
 #include "points.h"

@@ -1,6 +1,7 @@
 /* Theorem 18 of [Choi 2003]: with a biased randomized insertion order the expected number of tetrahedra that are ever
  * created is O(n) on realistic points and O(n^2) on any. Counted against a random order on scans, and against n^2 on the
  * moment curve. */
+#include "brio/testdata.h"
 #include "harness.h"
 #include "points.h"
 

@@ -1,4 +1,5 @@
 /* Nearest points against brute force, and distances between surfaces that are known. */
+#include "brio/testdata.h"
 #include "base/rng.h"
 #include "failing_allocator.h"
 #include "mesh/closest_point.h"

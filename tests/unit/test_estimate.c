@@ -1,5 +1,6 @@
 /* Memory estimates against what the context counts. Estimates are of the memory that is touched; the context also counts
  * room that is set aside for growth, which threads do for themselves. */
+#include "brio/testdata.h"
 #include "harness.h"
 #include "points.h"
 #include "surface_calls.h"

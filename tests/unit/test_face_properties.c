@@ -1,4 +1,5 @@
 /* Properties of faces: in files of every format that holds them, and through what changes a mesh. */
+#include "brio/testdata.h"
 #include "io_files.h"
 
 static void fill(const brio_property *p, size_t count) {

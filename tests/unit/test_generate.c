@@ -1,4 +1,5 @@
 /* Generated points: each kind is what it says, point i follows from seed and i; the scan and its truth. */
+#include "brio/testdata.h"
 #include "base/rng.h"
 #include "failing_allocator.h"
 #include "iso/iso_surface.h"

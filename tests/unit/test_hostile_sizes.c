@@ -1,4 +1,5 @@
 /* Counts from a caller that no array can have: refused before anything is read or allocated by them. */
+#include "brio/testdata.h"
 #include "harness.h"
 #include "points.h"
 #include "surface_calls.h"

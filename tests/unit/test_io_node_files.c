@@ -1,5 +1,6 @@
 /* TetGen's files of neighbours, faces and edges, against brute force over all pairs of tetrahedra; all files of a set or
  * none; what has no such files is refused. */
+#include "brio/testdata.h"
 #include "failing_allocator.h"
 #include "io_files.h"
 #include "base/memory.h"

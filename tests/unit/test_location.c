@@ -1,4 +1,5 @@
 /* Strategies of point location: one answer whichever is used, right searches, few steps, clean ends. */
+#include "brio/testdata.h"
 #include "base/memory.h"
 #include "failing_allocator.h"
 #include "harness.h"

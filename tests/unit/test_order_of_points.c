@@ -7,6 +7,7 @@
  * Without an argument: a few sets of each kind. With a number: that many noisy scans and sets of every kind beside them,
  * and the counts of sets that differ, method by method. Then may come how many times as large the scans are, without the
  * other sets, and a part of the names of the methods. */
+#include "brio/testdata.h"
 #include "harness.h"
 #include "points.h"
 #include "surface_calls.h"

@@ -1,5 +1,6 @@
 /* Page touches: distances against a stack, counts that depend on the sequence of insertions alone, and the locality of each
  * order on each kind of points. */
+#include "brio/testdata.h"
 #include "triangulation/page_touches.h"
 #include "failing_allocator.h"
 #include "harness.h"

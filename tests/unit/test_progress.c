@@ -1,5 +1,6 @@
 /* Progress is told by work, not by points: between two reports the library does a bounded amount of it, so that a caller
  * who wants to stop is heard. Where the callback stops the work, everything is given back. */
+#include "brio/testdata.h"
 #include "points.h"
 #include "triangulation/inserter.h"
 #include "harness.h"

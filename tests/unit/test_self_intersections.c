@@ -1,4 +1,5 @@
 /* Self-intersections: known counts, against rational arithmetic by brute force, and at any scale. */
+#include "brio/testdata.h"
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"

@@ -1,4 +1,5 @@
 /* Random solids: certified, repeatable, of many genera, with sharp edges; and what they are made by. */
+#include "brio/testdata.h"
 #include "base/rng.h"
 #include "base/vector.h"
 #include "failing_allocator.h"

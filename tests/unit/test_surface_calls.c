@@ -1,5 +1,6 @@
 /* One call for all methods: what each gives for the same points, and which options it has. */
 #include "brio/brio.h"
+#include "brio/testdata.h"
 #include "harness.h"
 #include "points.h"
 #include <math.h>

@@ -1,4 +1,5 @@
 /* The triangulation against brute force, against itself under everything that must not matter, and at its limits. */
+#include "brio/testdata.h"
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"

@@ -1,4 +1,5 @@
 /* Structs that can grow: older and newer callers, sizes that were not set. */
+#include "brio/testdata.h"
 #include "base/versioned.h"
 #include "harness.h"
 #include "points.h"
