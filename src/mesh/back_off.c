@@ -9,6 +9,7 @@
 #include "mesh/back_off.h"
 #include "base/memory.h"
 #include "mesh/crossing_faces.h"
+#include "mesh/edge_rings.h"
 #include <string.h>
 
 /* The shares of the way, the first one before anything goes back. Chosen. */
@@ -60,6 +61,7 @@ brio_status brio_back_off(brio_context *ctx, brio_mesh *mesh, const double *befo
     double *after = NULL;
     uint8_t *crosses = NULL, *changed = NULL, *step = NULL, *now = NULL;
     const brio_bar bar = brio_progress_bar(ctx);
+    brio_face_groups groups = {.ctx = ctx};
     int64_t pairs;
     double from = 0.5;
     BRIO_TRY(BRIO_ALLOC(ctx, crosses, mesh->num_faces));
@@ -68,7 +70,9 @@ brio_status brio_back_off(brio_context *ctx, brio_mesh *mesh, const double *befo
     mark_moved(mesh, before, now);
     mark_changed(mesh, now, changed);
     brio_progress_part(ctx, bar, 0, from);
-    BRIO_TRY(brio_crossing_faces(ctx, mesh, changed, crosses, &pairs));
+    BRIO_TRY(brio_mesh_check_faces(ctx, mesh));
+    BRIO_TRY(brio_face_groups_new(ctx, mesh, &groups));
+    BRIO_TRY(brio_search_crossings(&groups, changed, crosses, &pairs));
     if (pairs) {
         BRIO_TRY(BRIO_ALLOC(ctx, after, 3 * n));
         BRIO_TRY(BRIO_ALLOC_ZERO(ctx, step, n));
@@ -78,13 +82,15 @@ brio_status brio_back_off(brio_context *ctx, brio_mesh *mesh, const double *befo
             mark_changed(mesh, now, changed);
             brio_progress_part(ctx, bar, from, (1 + from) / 2);
             from = (1 + from) / 2;
-            BRIO_TRY(brio_crossing_faces(ctx, mesh, changed, crosses, &pairs));
+            BRIO_TRY(brio_face_groups_fit(&groups));
+            BRIO_TRY(brio_search_crossings(&groups, changed, crosses, &pairs));
         }
         for (size_t v = 0; v < n; v++) count += step[v] > 0;
     }
     if (moved) *moved = count;
 done:
     brio_progress_part(ctx, bar, 0, 1);
+    brio_face_groups_free(&groups);
     brio_release(ctx, after);
     brio_release(ctx, crosses);
     brio_release(ctx, changed);
