@@ -5,6 +5,7 @@
 #include "reconstruct/labeled_delaunay/vote_cut.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include <string.h>
 
 enum { TETS_A_THREAD = 1 << 12, CAPACITY = 1 << 20 };
 
@@ -99,18 +100,38 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
+typedef struct {
+    const brio_vote_cut *c;
+    const uint8_t *label;
+    uint8_t *out;
+} results;
+
+static void copy_labels(void *user, size_t begin, size_t end, int thread) {
+    const results *r = user;
+    (void)thread;
+    memcpy(r->out + begin, r->label + begin, end - begin);
+}
+
+static void write_labels(void *user, size_t begin, size_t end, int thread) {
+    const results *r = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        uint32_t tet = tet_at(r->c, i);
+        r->out[tet] = r->c->flow.side[tet] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+    }
+}
+
 brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
     brio_status status = BRIO_OK;
     brio_context *ctx = c->g->ctx;
     terminals t = {c, label, (int32_t)(bias * BRIO_VOTE_UNIT * CAPACITY)};
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, c->flow.num_open, TETS_A_THREAD), c->flow.num_open, sum_votes, &t));
+    results r = {c, label, out};
+    size_t open = c->flow.num_open, all = c->g->num_free;
+    int threads = brio_threads(ctx, open, TETS_A_THREAD);
+    BRIO_TRY(brio_for(ctx, threads, open, sum_votes, &t));
     BRIO_TRY(brio_tet_flow_run(&c->flow));
-    if (out != label)
-        for (size_t tet = 0; tet < c->g->num_free; tet++) out[tet] = label[tet];
-    for (size_t i = 0; i < c->flow.num_open; i++) {
-        uint32_t tet = tet_at(c, i);
-        out[tet] = c->flow.side[tet] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
-    }
+    if (out != label) BRIO_TRY(brio_for(ctx, brio_threads(ctx, all, TETS_A_THREAD), all, copy_labels, &r));
+    BRIO_TRY(brio_for(ctx, threads, open, write_labels, &r));
 done:
     return status;
 }

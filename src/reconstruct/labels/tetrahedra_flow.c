@@ -3,19 +3,20 @@
  * take.
  *
  * The open tetrahedra are cut into parts of consecutive ones, which are near each other in space. At first the arcs
- * between parts are closed, and any thread finds the maximum flow of each part. Then one thread opens the
- * arcs and goes on from there: most flow is short, and only nodes at the borders are active. A closed arc holds the
- * complement of its residual capacity, a negative number. So a part reads nothing that another part writes.
+ * between parts are closed, and any thread finds the maximum flow of each part. Then MERGED parts that follow each other
+ * become one: the arcs between them open, and the flow goes on from there. Most flow is short, and only nodes at the
+ * borders are active. In the end one thread merges what is left. A closed arc holds the complement of its residual
+ * capacity, a negative number. So a part reads nothing that another part writes.
  *
  * Based on: Liu, Sun. Parallel graph-cuts by adaptive bottom-up merging. CVPR 2010.
- * Differs from the paper: all parts merge at once. */
+ * Differs from the paper: which parts merge does not depend on their sizes or borders. */
 #include "reconstruct/labels/tetrahedra_flow.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include <string.h>
 
-/* Chosen: the arrays of a part fit into a cache of 2 MB. */
-enum { PART_SIZE = 1 << 15 };
+/* PART_SIZE: chosen, the arrays of a part fit into a cache of 2 MB. MERGED: parts that become one; chosen. */
+enum { PART_SIZE = 1 << 15, MERGED = 4 };
 
 static uint32_t tet_at(const brio_tet_flow *f, size_t i) {
     return f->open ? f->open[i] : (uint32_t)i;
@@ -73,13 +74,16 @@ static void close_border(brio_tet_flow *f) {
     }
 }
 
-/* Opens all arcs. The nodes at their ends are active. */
-static void open_borders(brio_tet_flow *f) {
+/* Opens the arcs that do not leave the part. The nodes at their ends are active. */
+static void open_within(brio_tet_flow *f) {
+    uint32_t first = tet_at(f, f->from), last = tet_at(f, f->to - 1);
     for (size_t i = f->from; i < f->to; i++) {
         uint32_t tet = tet_at(f, i);
         bool border = false;
         for (int k = 0; k < 4; k++) {
             if (f->residual[tet][k] >= 0) continue;
+            uint32_t other = brio_tet_of(f->t->tet[tet].mate[k]);
+            if (other < first || other > last) continue;
             toggle(&f->residual[tet][k]);
             border = true;
         }
@@ -89,6 +93,7 @@ static void open_borders(brio_tet_flow *f) {
 
 typedef struct {
     const brio_tet_flow *flow;
+    bool merges;   /* whether the parts are made of smaller ones */
     uint32_t time; /* the latest of a part */
 } pushing;
 
@@ -105,21 +110,35 @@ static void push_part(void *user, size_t from, size_t to, int thread) {
     f.from = from, f.to = to;
     f.trees = (brio_flow_trees){
         .room = to - from, .orphan_base = tet_at(&f, from), .time = p->flow->trees.time, .active_head = NO_NODE};
-    close_border(&f);
-    if (!f.started) clear(&f);
-    plant(&f);
+    if (p->merges) {
+        open_within(&f);
+    } else {
+        close_border(&f);
+        if (!f.started) clear(&f);
+        plant(&f);
+    }
     push(&f);
     keep_later(&p->time, f.trees.time);
 }
 
+/* Pushes parts of a size side by side. */
+static brio_status push_parts(brio_tet_flow *f, size_t size, bool merges) {
+    pushing p = {f, merges, f->trees.time};
+    int threads = brio_threads(f->ctx, f->num_open, size);
+    brio_status status = brio_for_chunks(f->ctx, threads, f->num_open, size, push_part, &p);
+    f->trees.time = p.time;
+    return status;
+}
+
 brio_status brio_tet_flow_run(brio_tet_flow *f) {
-    pushing p = {f, f->trees.time};
-    int threads = brio_threads(f->ctx, f->num_open, f->part_size);
-    brio_status status = brio_for_chunks(f->ctx, threads, f->num_open, f->part_size, push_part, &p);
-    if (status != BRIO_OK) return status;
-    f->from = 0, f->to = f->num_open, f->started = true;
-    f->trees = (brio_flow_trees){.room = f->num_open, .time = p.time, .active_head = NO_NODE};
-    open_borders(f);
-    push(f);
-    return BRIO_OK;
+    brio_status status = BRIO_OK;
+    size_t size = f->part_size;
+    if (f->num_open == 0) goto done;
+    BRIO_TRY(push_parts(f, size, false));
+    while (size <= f->num_open / 2 && brio_threads(f->ctx, f->num_open, size) > 1)
+        BRIO_TRY(push_parts(f, size *= MERGED, true));
+    f->started = true;
+    if (size < f->num_open) BRIO_TRY(push_parts(f, f->num_open, true));
+done:
+    return status;
 }
