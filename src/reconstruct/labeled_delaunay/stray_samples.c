@@ -6,7 +6,8 @@
  *
  *     min over all samples q of (spacing of q + GROWTH * distance to q),
  *
- * measured along Delaunay edges. Where two scans overlap the spacing jumps, but a sample of the coarser one still has
+ * measured along Delaunay edges. Threads lower the limits across all edges, in any order, until none is lowered: what
+ * they end with does not depend on the order. Where two scans overlap the spacing jumps, but a sample of the coarser one still has
  * neighbours at its own spacing, on both sides along a surface. A sample is a stray if even its second nearest sample
  * is LONELY times as far away as that. The second, because strays come in pairs by chance. Where over MANY of the
  * samples are SUSPECT times as far, a scan has strays, and LIKELY is enough.
@@ -19,57 +20,89 @@
  *                         strays are strays. */
 #include "reconstruct/labeled_delaunay/stray_samples.h"
 #include "base/memory.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include <math.h>
+#include <string.h>
 
 /* Chosen on scans with and without strays, of models that nothing else was measured on, and on random samples of closed
  * models: LONELY has none of the latter, SUSPECT one in 3,000. */
 static const double GROWTH = 0.05, LONELY = 12, SUSPECT = 7, LIKELY = 4, MANY = 0.003, MOST = 0.05;
 
-/* Chosen. SWEEPS: growth passes along most edges in the first two. */
-enum { SWEEPS = 8 };
+/* Chosen. */
+enum { TETS_A_THREAD = 1 << 13 };
 
 typedef struct {
     const brio_tetrahedron *tet;
     size_t num_tets, num_points;
     const double *points;
     const float *second;
-    double *allowed; /* #P */
-    uint8_t *last;   /* #P: the last sweep in which `allowed` changed */
+    double *allowed; /* #P; atomic */
+    /* #P: whether `allowed` fell in the sweep before, and in this one; atomic */
+    uint8_t *fell, *falls;
+    bool first, back; /* the first sweep; whether a sweep goes backwards */
+    bool lowered;     /* in this sweep; atomic */
 } search;
 
-/* Limits the spacing at q by that at p. Returns whether that changed it. */
-static bool limit(const search *s, uint32_t p, uint32_t q, double square) {
-    double more = s->allowed[q] - s->allowed[p], before = s->allowed[q];
-    if (more <= 0 || more * more <= GROWTH * GROWTH * square) return false;
-    s->allowed[q] = s->allowed[p] + GROWTH * sqrt(square);
-    return s->allowed[q] != before; /* by rounding, it may stay */
+static double allowed_at(const search *s, uint32_t p) {
+    double x;
+    __atomic_load(&s->allowed[p], &x, __ATOMIC_RELAXED);
+    return x;
 }
 
-/* Returns whether a limit of a tetrahedron's samples has changed since the sweep before passed the tetrahedron. */
-static bool has_changed(const search *s, const uint32_t *v, int sweep) {
-    bool changed = sweep == 0;
-    for (int k = 0; k < 4; k++) changed |= v[k] < s->num_points && s->last[v[k]] + 1 >= sweep;
+/* Limits the spacing at q by that at p. The first test lets all pass that rounding might keep back. */
+static void limit(search *s, uint32_t p, uint32_t q, double square) {
+    static const double SURE = 1 - 1e-9;
+    double at = allowed_at(s, p), before = allowed_at(s, q), more = before - at;
+    if (more <= 0 || more * more <= SURE * GROWTH * GROWTH * square) return;
+    double most = at + GROWTH * sqrt(square);
+    bool lower = false;
+    while (most < before && !lower)
+        lower = __atomic_compare_exchange(&s->allowed[q], &before, &most, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+    if (!lower) return;
+    __atomic_store_n(&s->falls[q], 1, __ATOMIC_RELAXED);
+    __atomic_store_n(&s->lowered, true, __ATOMIC_RELAXED);
+}
+
+/* Returns whether a limit of a tetrahedron's samples fell since the sweep before passed the tetrahedron. */
+static bool has_changed(const search *s, const uint32_t *v) {
+    bool changed = s->first;
+    for (int k = 0; k < 4; k++)
+        changed |= v[k] < s->num_points && (s->fell[v[k]] || __atomic_load_n(&s->falls[v[k]], __ATOMIC_RELAXED));
     return changed;
 }
 
 /* Passes over the edges of the tetrahedra at which something changed, at first of all, each edge as often as it has
- * such tetrahedra. Writes whether a limit changed. */
-static brio_status pass_over(brio_context *ctx, const search *s, int sweep, bool *changed) {
-    brio_status status = BRIO_OK;
-    *changed = false;
-    for (size_t n = 0; n < s->num_tets; n++) {
-        const uint32_t *v = s->tet[sweep % 2 == 1 ? s->num_tets - 1 - n : n].vertex;
-        BRIO_TRY(brio_look(ctx, sweep == 0 ? 4 : 1));
-        if (!has_changed(s, v, sweep)) continue;
+ * such tetrahedra. */
+static void pass_over(void *user, size_t begin, size_t end, int thread) {
+    search *s = user;
+    (void)thread;
+    for (size_t n = begin; n < end; n++) {
+        const uint32_t *v = s->tet[s->back ? s->num_tets - 1 - n : n].vertex;
+        if (!has_changed(s, v)) continue;
         for (int j = 1; j < 4; j++)
             for (int k = 0; k < j; k++) {
                 if (v[j] >= s->num_points || v[k] >= s->num_points) continue;
                 double square = brio_square_distance(s->points + 3 * (size_t)v[j], s->points + 3 * (size_t)v[k]);
-                if (limit(s, v[j], v[k], square)) s->last[v[k]] = (uint8_t)sweep, *changed = true;
-                if (limit(s, v[k], v[j], square)) s->last[v[j]] = (uint8_t)sweep, *changed = true;
+                limit(s, v[j], v[k], square);
+                limit(s, v[k], v[j], square);
             }
     }
+}
+
+/* Lowers the limits until they hold across all edges. Sweeps alternate, so that limits travel both ways along the order
+ * of the tetrahedra: on scans, a sweep lowers a tenth as many as the one before. */
+static brio_status limit_all(brio_context *ctx, search *s) {
+    brio_status status = BRIO_OK;
+    int threads = brio_threads(ctx, s->num_tets, TETS_A_THREAD);
+    do {
+        uint8_t *spare = s->fell;
+        s->fell = s->falls, s->falls = spare;
+        memset(s->falls, 0, s->num_points);
+        s->lowered = false;
+        BRIO_TRY(brio_for(ctx, threads, s->num_tets, pass_over, s));
+        s->first = false, s->back = !s->back;
+    } while (s->lowered);
 done:
     return status;
 }
@@ -89,18 +122,20 @@ brio_status brio_find_strays(brio_context *ctx, const brio_triangulation *t, con
                 .num_tets = brio_triangulation_stats(t)->tetrahedra,
                 .num_points = num_points,
                 .points = points,
-                .second = second};
+                .second = second,
+                .first = true};
     size_t vertices = brio_triangulation_stats(t)->vertices;
     BRIO_TRY(BRIO_ALLOC(ctx, s.allowed, num_points));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.last, num_points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.fell, num_points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.falls, num_points));
     for (size_t p = 0; p < num_points; p++) s.allowed[p] = spacing[p];
-    bool changed = true;
-    for (int sweep = 0; sweep < SWEEPS && changed; sweep++) BRIO_TRY(pass_over(ctx, &s, sweep, &changed));
+    BRIO_TRY(limit_all(ctx, &s));
     bool many = (double)mark(&s, SUSPECT, stray) > MANY * (double)vertices;
     size_t count = mark(&s, many ? LIKELY : LONELY, stray);
     if ((double)count > MOST * (double)vertices) mark(&s, INFINITY, stray);
 done:
     brio_release(ctx, s.allowed);
-    brio_release(ctx, s.last);
+    brio_release(ctx, s.fell);
+    brio_release(ctx, s.falls);
     return status;
 }
