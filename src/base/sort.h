@@ -31,6 +31,10 @@ brio_status brio_sort_many_keys(brio_context *ctx, uint64_t *keys, size_t n);
 brio_status brio_sort_many_indices(brio_context *ctx, uint32_t *indices, size_t n, brio_compare_fn compare,
                                    const void *user);
 
+/** Writes the key that would be at place `rank` if the keys were sorted. Looks, in the thread that called the library.
+ *  rank  below n.   Cost: O(n), without workspace.   Returns BRIO_OK or BRIO_ERR_CANCELLED. */
+brio_status brio_key_of_rank(brio_context *ctx, const uint64_t *keys, size_t n, size_t rank, uint64_t *key);
+
 /** Returns a key; keys as unsigned numbers sort as the doubles do. -0 and 0 have one key. */
 uint64_t brio_double_key(double x);
 

@@ -121,13 +121,13 @@ static void judge(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Returns the median of numbers that are not negative, given as sorting keys. */
-static double median_of(uint64_t *keys, size_t count) {
-    double x;
-    brio_sort_keys(keys, count);
-    uint64_t bits = keys[count / 2] & ~(UINT64_C(1) << 63);
-    memcpy(&x, &bits, sizeof x);
-    return x;
+/* Finds the median of numbers that are not negative, given as sorting keys. */
+static brio_status find_median(brio_context *ctx, const uint64_t *keys, size_t count, double *median) {
+    uint64_t bits;
+    BRIO_FORWARD(brio_key_of_rank(ctx, keys, count, count / 2, &bits));
+    bits &= ~(UINT64_C(1) << 63);
+    memcpy(median, &bits, sizeof *median);
+    return BRIO_OK;
 }
 
 /* Finds the greatest spacing that the second rule allows. Points that coincide with all their nearest points do not
@@ -136,16 +136,18 @@ static brio_status find_most(brio_context *ctx, search *s) {
     brio_status status = BRIO_OK;
     uint64_t *keys = NULL;
     size_t count = 0;
+    double middle, deviation;
     s->most = INFINITY;
     BRIO_TRY(BRIO_ALLOC(ctx, keys, s->tree.count + 1));
     for (size_t i = 0; i < s->tree.count; i++)
         if (s->spacing[i] > 0) keys[count++] = brio_double_key(high_spacing(s, i));
     if (!count) goto done;
-    double middle = median_of(keys, count);
+    BRIO_TRY(find_median(ctx, keys, count, &middle));
     count = 0;
     for (size_t i = 0; i < s->tree.count; i++)
         if (s->spacing[i] > 0) keys[count++] = brio_double_key(fabs(log(high_spacing(s, i) / middle)));
-    s->most = middle * exp(fmax(DEVIATIONS * 1.4826 * median_of(keys, count), 2 * log(s->factor)));
+    BRIO_TRY(find_median(ctx, keys, count, &deviation));
+    s->most = middle * exp(fmax(DEVIATIONS * 1.4826 * deviation, 2 * log(s->factor)));
 done:
     brio_release(ctx, keys);
     return status;

@@ -135,6 +135,24 @@ static void keys_are_sorted(void) {
         }
 }
 
+/* Without sorting. */
+static void keys_of_a_rank_are_those_of_the_sorted_keys(void) {
+    brio_context *ctx = new_context();
+    for (size_t s = 1; s < NUM_SIZES; s++)
+        for (int kind = 0; kind < NUM_KINDS; kind++) {
+            size_t n = SIZES[s], rank[4] = {0, n / 2, n / 3, n - 1};
+            fill_keys(keys, n, 64, kind);
+            memcpy(wanted_keys, keys, n * sizeof *keys);
+            brio_sort_keys(wanted_keys, n);
+            for (int i = 0; i < 4; i++) {
+                uint64_t key = 0;
+                EXPECT(brio_key_of_rank(ctx, keys, n, rank[i], &key) == BRIO_OK && key == wanted_keys[rank[i]],
+                       "rank %zu of %zu keys, kind %d", rank[i], n, kind);
+            }
+        }
+    brio_context_free(ctx);
+}
+
 /* Every array of up to seven of three keys. */
 static void few_keys_are_sorted_whatever_their_order(void) {
     for (size_t n = 0, arrays = 1; n <= 7; n++, arrays *= 3)
@@ -355,6 +373,7 @@ SUITE(test_sort) {
     RUN(pairs_are_sorted_and_stable);
     RUN(items_are_sorted_and_stable);
     RUN(keys_are_sorted);
+    RUN(keys_of_a_rank_are_those_of_the_sorted_keys);
     RUN(few_keys_are_sorted_whatever_their_order);
     RUN(indices_are_sorted_by_the_comparison);
     RUN(keys_of_doubles_have_the_order_of_doubles);

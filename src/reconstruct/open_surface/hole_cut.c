@@ -227,7 +227,7 @@ static double proof_of(const cutting *c) {
 static brio_status find_widest(const cutting *c, const size_t *end, double *widest) {
     brio_status status = BRIO_OK;
     const brio_hole_list *l = c->holes;
-    uint64_t *key = NULL;
+    uint64_t *key = NULL, ratio;
     size_t count = 0;
     *widest = 0;
     BRIO_TRY(BRIO_ALLOC(c->net->ctx, key, c->net->num_faces));
@@ -237,8 +237,8 @@ static brio_status find_widest(const cutting *c, const size_t *end, double *wide
         for (; at < end[i]; at++)
             if (!l->hole[i].unlikely) key[count++] = bits_of(c->radius[c->queue[at]] / c->usual[c->queue[at]]);
     if (count == 0) goto done;
-    BRIO_TRY(brio_sort_many_keys(c->net->ctx, key, count));
-    memcpy(widest, &key[(size_t)(MOST * (double)count)], sizeof *widest);
+    BRIO_TRY(brio_key_of_rank(c->net->ctx, key, count, (size_t)(MOST * (double)count), &ratio));
+    memcpy(widest, &ratio, sizeof *widest);
 done:
     brio_release(c->net->ctx, key);
     return status;

@@ -26,9 +26,10 @@ enum { GRID = 12 };
 /* Finds the median over the vertices of the distance to the nearest neighbour. */
 static brio_status find_spacing(const brio_triangle_net *n, double *spacing) {
     brio_status status = BRIO_OK;
-    uint64_t *key = NULL;
+    uint64_t *key = NULL, middle;
     size_t count = 0;
     double value;
+    *spacing = 0;
     BRIO_TRY(BRIO_ALLOC(n->ctx, key, n->num_points));
     memset(key, 0xff, n->num_points * sizeof *key);
     for (uint32_t h = 0; h < 3 * n->num_faces; h++) {
@@ -41,9 +42,10 @@ static brio_status find_spacing(const brio_triangle_net *n, double *spacing) {
     }
     for (size_t p = 0; p < n->num_points; p++)
         if (key[p] != UINT64_MAX) key[count++] = key[p];
-    BRIO_TRY(brio_sort_many_keys(n->ctx, key, count));
-    memcpy(&value, &key[count / 2], sizeof value);
-    *spacing = count ? sqrt(value) : 0;
+    if (count == 0) goto done;
+    BRIO_TRY(brio_key_of_rank(n->ctx, key, count, count / 2, &middle));
+    memcpy(&value, &middle, sizeof value);
+    *spacing = sqrt(value);
 done:
     brio_release(n->ctx, key);
     return status;
