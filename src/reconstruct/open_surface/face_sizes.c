@@ -34,8 +34,8 @@ static const double LOWER = 0.25, AMONG_NEIGHBOURS = 0.7, GROWTH = 0.35;
  * outside is over TANGENT. Chosen on scans of models that nothing else was measured on. */
 static const double TANGENT = 0.7;
 
-/* Chosen. SWEEPS: limits travel along most edges in two. */
-enum { SWEEPS = 16, ITEMS_A_THREAD = 1 << 12 };
+/* Chosen. */
+enum { ITEMS_A_THREAD = 1 << 12 };
 
 typedef struct {
     const brio_triangle_net *net;
@@ -105,21 +105,49 @@ static void limit_samples(void *user, size_t begin, size_t end, int thread) {
     }
 }
 
-/* Limits how fast sizes grow along edges. */
-static void limit_growth(const sizing *s) {
-    const brio_triangle_net *n = s->net;
-    bool changed = true;
-    for (int sweep = 0; changed && sweep < SWEEPS; sweep++) {
-        changed = false;
-        for (size_t i = 0; i < 3 * n->num_faces; i++) {
-            size_t h = sweep % 2 ? 3 * n->num_faces - 1 - i : i;
-            uint32_t p = n->faces[h], q = head_of(s, (uint32_t)h);
-            if (!(s->size[q] > s->size[p])) continue;
-            double most =
-                s->size[p] + GROWTH * sqrt(brio_square_distance(n->points + 3 * (size_t)p, n->points + 3 * (size_t)q));
-            if (s->size[q] > most) s->size[q] = most, changed = true;
-        }
+typedef struct {
+    const sizing *s;
+    bool back;    /* whether a sweep goes backwards */
+    bool lowered; /* atomic */
+} growing;
+
+/* Lowers the size at the head of a half-edge to what the size at its start allows. Sizes are atomic. */
+static void limit_head(growing *g, uint32_t h) {
+    const brio_triangle_net *n = g->s->net;
+    uint32_t p = n->faces[h], q = head_of(g->s, h);
+    double at, before;
+    __atomic_load(&g->s->size[p], &at, __ATOMIC_RELAXED);
+    __atomic_load(&g->s->size[q], &before, __ATOMIC_RELAXED);
+    if (!(before > at)) return;
+    double most = at + GROWTH * sqrt(brio_square_distance(n->points + 3 * (size_t)p, n->points + 3 * (size_t)q));
+    while (before > most) {
+        if (!__atomic_compare_exchange(&g->s->size[q], &before, &most, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+            continue;
+        __atomic_store_n(&g->lowered, true, __ATOMIC_RELAXED);
+        return;
     }
+}
+
+static void limit_part(void *user, size_t begin, size_t end, int thread) {
+    growing *g = user;
+    size_t last = 3 * g->s->net->num_faces - 1;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) limit_head(g, (uint32_t)(g->back ? last - i : i));
+}
+
+/* Limits how fast sizes grow along edges: sweeps alternate until all limits hold. The sizes that they end with do not
+ * depend on the order. Limits travel along most edges in two sweeps. */
+static brio_status limit_growth(const sizing *s) {
+    brio_status status = BRIO_OK;
+    size_t count = 3 * s->net->num_faces;
+    growing g = {.s = s};
+    do {
+        g.lowered = false;
+        BRIO_TRY(brio_for(s->net->ctx, brio_threads(s->net->ctx, count, ITEMS_A_THREAD), count, limit_part, &g));
+        g.back = !g.back;
+    } while (g.lowered);
+done:
+    return status;
 }
 
 static double middle_of(double a, double b, double c) {
@@ -156,7 +184,7 @@ brio_status brio_face_sizes(const brio_triangle_net *n, double *radius, double *
     BRIO_TRY(brio_for(n->ctx, by_faces, n->num_faces, measure_radii, &s));
     BRIO_TRY(brio_for(n->ctx, by_points, n->num_points, measure_samples, &s));
     BRIO_TRY(brio_for(n->ctx, by_points, n->num_points, limit_samples, &s));
-    limit_growth(&s);
+    BRIO_TRY(limit_growth(&s));
     BRIO_TRY(brio_for(n->ctx, by_faces, n->num_faces, measure_usual, &s));
 done:
     brio_release(n->ctx, s.first);

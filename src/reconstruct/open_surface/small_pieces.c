@@ -18,7 +18,6 @@ static const double CRUMB = 0.01, FEW = 0.05, ROUGH = 0.15;
 
 typedef struct {
     size_t begin, end; /* of the list of triangles */
-    double bend, edges;
     bool has_rim;
 } piece;
 
@@ -52,7 +51,6 @@ static piece list_piece(sieve *s, uint32_t face) {
                 p.has_rim = true;
                 continue;
             }
-            p.bend += bend_between(n, f, other), p.edges++;
             if (s->listed[other]) continue;
             s->listed[other] = 1;
             s->list[s->size++] = other;
@@ -73,11 +71,23 @@ done:
     return status;
 }
 
-static bool is_crumb(const piece *p, size_t largest, size_t least) {
+/* Returns whether a piece is rough. */
+static bool is_rough(const sieve *s, const piece *p) {
+    const brio_triangle_net *n = s->net;
+    double bend = 0, edges = 0;
+    for (size_t i = p->begin; i < p->end; i++)
+        for (uint32_t k = 0; k < 3; k++) {
+            uint32_t f = s->list[i], twin = n->twin[3 * f + k];
+            if (twin == BRIO_NO_HALF_EDGE || s->part[twin / 3] == BRIO_TRIANGLE_GONE) continue;
+            bend += bend_between(n, f, twin / 3), edges++;
+        }
+    return edges <= 0 || bend > ROUGH * edges;
+}
+
+static bool is_crumb(const sieve *s, const piece *p, size_t largest, size_t least) {
     double size = (double)(p->end - p->begin), share = size / (double)largest;
     if (!p->has_rim) return false;
-    bool rough = p->edges <= 0 || p->bend > ROUGH * p->edges;
-    return (size < (double)least && share < CRUMB) || (rough && share < FEW);
+    return (size < (double)least && share < CRUMB) || (share < FEW && is_rough(s, p));
 }
 
 brio_status brio_drop_small_pieces(const brio_triangle_net *n, uint8_t *part) {
@@ -91,7 +101,7 @@ brio_status brio_drop_small_pieces(const brio_triangle_net *n, uint8_t *part) {
         if (s.pieces[i].end - s.pieces[i].begin > largest) largest = s.pieces[i].end - s.pieces[i].begin;
     for (size_t all = s.size; all > 1; all /= 2) least += SPECK;
     for (size_t i = 0; i < s.count; i++)
-        if (is_crumb(&s.pieces[i], largest, least))
+        if (is_crumb(&s, &s.pieces[i], largest, least))
             for (size_t k = s.pieces[i].begin; k < s.pieces[i].end; k++) part[s.list[k]] = BRIO_TRIANGLE_GONE;
 done:
     brio_release(n->ctx, s.listed);
