@@ -198,3 +198,20 @@ void brio_face_groups_free(brio_face_groups *g) {
     brio_release(g->ctx, g->group);
     *g = (brio_face_groups){.ctx = g->ctx};
 }
+
+bool brio_groups_meet(const brio_face_groups *g, const double low[3], const double high[3]) {
+    brio_group_branch stack[BRIO_GROUP * BRIO_GROUP_LEVELS];
+    int depth = 0;
+    brio_face_box asked;
+    for (int k = 0; k < 3; k++)
+        asked.low[k] = (float)in_cube(g, k, low[k]), asked.high[k] = (float)in_cube(g, k, high[k]);
+    if (g->levels > 0) stack[depth++] = (brio_group_branch){0, g->levels - 1};
+    while (depth > 0) {
+        brio_group_branch b = stack[--depth];
+        unsigned meets = brio_group_meets(brio_group_at(g, b.level, b.group), &asked);
+        if (meets && b.level == 0) return true;
+        for (; meets; meets &= meets - 1)
+            stack[depth++] = (brio_group_branch){BRIO_GROUP * b.group + (size_t)__builtin_ctz(meets), b.level - 1};
+    }
+    return false;
+}

@@ -36,6 +36,12 @@ typedef struct {
     double low[3], size[3];              /* what I1's function takes to 0, and by what it divides; half of each */
 } brio_face_groups;
 
+/** A group that a search has still to look into. Of each level at most seven wait, and one is looked into. */
+typedef struct {
+    size_t group;
+    int level;
+} brio_group_branch;
+
 /** Sorts the faces and finds their boxes.
  *  mesh  checked, kept.   out  freed with brio_face_groups_free, on failure too.
  *  Cost: O(F log F), in threads. Memory: 33 bytes a face, 24 more meanwhile.
@@ -87,5 +93,8 @@ static inline unsigned brio_group_meets(const brio_box_group *g, const brio_face
     }
     return (unsigned)(meets[0] | meets[1] | meets[2] | meets[3]);
 }
+
+/** Returns whether the box of a face meets a box of the mesh. May say so where they are apart by less than rounding. */
+bool brio_groups_meet(const brio_face_groups *g, const double low[3], const double high[3]);
 
 #endif

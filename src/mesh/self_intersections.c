@@ -80,12 +80,6 @@ typedef struct {
     int64_t count;
 } search;
 
-/* A group that a face has still to look into. */
-typedef struct {
-    size_t group;
-    int level;
-} branch;
-
 static void mark(uint8_t *crosses, size_t face) {
     __atomic_store_n(&crosses[face], 1, __ATOMIC_RELAXED); /* read after all threads have ended */
 }
@@ -109,21 +103,21 @@ static int64_t try_pair(const search *s, size_t at, size_t other) {
 /* Counts the faces that cross the face at place `at` of the order and come after `at` in the order, or are not asked
  * about. */
 static int64_t count_crossing(const search *s, size_t at) {
-    branch stack[BRIO_GROUP * BRIO_GROUP_LEVELS];
+    brio_group_branch stack[BRIO_GROUP * BRIO_GROUP_LEVELS];
     int depth = 0;
     int64_t count = 0;
     if (s->only && !s->only[s->g->order[at]]) return 0;
     const brio_face_box box = brio_box_at(s->g, at);
-    stack[depth++] = (branch){0, s->g->levels - 1};
+    stack[depth++] = (brio_group_branch){0, s->g->levels - 1};
     while (depth > 0) {
-        branch b = stack[--depth];
+        brio_group_branch b = stack[--depth];
         unsigned meets = brio_group_meets(brio_group_at(s->g, b.level, b.group), &box);
         for (; meets; meets &= meets - 1) {
             size_t i = BRIO_GROUP * b.group + (size_t)__builtin_ctz(meets);
             if (b.level == 0)
                 count += try_pair(s, at, i);
             else if (!is_done(s, b.level, i, at))
-                stack[depth++] = (branch){i, b.level - 1};
+                stack[depth++] = (brio_group_branch){i, b.level - 1};
         }
     }
     return count;

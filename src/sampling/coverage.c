@@ -19,12 +19,20 @@
 #include "mesh/closest_point.h"
 #include "mesh/edge_rings.h"
 #include "query/nearest_points.h"
+#include "sampling/near_faces.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* In spacings: LEFT_OUT and FAR as the contract says; SUSPECT chosen, as for the bridges of surfaces. */
-static const double LEFT_OUT = 2, SUSPECT = 2.5, FAR = 5;
-enum { NEIGHBOURS = 6, GRID = 12, BATCH = 1 << 14, ITEMS_A_CHUNK = 64, HUGE_EXPONENT = 100 };
+/* In spacings: LEFT_OUT and FAR as the contract says; SUSPECT chosen, as for the bridges of surfaces. GRID_SHARE: the
+ * spacing by the distance of the sixth nearest point, the root of pi / 6. */
+static const double LEFT_OUT = 2, SUSPECT = 2.5, FAR = 5, GRID_SHARE = 0.72360125455826767;
+
+/* FEW: where at most 1 / FEW of the points are still open, the faces near them are picked first. Chosen, but for
+ * NEIGHBOURS. */
+enum { NEIGHBOURS = 6, GRID = 12, BATCH = 1 << 14, ITEMS_A_CHUNK = 64, FEW = 8, HUGE_EXPONENT = 100 };
+
+enum { NOT_LEFT = 0, IS_LEFT = 1, OPEN = 2 };
+static const uint32_t NO_VERTEX = UINT32_MAX;
 
 /* What is known of a face. */
 typedef struct {
@@ -37,18 +45,18 @@ typedef struct {
     brio_context *ctx;
     const brio_mesh *mesh;
     brio_point_tree tree;
-    double *spacing; /* in the order of the tree */
+    double *spacing; /* in the order of the tree; NULL where few are needed */
     brio_triangle_tree faces;
     face_facts *of;
     const double *points;
-    uint8_t *left_out;
+    uint32_t *vertex;  /* #P: the vertex that is the point's by the property sample, or NO_VERTEX */
+    uint8_t *left_out; /* #P: whether the surface leaves a point; OPEN where that is not known yet */
     size_t first;
 } coverage;
 
 /* Returns the spacing at a point of the tree: 0 where too many coincide. */
 static double spacing_at(const brio_point_tree *tree, size_t place) {
     brio_near_point near[BRIO_NEAR_ROOM];
-    static const double GRID_SHARE = 0.72360125455826767; /* the root of pi / 6 */
     for (size_t wanted = NEIGHBOURS + 1; wanted <= BRIO_MOST_NEAR; wanted = wanted < 32 ? 32 : 2 * wanted) {
         size_t found = brio_nearest_points(tree, tree->point[place], wanted, INFINITY, near);
         brio_sort_near_points(tree, near, found);
@@ -116,18 +124,6 @@ static void look_at_faces(void *user, size_t begin, size_t end, int thread) {
             for (int k = 0; k < 3; k++) t[k] = m->vertices + 3 * (size_t)m->face_vertices[corner[k]];
             look_at_triangle(c, t, &c->of[f]);
         }
-    }
-}
-
-static void look_at_points(void *user, size_t begin, size_t end, int thread) {
-    const coverage *c = user;
-    (void)thread;
-    for (size_t i = c->first + begin, triangle = 0; i < c->first + end; i++) {
-        double most = LEFT_OUT * c->spacing[i];
-        if (i % ITEMS_A_CHUNK == 0)
-            triangle = 0; /* however the threads share the points, each looks at the same triangles */
-        c->left_out[c->tree.index[i]] =
-            most > 0 && !brio_is_within(&c->faces, c->tree.point[i], most * most, &triangle);
     }
 }
 
@@ -203,10 +199,136 @@ done:
     return status;
 }
 
+/* --- points that the surface leaves --- */
+
+/* Returns the sample of a vertex; what is no index of a point if it has none. */
+static double sample_of(const brio_property *samples, size_t vertex) {
+    if (samples->type == BRIO_SCALAR_INT32) return ((const int32_t *)samples->data)[vertex];
+    return samples->type == BRIO_SCALAR_FLOAT64 ? ((const double *)samples->data)[vertex] : -1;
+}
+
+/* Lists for each point the vertex that is its own, if the surface says so. That is a hint: nothing is taken for
+ * granted. */
+static brio_status list_vertices(coverage *c, size_t num_points) {
+    const brio_mesh *m = c->mesh;
+    const brio_property *samples = brio_mesh_property(m, "sample");
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->vertex, num_points));
+    memset(c->vertex, 0xff, num_points * sizeof *c->vertex);
+    for (size_t f = 0; samples && f < m->num_faces; f++)
+        for (uint64_t h = m->face_offsets[f]; h < m->face_offsets[f + 1]; h++) {
+            double sample = sample_of(samples, m->face_vertices[h]);
+            if (m->face_offsets[f + 1] - m->face_offsets[f] > 2 && sample >= 0 && sample < (double)num_points)
+                c->vertex[(size_t)sample] = m->face_vertices[h];
+        }
+    return BRIO_OK;
+}
+
+/* Returns whether the point at a place of the tree is within LEFT_OUT spacings of its vertex. That needs no spacing:
+ * where the sixth nearest point is farther than the vertex by more than this shares, the spacing is large enough. */
+static bool is_at_vertex(const coverage *c, size_t place) {
+    static const double SURE = 0.999;
+    brio_near_point near[BRIO_NEAR_ROOM];
+    uint32_t vertex = c->vertex[c->tree.index[place]];
+    if (vertex == NO_VERTEX || c->tree.count <= NEIGHBOURS) return false;
+    double square = brio_square_distance(c->mesh->vertices + 3 * (size_t)vertex, c->tree.point[place]);
+    double share = SURE * LEFT_OUT * GRID_SHARE;
+    if (square == 0) return true;
+    return brio_nearest_points(&c->tree, c->tree.point[place], NEIGHBOURS + 1, square / (share * share), near) <=
+           NEIGHBOURS;
+}
+
+static double reach_of(const coverage *c, size_t place) {
+    return LEFT_OUT * (c->spacing ? c->spacing[place] : spacing_at(&c->tree, place));
+}
+
+/* Returns whether a vertex of one of the nearest points is within LEFT_OUT spacings of the point at a place of the
+ * tree. */
+static bool is_near_vertex(const coverage *c, size_t place) {
+    static const double SURE = 0.999;
+    brio_near_point near[BRIO_NEAR_ROOM];
+    const double *p = c->tree.point[place];
+    double most = SURE * reach_of(c, place);
+    size_t found = brio_nearest_points(&c->tree, p, NEIGHBOURS + 1, INFINITY, near);
+    for (size_t i = 0; i < found; i++) {
+        uint32_t vertex = c->vertex[c->tree.index[near[i].place]];
+        if (vertex == NO_VERTEX) continue;
+        if (brio_square_distance(c->mesh->vertices + 3 * (size_t)vertex, p) < most * most) return true;
+    }
+    return false;
+}
+
+static void look_at_vertices(void *user, size_t begin, size_t end, int thread) {
+    const coverage *c = user;
+    (void)thread;
+    for (size_t i = c->first + begin; i < c->first + end; i++)
+        c->left_out[c->tree.index[i]] = is_at_vertex(c, i) || is_near_vertex(c, i) ? NOT_LEFT : OPEN;
+}
+
+static void look_at_points(void *user, size_t begin, size_t end, int thread) {
+    const coverage *c = user;
+    (void)thread;
+    for (size_t i = c->first + begin, triangle = 0; i < c->first + end; i++) {
+        uint8_t *left_out = &c->left_out[c->tree.index[i]];
+        if (i % ITEMS_A_CHUNK == 0)
+            triangle = 0; /* however the threads share the points, each looks at the same triangles */
+        if (*left_out != OPEN) continue;
+        double most = reach_of(c, i);
+        *left_out = most > 0 &&
+                    !(c->faces.num_triangles && brio_is_within(&c->faces, c->tree.point[i], most * most, &triangle));
+    }
+}
+
+/* Picks the faces near the points that are open. */
+static brio_status pick_faces(const coverage *c, size_t num_open, brio_mesh *out) {
+    brio_status status = BRIO_OK;
+    brio_ball *ball = NULL;
+    size_t count = 0;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, ball, num_open));
+    for (size_t i = 0; i < c->tree.count; i++) {
+        if (c->left_out[c->tree.index[i]] != OPEN) continue;
+        memcpy(ball[count].centre, c->tree.point[i], sizeof ball->centre);
+        ball[count++].radius = reach_of(c, i);
+    }
+    BRIO_TRY(brio_near_faces(c->ctx, c->mesh, ball, count, out));
+done:
+    brio_release(c->ctx, ball);
+    return status;
+}
+
+/* Judges the points that are open. */
+static brio_status judge_open(coverage *c, size_t num_open) {
+    brio_status status = BRIO_OK;
+    brio_mesh near = {0};
+    bool few = num_open < c->tree.count / FEW;
+    if (few) BRIO_TRY(pick_faces(c, num_open, &near));
+    if (!few || near.num_faces) BRIO_TRY(brio_triangle_tree_new(c->ctx, few ? &near : c->mesh, &c->faces));
+    BRIO_TRY(run(c, c->tree.count, 0.8, 1, look_at_points));
+done:
+    brio_release(c->ctx, near.face_offsets);
+    brio_release(c->ctx, near.face_vertices);
+    return status;
+}
+
+/* Counts the points that the surface leaves.   left_out  NULL, or receives them. */
+static brio_status judge_points(coverage *c, size_t num_points, uint8_t *left_out, size_t *count) {
+    size_t open = 0;
+    BRIO_FORWARD(list_vertices(c, num_points));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->left_out, num_points));
+    if (brio_mesh_property(c->mesh, "sample"))
+        BRIO_FORWARD(run(c, num_points, 0.7, 0.8, look_at_vertices));
+    else
+        memset(c->left_out, OPEN, num_points);
+    for (size_t i = 0; i < num_points; i++) open += c->left_out[i] == OPEN;
+    if (open) BRIO_FORWARD(judge_open(c, open));
+    *count = 0;
+    for (size_t i = 0; i < num_points; i++) *count += c->left_out[i];
+    if (left_out) memcpy(left_out, c->left_out, num_points);
+    return BRIO_OK;
+}
+
 /* --- the whole --- */
 
 static brio_status measure_points(coverage *c, size_t num_points) {
-    BRIO_FORWARD(brio_point_tree_new(c->ctx, c->points, num_points, &c->tree));
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->spacing, num_points));
     return run(c, num_points, 0, 0.3, measure_spacings);
 }
@@ -215,17 +337,6 @@ static brio_status judge_faces(coverage *c, uint8_t *bridge, brio_coverage *out)
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->of, c->mesh->num_faces));
     BRIO_FORWARD(run(c, c->mesh->num_faces, 0.3, 0.7, look_at_faces));
     return sum_up(c, bridge, out);
-}
-
-/* Counts the points that the surface leaves.   left_out  NULL, or receives them. */
-static brio_status judge_points(coverage *c, size_t num_points, uint8_t *left_out, size_t *count) {
-    BRIO_FORWARD(brio_triangle_tree_new(c->ctx, c->mesh, &c->faces));
-    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->left_out, num_points));
-    BRIO_FORWARD(run(c, num_points, 0.7, 1, look_at_points));
-    *count = 0;
-    for (size_t i = 0; i < num_points; i++) *count += c->left_out[i];
-    if (left_out) memcpy(left_out, c->left_out, num_points);
-    return BRIO_OK;
 }
 
 /* A surface and points, of any size, in a unit in which squares neither overflow nor vanish. */
@@ -256,7 +367,7 @@ static brio_status begin(comparison *x, brio_context *ctx, const brio_mesh *mesh
         x->c.mesh = &x->scaled;
         x->c.points = x->places;
     }
-    return measure_points(&x->c, num_points);
+    return brio_point_tree_new(ctx, x->c.points, num_points, &x->c.tree);
 }
 
 static void end(comparison *x) {
@@ -265,6 +376,7 @@ static void end(comparison *x) {
     brio_triangle_tree_free(ctx, &x->c.faces);
     brio_release(ctx, x->c.spacing);
     brio_release(ctx, x->c.of);
+    brio_release(ctx, x->c.vertex);
     brio_release(ctx, x->c.left_out);
     brio_release(ctx, x->vertices);
     brio_release(ctx, x->places);
@@ -278,6 +390,7 @@ brio_status brio_mesh_coverage(brio_context *ctx, const brio_mesh *mesh, const d
     brio_coverage found = {.size = sizeof found};
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_coverage, out));
     BRIO_TRY(begin(&x, ctx, mesh, points, num_points));
+    BRIO_TRY(measure_points(&x.c, num_points));
     BRIO_TRY(judge_faces(&x.c, bridge, &found));
     BRIO_TRY(judge_points(&x.c, num_points, NULL, &found.left_out));
     found.bridge_radius = ldexp(found.bridge_radius, x.exponent);

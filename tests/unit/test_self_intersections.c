@@ -2,6 +2,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "mesh/crossing_faces.h"
 #include "mesh/triangles_cross.h"
 
 static brio_mesh *triangles(brio_context *ctx, const double *p, size_t n, const uint32_t *v, size_t faces) {
@@ -227,6 +228,76 @@ static void every_failed_allocation_is_a_status(void) {
     expect_clean_failures(small_count);
 }
 
+/* --- searches --- */
+
+/* Counts the pairs of triangles that cross, of which `only` has one at least, and compares what a search finds. */
+static void check_search(const brio_face_groups *g, const uint8_t *only, const char *what) {
+    const brio_mesh *m = g->mesh;
+    uint8_t *wanted = calloc(m->num_faces, 1), *found = malloc(m->num_faces);
+    int64_t pairs = 0, counted = -1;
+    for (size_t a = 0; a < m->num_faces; a++)
+        for (size_t b = 0; b < a; b++) {
+            const double *t[3], *u[3];
+            for (int k = 0; k < 3; k++) {
+                t[k] = m->vertices + 3 * (size_t)m->face_vertices[3 * a + (size_t)k];
+                u[k] = m->vertices + 3 * (size_t)m->face_vertices[3 * b + (size_t)k];
+            }
+            if ((only && !only[a] && !only[b]) || !brio_triangles_cross(t, u)) continue;
+            wanted[a] = wanted[b] = 1;
+            pairs++;
+        }
+    EXPECT(brio_search_crossings(g, only, found, &counted) == BRIO_OK && counted == pairs, "%s: %lld pairs, found %lld",
+           what, (long long)pairs, (long long)counted);
+    EXPECT(!memcmp(wanted, found, m->num_faces), "%s: other faces", what);
+    free(wanted);
+    free(found);
+}
+
+/* Random triangles, in space and in a plane, of as many groups as make one level and more; asked about all, some and
+ * none; and once more after vertices have moved, some of them far out. */
+static void searches_find_what_brute_force_finds(void) {
+    static const size_t COUNTS[] = {1, 2, 8, 9, 63, 64, 65, 400};
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, 2);
+    for (size_t trial = 0; trial < 2 * sizeof COUNTS / sizeof *COUNTS; trial++) {
+        brio_rng rng = brio_rng_new(trial);
+        size_t n = COUNTS[trial / 2], flat = trial % 2;
+        double *p = malloc(9 * n * sizeof *p);
+        uint32_t *v = malloc(3 * n * sizeof *v);
+        uint64_t *offsets = malloc((n + 1) * sizeof *offsets);
+        uint8_t *only = malloc(n);
+        for (size_t i = 0; i < 9 * n; i++)
+            p[i] = flat && i % 3 == 2 ? 7 : brio_rng_double(&rng) * 0.2 + (double)(i / 9 * 37 % 100) / 100;
+        for (size_t i = 0; i < 3 * n; i++) v[i] = (uint32_t)i;
+        for (size_t f = 0; f <= n; f++) offsets[f] = 3 * f;
+        brio_mesh m = {.context = ctx,
+                       .num_vertices = 3 * n,
+                       .vertices = p,
+                       .num_faces = n,
+                       .face_offsets = offsets,
+                       .face_vertices = v};
+        brio_face_groups g;
+        EXPECT(brio_face_groups_new(ctx, &m, &g) == BRIO_OK && g.count == n);
+        for (int moved = 0; moved < 2; moved++) {
+            check_search(&g, NULL, "all");
+            for (size_t f = 0; f < n; f++) only[f] = brio_rng_below(&rng, 3) == 0;
+            check_search(&g, only, "some");
+            memset(only, 0, n);
+            check_search(&g, only, "none");
+            for (size_t i = 0; i < 9 * n; i++)
+                if (!flat || i % 3 != 2) p[i] += (i % 7 ? 0.05 : 0.6) * (brio_rng_double(&rng) - 0.5);
+            EXPECT(brio_face_groups_fit(&g) == BRIO_OK);
+        }
+        brio_face_groups_free(&g);
+        free(p);
+        free(v);
+        free(offsets);
+        free(only);
+    }
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
 SUITE(test_self_intersections) {
     RUN(pairs_apart_touching_and_crossing);
     RUN(one_ulp_decides);
@@ -236,6 +307,7 @@ SUITE(test_self_intersections) {
     RUN(every_pair_of_a_pencil);
     RUN(polygons_count_once);
     RUN(a_surface_without_any);
+    RUN(searches_find_what_brute_force_finds);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }

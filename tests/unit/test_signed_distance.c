@@ -3,6 +3,7 @@
 #include "points.h"
 #include "surfaces.h"
 #include "mesh/closest_point.h"
+#include "mesh/properties.h"
 #include "mesh/solid.h"
 #include "base/rng.h"
 #include <math.h>
@@ -201,6 +202,43 @@ static void a_hole_is_one_bridge(void) {
     free(p);
 }
 
+/* The property sample only makes it faster to find which points a surface leaves. Points about a plane: most are at a
+ * vertex or near one, some have none, some are far away; of some vertices the sample is wrong, or none. */
+static void samples_do_not_change_which_points_are_left(void) {
+    enum { N = 60 };
+    brio_mesh *m = flat_grid(ctx, N, N);
+    size_t given = m->num_vertices, n = 0, with = 0, without = 0, open = 0;
+    double *p = malloc(3 * (given + 200) * sizeof *p), high = 0;
+    uint8_t *left[2] = {malloc(given + 200), malloc(given + 200)};
+    uint32_t *sample = malloc(given * sizeof *sample);
+    brio_rng rng = brio_rng_new(4);
+    for (size_t i = 0; i < 3 * given; i++) high = fmax(high, m->vertices[i]);
+    const double step = high / (N - 1);
+    for (size_t v = 0; v < given; v++) {
+        sample[v] = v % 50 == 7 ? (uint32_t)brio_rng_below(&rng, (int)given) : v % 50 == 9 ? UINT32_MAX : (uint32_t)n;
+        for (int k = 0; k < 3; k++) /* a few spacings off at most */
+            p[3 * n + (size_t)k] = m->vertices[3 * v + (size_t)k] + (v % 3    ? 0.3
+                                                                     : v % 20 ? 0
+                                                                              : 6) *
+                                                                        step * (brio_rng_double(&rng) - 0.5);
+        n++;
+    }
+    for (int i = 0; i < 200; i++, n++)
+        for (int k = 0; k < 3; k++) p[3 * n + (size_t)k] = high * (1.5 * brio_rng_double(&rng) - 0.25);
+    for (int hinted = 0; hinted < 2; hinted++) {
+        if (hinted) EXPECT(brio_mesh_add_samples(m, n, sample) == BRIO_OK);
+        EXPECT(brio_mesh_left_out(ctx, m, p, n, left[hinted], hinted ? &with : &without) == BRIO_OK);
+    }
+    for (size_t i = 0; i < n; i++) open += left[0][i] != left[1][i];
+    EXPECT(with == without && without > 50 && without < n / 4 && open == 0, "%zu and %zu of %zu, %zu differ", without,
+           with, n, open);
+    brio_mesh_free(m);
+    free(p);
+    free(left[0]);
+    free(left[1]);
+    free(sample);
+}
+
 SUITE(test_signed_distance) {
     ctx = new_context();
     RUN(closed_surfaces_against_brute_force);
@@ -208,6 +246,7 @@ SUITE(test_signed_distance) {
     RUN(edges_and_corners_of_faces_apart);
     RUN(wrong_calls_are_refused);
     RUN(a_hole_is_one_bridge);
+    RUN(samples_do_not_change_which_points_are_left);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
     return harness_end();
