@@ -44,24 +44,29 @@ typedef struct {
     bool lowered;     /* in this sweep; atomic */
 } search;
 
-static double allowed_at(const search *s, uint32_t p) {
-    double x;
-    __atomic_load(&s->allowed[p], &x, __ATOMIC_RELAXED);
-    return x;
+/* Lowers the allowed spacing of a sample. */
+static void lower(search *s, uint32_t p, double most) {
+    double before;
+    bool is_lower = false;
+    __atomic_load(&s->allowed[p], &before, __ATOMIC_RELAXED);
+    while (most < before && !is_lower)
+        is_lower = __atomic_compare_exchange(&s->allowed[p], &before, &most, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
+    if (!is_lower) return;
+    __atomic_store_n(&s->falls[p], 1, __ATOMIC_RELAXED);
+    __atomic_store_n(&s->lowered, true, __ATOMIC_RELAXED);
 }
 
-/* Limits the spacing at q by that at p. The first test lets all pass that rounding might keep back. */
-static void limit(search *s, uint32_t p, uint32_t q, double square) {
+/* Limits the spacing at one end of an edge by that at the other. The first test lets all pass that rounding might keep
+ * back. */
+static inline void limit(search *s, uint32_t p, uint32_t q) {
     static const double SURE = 1 - 1e-9;
-    double at = allowed_at(s, p), before = allowed_at(s, q), more = before - at;
-    if (more <= 0 || more * more <= SURE * GROWTH * GROWTH * square) return;
-    double most = at + GROWTH * sqrt(square);
-    bool lower = false;
-    while (most < before && !lower)
-        lower = __atomic_compare_exchange(&s->allowed[q], &before, &most, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
-    if (!lower) return;
-    __atomic_store_n(&s->falls[q], 1, __ATOMIC_RELAXED);
-    __atomic_store_n(&s->lowered, true, __ATOMIC_RELAXED);
+    double a, b;
+    __atomic_load(&s->allowed[p], &a, __ATOMIC_RELAXED);
+    __atomic_load(&s->allowed[q], &b, __ATOMIC_RELAXED);
+    double square = brio_square_distance(s->points + 3 * (size_t)p, s->points + 3 * (size_t)q);
+    if ((b - a) * (b - a) <= SURE * GROWTH * GROWTH * square) return;
+    double least = a < b ? a : b;
+    lower(s, a < b ? q : p, least + GROWTH * sqrt(square));
 }
 
 /* Returns whether a limit of a tetrahedron's samples fell since the sweep before passed the tetrahedron. */
@@ -81,12 +86,8 @@ static void pass_over(void *user, size_t begin, size_t end, int thread) {
         const uint32_t *v = s->tet[s->back ? s->num_tets - 1 - n : n].vertex;
         if (!has_changed(s, v)) continue;
         for (int j = 1; j < 4; j++)
-            for (int k = 0; k < j; k++) {
-                if (v[j] >= s->num_points || v[k] >= s->num_points) continue;
-                double square = brio_square_distance(s->points + 3 * (size_t)v[j], s->points + 3 * (size_t)v[k]);
-                limit(s, v[j], v[k], square);
-                limit(s, v[k], v[j], square);
-            }
+            for (int k = 0; k < j; k++)
+                if (v[j] < s->num_points && v[k] < s->num_points) limit(s, v[j], v[k]);
     }
 }
 
