@@ -49,7 +49,8 @@ typedef struct {
     brio_triangle_tree faces;
     face_facts *of;
     const double *points;
-    uint32_t *vertex;  /* #P: the vertex that is the point's by the property sample, or NO_VERTEX */
+    uint8_t *used;     /* #V: whether a vertex is one of a face that has an area */
+    uint32_t *vertex;  /* in the order of the tree: a vertex that is near the point, or NO_VERTEX */
     uint8_t *left_out; /* #P: whether the surface leaves a point; OPEN where that is not known yet */
     size_t first;
 } coverage;
@@ -201,26 +202,33 @@ done:
 
 /* --- points that the surface leaves --- */
 
-/* Returns the sample of a vertex; what is no index of a point if it has none. */
-static double sample_of(const brio_property *samples, size_t vertex) {
-    if (samples->type == BRIO_SCALAR_INT32) return ((const int32_t *)samples->data)[vertex];
-    return samples->type == BRIO_SCALAR_FLOAT64 ? ((const double *)samples->data)[vertex] : -1;
+/* Marks the vertices of faces that have an area. */
+static void mark_used(const brio_mesh *m, uint8_t *used) {
+    for (size_t f = 0; f < m->num_faces; f++)
+        for (uint64_t h = m->face_offsets[f]; h < m->face_offsets[f + 1]; h++)
+            if (m->face_offsets[f + 1] - m->face_offsets[f] > 2) used[m->face_vertices[h]] = 1;
 }
 
-/* Lists for each point the vertex that is its own, if the surface says so. That is a hint: nothing is taken for
- * granted. */
-static brio_status list_vertices(coverage *c, size_t num_points) {
+/* Finds for vertices the nearest point: of a point that is so found several times, any of its vertices is kept. */
+static void find_points(void *user, size_t begin, size_t end, int thread) {
+    const coverage *c = user;
+    brio_near_point near[BRIO_NEAR_ROOM];
+    (void)thread;
+    for (size_t v = c->first + begin; v < c->first + end; v++) {
+        if (!c->used[v]) continue;
+        brio_nearest_points(&c->tree, c->mesh->vertices + 3 * v, 1, INFINITY, near);
+        __atomic_store_n(&c->vertex[near[0].place], (uint32_t)v, __ATOMIC_RELAXED);
+    }
+}
+
+/* Lists for each point a vertex that is near it, where there is one. */
+static brio_status list_vertices(coverage *c) {
     const brio_mesh *m = c->mesh;
-    const brio_property *samples = brio_mesh_property(m, "sample");
-    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->vertex, num_points));
-    memset(c->vertex, 0xff, num_points * sizeof *c->vertex);
-    for (size_t f = 0; samples && f < m->num_faces; f++)
-        for (uint64_t h = m->face_offsets[f]; h < m->face_offsets[f + 1]; h++) {
-            double sample = sample_of(samples, m->face_vertices[h]);
-            if (m->face_offsets[f + 1] - m->face_offsets[f] > 2 && sample >= 0 && sample < (double)num_points)
-                c->vertex[(size_t)sample] = m->face_vertices[h];
-        }
-    return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->vertex, c->tree.count));
+    memset(c->vertex, 0xff, c->tree.count * sizeof *c->vertex);
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->used, m->num_vertices));
+    mark_used(m, c->used);
+    return run(c, m->num_vertices, 0.7, 0.75, find_points);
 }
 
 /* Returns whether the point at a place of the tree is within LEFT_OUT spacings of its vertex. That needs no spacing:
@@ -228,7 +236,7 @@ static brio_status list_vertices(coverage *c, size_t num_points) {
 static bool is_at_vertex(const coverage *c, size_t place) {
     static const double SURE = 0.999;
     brio_near_point near[BRIO_NEAR_ROOM];
-    uint32_t vertex = c->vertex[c->tree.index[place]];
+    uint32_t vertex = c->vertex[place];
     if (vertex == NO_VERTEX || c->tree.count <= NEIGHBOURS) return false;
     double square = brio_square_distance(c->mesh->vertices + 3 * (size_t)vertex, c->tree.point[place]);
     double share = SURE * LEFT_OUT * GRID_SHARE;
@@ -250,7 +258,7 @@ static bool is_near_vertex(const coverage *c, size_t place) {
     double most = SURE * reach_of(c, place);
     size_t found = brio_nearest_points(&c->tree, p, NEIGHBOURS + 1, INFINITY, near);
     for (size_t i = 0; i < found; i++) {
-        uint32_t vertex = c->vertex[c->tree.index[near[i].place]];
+        uint32_t vertex = c->vertex[near[i].place];
         if (vertex == NO_VERTEX) continue;
         if (brio_square_distance(c->mesh->vertices + 3 * (size_t)vertex, p) < most * most) return true;
     }
@@ -312,12 +320,9 @@ done:
 /* Counts the points that the surface leaves.   left_out  NULL, or receives them. */
 static brio_status judge_points(coverage *c, size_t num_points, uint8_t *left_out, size_t *count) {
     size_t open = 0;
-    BRIO_FORWARD(list_vertices(c, num_points));
+    BRIO_FORWARD(list_vertices(c));
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->left_out, num_points));
-    if (brio_mesh_property(c->mesh, "sample"))
-        BRIO_FORWARD(run(c, num_points, 0.7, 0.8, look_at_vertices));
-    else
-        memset(c->left_out, OPEN, num_points);
+    BRIO_FORWARD(run(c, num_points, 0.75, 0.8, look_at_vertices));
     for (size_t i = 0; i < num_points; i++) open += c->left_out[i] == OPEN;
     if (open) BRIO_FORWARD(judge_open(c, open));
     *count = 0;
@@ -376,6 +381,7 @@ static void end(comparison *x) {
     brio_triangle_tree_free(ctx, &x->c.faces);
     brio_release(ctx, x->c.spacing);
     brio_release(ctx, x->c.of);
+    brio_release(ctx, x->c.used);
     brio_release(ctx, x->c.vertex);
     brio_release(ctx, x->c.left_out);
     brio_release(ctx, x->vertices);

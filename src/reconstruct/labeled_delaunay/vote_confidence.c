@@ -42,6 +42,8 @@ typedef struct {
 typedef struct {
     const brio_vote_graph *g;
     const uint8_t *label;
+    const brio_facets *facets;
+    float *margin; /* #facets */
     evidence *own, *round;
     float *confidence;
 } judgement;
@@ -71,16 +73,25 @@ static uint32_t corner_of(const judgement *j, uint32_t facet, int k) {
     return j->g->dual->t.tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
 }
 
+/* Measures the margins of facets. */
+static void measure_margins(void *user, size_t begin, size_t end, int thread) {
+    const judgement *j = user;
+    const brio_tetrahedra *t = &j->g->dual->t;
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
+        uint32_t facet = j->facets->facet[f], sides[2] = {brio_tet_of(facet), brio_tet_of(*brio_mate(t, facet))};
+        double kept = 0, all = 0;
+        for (int i = 0; i < 8; i++)
+            if (t->tet[sides[i / 4]].vertex[i % 4] != t->infinite) add_vote(j, sides[i / 4], i % 4, &kept, &all);
+        j->margin[f] = (float)kept;
+    }
+}
+
 /* Adds the margin of a facet to its samples. */
-static void add_margin(const judgement *j, uint32_t facet) {
-    uint32_t sides[2] = {brio_tet_of(facet), brio_tet_of(*brio_mate(&j->g->dual->t, facet))};
-    double kept = 0, all = 0;
-    for (int i = 0; i < 8; i++)
-        if (j->g->dual->t.tet[sides[i / 4]].vertex[i % 4] != j->g->dual->t.infinite)
-            add_vote(j, sides[i / 4], i % 4, &kept, &all);
+static void add_margin(const judgement *j, size_t f) {
     for (int k = 0; k < 3; k++) {
-        evidence *e = &j->own[corner_of(j, facet, k)];
-        e->margin += (float)kept;
+        evidence *e = &j->own[corner_of(j, j->facets->facet[f], k)];
+        e->margin += j->margin[f];
         e->facets++;
     }
 }
@@ -115,14 +126,17 @@ brio_status brio_vote_confidence(const brio_vote_graph *g, const uint8_t *label,
     brio_status status = BRIO_OK;
     size_t n = g->dual->num_points;
     int threads = brio_threads(g->ctx, n, SAMPLES_A_THREAD);
-    judgement j = {.g = g, .label = label, .confidence = confidence};
+    judgement j = {.g = g, .label = label, .facets = facets, .confidence = confidence};
+    BRIO_TRY(BRIO_ALLOC(g->ctx, j.margin, facets->count));
     BRIO_TRY(BRIO_ALLOC(g->ctx, j.own, n));
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, j.round, n));
     BRIO_TRY(brio_for(g->ctx, threads, n, count_own_votes, &j));
-    for (size_t i = 0; i < facets->count; i++) add_margin(&j, facets->facet[i]);
+    BRIO_TRY(brio_for(g->ctx, threads, facets->count, measure_margins, &j));
+    for (size_t i = 0; i < facets->count; i++) add_margin(&j, i);
     for (size_t i = 0; i < facets->count; i++) pool(&j, facets->facet[i]);
     BRIO_TRY(brio_for(g->ctx, threads, n, judge, &j));
 done:
+    brio_release(g->ctx, j.margin);
     brio_release(g->ctx, j.own);
     brio_release(g->ctx, j.round);
     return status;
