@@ -1,4 +1,5 @@
 /* Signed distances of points from surfaces, and coverage: against brute force over all triangles. */
+#include "brio/testdata.h"
 #include "harness.h"
 #include "points.h"
 #include "surfaces.h"
