@@ -1,8 +1,8 @@
 /* Writes cells: checks that the format's arrays are there, and calls the format's writer. CSV and NPY are here.
  *
  * Based on: NumPy enhancement proposal 1, the .npy format. */
-#include "io/cells_write.h"
 #include "base/float_state.h"
+#include "io/formats.h"
 #include "io/scalar.h"
 #include <stdio.h>
 #include <string.h>

@@ -42,6 +42,13 @@ brio_status brio_node_write_files(brio_context *ctx, const char *path, const bri
  * input: other texts are not so far from it. */
 bool brio_chemical_starts(const char *bytes, size_t size);
 
+/** Returns the number of faces of a cell. */
+static inline uint64_t brio_cells_num_faces(const brio_cells *cells, size_t c) {
+    return cells->face_offsets[c + 1] - cells->face_offsets[c];
+}
+/** Writes cells as VTU.   comment  NULL: none. */
+brio_status brio_cells_vtu_write(brio_output *out, const brio_cells *cells, const char *comment);
+
 /* --- the table --- */
 
 /** A format's row of the table in format_table.c. */

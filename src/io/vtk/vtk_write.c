@@ -1,7 +1,7 @@
 /* Writes VTK's XML files: meshes as unstructured grids or as polygons, and Voronoi cells. */
 #include "base/memory.h"
 #include "base/sort.h"
-#include "io/cells_write.h"
+#include "io/formats.h"
 #include "io/vtk/vtk_writer.h"
 #include <math.h>
 #include <string.h>
