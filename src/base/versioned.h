@@ -3,14 +3,52 @@
  * Each struct begins with `size_t size`, the bytes of the struct that the caller was compiled with. New fields are
  * appended. The library reads and writes no byte of the caller beyond `size`, so a program built for an older header
  * works with a newer library. A program built for a newer header works with an older library if the fields unknown to
- * that library are zero. A size of 0 stands for the fields that the struct had at first (first_fields.h), so that a
+ * that library are zero. A size of 0 stands for the fields that the struct had at first (BRIO_FIRST_NAME), so that a
  * struct of zeros works, too: a program that sets a later field sets the size. A field of 0 is the default. */
 #ifndef BRIO_BASE_VERSIONED_H
 #define BRIO_BASE_VERSIONED_H
 
 #include "base/context.h"
-#include "base/first_fields.h"
 #include <stddef.h>
+
+/* The last field that each struct of the public interface had at first, in version 0.3: a `size` of 0 stands for the
+ * struct up to there. The list is of that version for ever; a new struct gets a row with the last field that it begins
+ * with. */
+#define BRIO_FIRST_brio_alpha_complex         triangulation2
+#define BRIO_FIRST_brio_alpha_shape_stats     singular_facets
+#define BRIO_FIRST_brio_cells_options         num_planes
+#define BRIO_FIRST_brio_certificate           volume
+#define BRIO_FIRST_brio_convert_options       crs
+#define BRIO_FIRST_brio_convert_stats         degenerate
+#define BRIO_FIRST_brio_convex_hull_options   samples
+#define BRIO_FIRST_brio_convex_hull_stats     mesh_seconds
+#define BRIO_FIRST_brio_coverage              left_out
+#define BRIO_FIRST_brio_curve_certificate     length
+#define BRIO_FIRST_brio_curve_options         reserved_int
+#define BRIO_FIRST_brio_curve_stats           curve_seconds
+#define BRIO_FIRST_brio_delaunay2_options     seed
+#define BRIO_FIRST_brio_delaunay_options      cache_bytes
+#define BRIO_FIRST_brio_distance              diagonal
+#define BRIO_FIRST_brio_evidence              origin_of
+#define BRIO_FIRST_brio_file_facts            version
+#define BRIO_FIRST_brio_generate_options      reserved_int
+#define BRIO_FIRST_brio_interpolation         components
+#define BRIO_FIRST_brio_iso_surface_options   vertices
+#define BRIO_FIRST_brio_merge_stats           edges
+#define BRIO_FIRST_brio_mesh_offset_options   error
+#define BRIO_FIRST_brio_mesh_offset_stats     error
+#define BRIO_FIRST_brio_mesh_simplify_options reserved_int
+#define BRIO_FIRST_brio_outliers_options      factor
+#define BRIO_FIRST_brio_plane_frame           thickness
+#define BRIO_FIRST_brio_power_shape_options   redundancy
+#define BRIO_FIRST_brio_power_shape_stats     shape_seconds
+#define BRIO_FIRST_brio_read_notes            rounded_column
+#define BRIO_FIRST_brio_read_options          origins
+#define BRIO_FIRST_brio_restricted_stats      cut_seconds
+#define BRIO_FIRST_brio_spanning_tree_stats   tree_seconds
+#define BRIO_FIRST_brio_surface_options       reserved_int
+#define BRIO_FIRST_brio_surface_stats         rounding
+#define BRIO_FIRST_brio_write_options         reserved_int
 
 /** What is known of a struct: its name, the bytes that it has in this version, and those that it had at first. */
 typedef struct {

@@ -5,7 +5,7 @@
 #ifndef BRIO_CELLS_CELL_RECORD_H
 #define BRIO_CELLS_CELL_RECORD_H
 
-#include "cells/clip.h"
+#include "cells/star_cell.h"
 #include <math.h>
 
 /** A face, in the caller's lengths. */

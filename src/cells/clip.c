@@ -5,7 +5,7 @@
  * computed. Both ways cut by the same planes; faces without area were dropped before, exactly. Which vertices a plane
  * cuts off is exact, too (exact_side.h): of a face whose area is lost in rounding, the polyhedron still knows that it
  * has one. */
-#include "cells/clip.h"
+#include "cells/star_cell.h"
 #include "cells/exact_side.h"
 #include "base/vector.h"
 #include <assert.h>

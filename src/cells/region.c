@@ -3,7 +3,7 @@
  * A cube is cut by the planes of the region. The cube grows until the result stays clear of its walls; a last cut
  * starts from a box that fits the result, so that its vertices are accurate. Six planes of a box are taken as they
  * are. */
-#include "cells/region.h"
+#include "cells/diagram.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include <math.h>

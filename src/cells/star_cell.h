@@ -43,4 +43,10 @@ double brio_star_cell_volume(const brio_star_cell *c);
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_star_cell_polygon(brio_star_cell *c, const brio_side *side, size_t *count);
 
+/** Makes the polyhedron of a cell in the region. Neighbours of its faces are indices of points, or -1 - i for wall i of
+ *  the region. Named vertices are Voronoi vertices: their name is the tetrahedron that speaks for the centre.
+ *  c  filled; its place is not BRIO_PLACE_INSIDE.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_clip_cell(brio_star_cell *c, const brio_region *region, brio_polyhedron *p);
+
 #endif

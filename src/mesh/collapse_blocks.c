@@ -7,7 +7,6 @@
  *
  * In a block a heap holds the edges in the order of their errors. An entry is out of date when its edge's error has
  * changed since the entry was made; edges that stop to exist, or whose tries failed, have the error INFINITY. */
-#include "mesh/collapse_blocks.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "mesh/collapse.h"

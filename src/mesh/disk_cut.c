@@ -12,7 +12,7 @@
  * surface. SoCG 2001.
  * Differs from the paper: the cut is the graph of all cycles at once, not a set of curves that may run side by side.
  * So no vertex lies on more cut edges than necessary. */
-#include "mesh/disk_cut.h"
+#include "mesh/spanning_subgraph.h"
 #include "mesh/twins.h"
 
 /* --- sectors --- */

@@ -2,7 +2,7 @@
  *
  * A pass has a limit: a quarter of the edges that may be tried have errors of at most the limit, or fewer when the
  * number of faces comes near its target. A pass divides the vertices into blocks along a curve and collapses, in each
- * block, edges up to the limit in the order of their errors (collapse_blocks.h). Edges at the borders of blocks wait:
+ * block, edges up to the limit in the order of their errors (collapse_blocks.c). Edges at the borders of blocks wait:
  * passes use two curves in turns, whose blocks have different borders. So all parts of the surface reach one error
  * together, as they do with one queue, and what a pass does at borders is not farther behind than the limits of two
  * passes. The last few collapses, and all collapses of small meshes, are a pass of one block.
@@ -19,7 +19,6 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "mesh/collapse.h"
-#include "mesh/collapse_blocks.h"
 #include "mesh/collapse_guard.h"
 #include "mesh/crossing_faces.h"
 #include <float.h>

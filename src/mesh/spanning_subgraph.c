@@ -7,7 +7,7 @@
  * and zm-1 zm. So only the degree of z grows, to three. The copies of a vertex that the cut passed through
  * become one vertex in the result. The degree of that vertex is the sum of the degrees of its copies.
  *
- * Vertices of disks are the sectors of disk_cut.h. A half-edge bounds the disk in work when its flag LIVE_END is set;
+ * Vertices of disks are the sectors of disk_cut.c. A half-edge bounds the disk in work when its flag LIVE_END is set;
  * removed triangles have no mark.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms for surface reconstruction and related problems. PhD
@@ -16,7 +16,6 @@
  * degree two goes, the chord between its neighbours becomes a cycle edge; a count can be reduced, a mark cannot. The
  * loop replaces recursion. */
 #include "mesh/spanning_subgraph.h"
-#include "mesh/disk_cut.h"
 
 enum { LIVE_END = 2, CHOSEN = 4 }; /* bits 1 and 2 of the flags of half-edges; bit 0 is BRIO_EDGE_CUT */
 

@@ -10,7 +10,7 @@
  *
  * Based on: Kobbelt, Botsch, Schwanecke, Seidel. Feature sensitive surface extraction from volume data. SIGGRAPH 2001
  * (the point of least squared distance from tangent planes). */
-#include "offset/field.h"
+#include "offset/work.h"
 #include "base/least_squares.h"
 #include "base/vector.h"
 #include <math.h>

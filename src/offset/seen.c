@@ -1,7 +1,7 @@
 /* A hash table of sets of four numbers, with linear probing.
  *
  * Based on: Knuth. The art of computer programming, volume 3. 1973, section 6.4 (linear probing). */
-#include "offset/seen.h"
+#include "offset/work.h"
 #include "base/rng.h"
 #include <string.h>
 

@@ -2,9 +2,54 @@
 #ifndef BRIO_OFFSET_WORK_H
 #define BRIO_OFFSET_WORK_H
 
+#include "mesh/solid.h"
 #include "base/memory.h"
-#include "offset/field.h"
-#include "offset/seen.h"
+
+/** A hash table from sets of four numbers to a byte. */
+typedef struct brio_seen {
+    uint32_t (*key)[4]; /* ascending; BRIO_SEEN_NONE first in an empty place */
+    uint8_t *value;
+    size_t places; /* a power of two, or 0 */
+} brio_seen;
+
+#define BRIO_SEEN_NONE UINT32_MAX
+
+/** Makes a table with room for `count` sets.   out  freed with brio_seen_free, also after a failure. */
+brio_status brio_seen_new(brio_context *ctx, size_t count, brio_seen *out);
+void brio_seen_free(brio_context *ctx, brio_seen *seen);
+
+/** Returns where a set's value is, or NULL. Any thread may call this while nothing is added. */
+const uint8_t *brio_seen_find(const brio_seen *seen, const uint32_t set[4]);
+
+/** Adds a set that is not in the table, which has room for it. */
+void brio_seen_add(brio_seen *seen, const uint32_t set[4], uint8_t value);
+
+/** The offset of a solid's surface by `distance` > 0 to one side of it: outside, or with `inwards` inside. That side is
+ *  the near side. Points of the other side, and points of the near side whose distance from the surface is less than
+ *  `distance`, are covered; the offset is the boundary of what is covered. Any thread may read a field. */
+typedef struct brio_offset_field {
+    const brio_solid *solid;
+    double distance;
+    bool inwards;
+} brio_offset_field;
+
+/** Returns whether a point is on the far side of the solid's surface. */
+bool brio_offset_is_beyond(const brio_offset_field *f, const double *p);
+
+/** Writes a point of the offset close to p: where the way from p, straight away from the surface, reaches the distance;
+ *  then, as long as another part of the surface is nearer than the distance, straight away from that part. From a point
+ *  of the near side that is not covered, it is the nearest point of the offset.
+ *  tolerance  most by which the point's distance may fall short.   normal  receives the direction, of length 1, of the
+ *             last
+ *  way.   Returns whether there is such a point after a few steps. */
+bool brio_offset_reach(const brio_offset_field *f, const double *p, double tolerance, double *out, double *normal);
+
+/** Writes the point of the offset where three sheets of it meet, or the point close to x on the crease of two, between
+ *  the places `at`, which are around x. Creases are where balls about different parts of the surface meet; x is not
+ *  covered.
+ *  tolerance  most by which the distance of the point may be wrong.   Returns whether there is a crease. */
+bool brio_offset_crease(const brio_offset_field *f, const double *x, const double *const at[3], double tolerance,
+                        double *out);
 
 /** A place of the surface through the samples that is farther from the offset than allowed. */
 typedef struct brio_offset_fault {

@@ -7,7 +7,7 @@
  *
  * Based on: Khoshelham, Oude Elberink. Accuracy and resolution of Kinect depth data for indoor mapping applications.
  * Sensors 2012 (noise and quantisation). */
-#include "testdata/depth.h"
+#include "testdata/scan.h"
 #include "base/rng.h"
 #include <math.h>
 

@@ -11,7 +11,6 @@
 #include "base/rng.h"
 #include "base/team.h"
 #include "iso/iso_surface.h"
-#include "testdata/depth.h"
 #include "testdata/scan.h"
 #include "testdata/sculpture.h"
 #include <math.h>

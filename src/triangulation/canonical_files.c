@@ -12,7 +12,7 @@
  *
  * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988 (the distribution
  * sort). */
-#include "triangulation/canonical_files.h"
+#include "triangulation/canonical_order.h"
 #include "base/memory.h"
 #include "base/read_ahead.h"
 #include "triangulation/canonical_turn.h"

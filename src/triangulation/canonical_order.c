@@ -15,7 +15,6 @@
 #include "triangulation/canonical_order.h"
 #include "base/memory.h"
 #include "base/team.h"
-#include "triangulation/canonical_files.h"
 #include "triangulation/canonical_turn.h"
 #include <assert.h>
 #include <string.h>

@@ -9,4 +9,7 @@
  *  live  slots that hold a tetrahedron. */
 brio_status brio_canonical_order(brio_store *store, size_t live, size_t *finite);
 
+/** Does what brio_canonical_order does, by files that are read and written in sequence. */
+brio_status brio_canonical_files(brio_store *store, size_t live, size_t *finite);
+
 #endif
