@@ -341,7 +341,7 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     const arguments *a = r->arguments;
     int method = method_of(a);
     brio_surface_options o = library_options(r, method);
-    brio_surface_stats s = {0};
+    brio_surface_stats s = {.size = sizeof s};
     uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;
@@ -356,8 +356,8 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     found->open = o.open > 0 || (is(method, BRIO_METHOD_MAY_END) && o.holes != BRIO_HOLES_CLOSED);
-    bool sided = has(method, "evidence") && (found->open || !is(method, BRIO_METHOD_MAY_END));
-    if (sided) TRY(cli_find_evidence(r, &a->evidence, points, &e)); /* by evidence a surface may end at the hull */
+    bool sided = has(method, "evidence");
+    if (sided) TRY(cli_find_evidence(r, &a->evidence, points, &e));
     if (sided && a->pieces <= 1) o.evidence = &e.taken;
     TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
     if (reports[method].stages)
@@ -542,8 +542,7 @@ static brio_status surface(run *r) {
     TRY(check_arguments(r));
     TRY(cli_require_output_for(r, "vertex-normals", a->vertex_normals));
     TRY(cli_check_evidence(r, &a->evidence));
-    if (a->evidence.from && (a->crust.closed || a->pieces > 1))
-        FAIL(r, BRIO_ERR_ARGUMENT, "--from and --%s exclude each other", a->crust.closed ? "closed" : "pieces");
+    if (a->evidence.from && a->pieces > 1) FAIL(r, BRIO_ERR_ARGUMENT, "--from and --pieces exclude each other");
     TRY(cli_require_output(r, false));
     if (a->crust.normals) TRY(cli_check_mesh_beside(r, "normals", a->crust.normals, CLI_POINTS));
     if (a->left_out) TRY(cli_check_mesh_beside(r, "left-out", a->left_out, CLI_POINTS));

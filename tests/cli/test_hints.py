@@ -6,6 +6,7 @@ do. The sources are searched: a sentence without a row fails the test, and so do
 """
 
 import glob
+import math
 import os
 import random
 import re
@@ -125,6 +126,7 @@ ROWS = {
     "WARNING_GUESS": ("surface cube.ply -o out.ply", 0, ["help methods", "alpha cube.ply --alpha auto -o out.ply"]),
     "WARNING_BRIDGES": ("surface half.xyz --closed -o out.ply", 0, [Silent("surface half.xyz --open auto -o out.ply")]),
     "WARNING_UNSEEN": ("check capped.ply --samples half.xyz", 0, [Silent("check part.ply --open --samples half.xyz")]),
+    "WARNING_STEPS": ("surface steps.xyz -o out.ply", 0, [Silent("surface steps.xyz --noise keep -o out.ply")]),
     "WARNING_LEFT_OUT": ("check oct.off --samples scan.ply", 0, [Silent("check capped.ply --samples half.xyz")]),
     "WARNING_ASIDE": ("surface lots.xyz -o out.ply", 0, [Silent("surface lots.xyz --ignore-normals -o out.ply")]),
     "WARNING_MORE_FACES": ("simplify open.off --faces 2 -o out.ply", 0, [Silent("simplify oct.off --faces 8 -o out.ply")]),
@@ -264,6 +266,9 @@ class Hints(CliTest):
         lots = random.Random(5)
         signed = [(p, lots.choice((-1, 1))) for p in self.sphere(2000)]
         self.file("lots.xyz", "# x y z nx ny nz\n" + "".join("%r %r %r %r %r %r\n" % (*p, *(s * x for x in p)) for p, s in signed))
+        rays = [((i % 60 - 30) / 60, (i // 60 - 25) / 60) for i in range(3000)]
+        deep = [round((10 + 3 * math.sin(2 * x) + 2 * x) / 0.5) * 0.5 for x, _ in rays]
+        self.xyz("steps.xyz", [(x * z, y * z, z) for (x, y), z in zip(rays, deep)])
         self.xyz("vast.xyz", [[1.79e308 * x for x in p] for p in self.sphere(300)])
         self.xyz("pair.xyz", [(i % 40, i // 40, i * i % 7) for i in range(3000)] + [(0.3, 0.3, 0.3), (0.3 + 1e-12, 0.3, 0.3)])
         self.ball_map("ball.map", 12)

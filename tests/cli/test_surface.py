@@ -157,7 +157,7 @@ class Evidence(CliTest):
         facts = self.facts("surface", points, "--ignore-origins", "--ignore-normals", "--closed", "-o", self.path("out.ply"))
         self.assertEqual(facts["orientation"], "guess")
         closed = self.facts("surface", points, "--closed", "-o", self.path("out.ply"))
-        self.assertEqual((closed["orientation"], closed["certificate"]["closed"]), ("guess", True))
+        self.assertEqual((closed["orientation"], closed["certificate"]["closed"]), ("evidence", True))
 
     def test_a_place_that_a_pcd_file_does_not_know(self):
         head = ("# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH %d\nHEIGHT %d\n"

@@ -155,6 +155,58 @@ static void places_by_table_by_point_and_alone_are_the_same(void) {
     brio_context_free(ctx);
 }
 
+/* Returns the share of the area of faces that are no bridges which looks towards a place. */
+static double share_towards(const brio_mesh *m, const double *place) {
+    const brio_property *bridge = brio_mesh_face_property(m, "bridge");
+    double all = 0, towards = 0;
+    for (size_t f = 0; f < m->num_faces; f++) {
+        double u[3], v[3], to[3];
+        const double *a = m->vertices + 3 * (size_t)m->face_vertices[3 * f],
+                     *b = m->vertices + 3 * (size_t)m->face_vertices[3 * f + 1],
+                     *c = m->vertices + 3 * (size_t)m->face_vertices[3 * f + 2];
+        for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], to[k] = place[k] - a[k];
+        const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+        double area = brio_property_value(bridge, f) > 0 ? 0 : sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        all += area;
+        towards += n[0] * to[0] + n[1] * to[1] + n[2] * to[2] > 0 ? area : 0;
+    }
+    return towards / all;
+}
+
+/* What scanners saw of a room, half a ball, and a dome on ground is closed on request, and looks towards them. */
+static void closed_surfaces_keep_to_evidence(void) {
+    static double half[3 * MANY], scene[6 * MANY];
+    const double places[3][3] = {{2.5, 2, 1.5}, {0, 0, 60}, {0, 0, 6}};
+    const double *points[] = {room, half, scene};
+    const size_t counts[] = {MANY, MANY, 2 * MANY};
+    brio_context *ctx = new_context();
+    brio_rng rng = brio_rng_new(5);
+    make_room();
+    sphere_points(9, MANY, half);
+    for (size_t p = 0; p < MANY; p++) half[3 * p + 2] = fabs(half[3 * p + 2]);
+    for (size_t p = 0; p < 2 * MANY; p++) {
+        double *q = scene + 3 * p;
+        q[0] = 6 * brio_rng_double(&rng) - 3, q[1] = 6 * brio_rng_double(&rng) - 3;
+        q[2] = sqrt(fmax(0, 1 - q[0] * q[0] - q[1] * q[1])) + 0.01 * sin(9 * q[0]);
+    }
+    for (int i = 0; i < 3; i++) {
+        const brio_evidence e = {.origins = places[i], .num_origins = 1};
+        const brio_surface_options o = {.holes = BRIO_HOLES_CLOSED, .evidence = &e};
+        brio_surface_stats s = {0};
+        brio_certificate c = {0};
+        brio_mesh *mesh;
+        EXPECT(brio_surface(ctx, points[i], counts[i], &o, &mesh, &s) == BRIO_OK);
+        EXPECT(brio_mesh_certificate(ctx, mesh, &c) == BRIO_OK);
+        EXPECT(c.closed && c.manifold && c.oriented && s.evidence == BRIO_EVIDENCE_ORIGINS, "scan %d", i);
+        EXPECT(share_towards(mesh, places[i]) > (i == 1 ? 0.9 : 0.95), "scan %d: %g", i,
+               share_towards(mesh, places[i]));
+        EXPECT(s.agreement > 0.9, "scan %d: %g", i, s.agreement);
+        brio_certificate_free(&c);
+        brio_mesh_free(mesh);
+    }
+    brio_context_free(ctx);
+}
+
 static brio_status make_surface(brio_context *ctx) {
     brio_mesh *mesh;
     brio_surface_options o = LABELED_OPTIONS;
@@ -178,6 +230,7 @@ SUITE(test_sample_evidence) {
     RUN(normals_drawn_by_lot_change_nothing);
     RUN(normals_that_contradict_the_scanner_lose);
     RUN(places_by_table_by_point_and_alone_are_the_same);
+    RUN(closed_surfaces_keep_to_evidence);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }

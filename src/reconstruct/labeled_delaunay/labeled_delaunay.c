@@ -86,6 +86,7 @@ static brio_status vote(brio_reconstruction *r) {
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->label, r->dual.t.count + r->num_points));
     BRIO_TRY(brio_vote_graph_new(r->ctx, &r->dual, r->spacing, r->left, r->own, &r->graph));
+    if (r->is_closed) r->graph.num_free = r->dual.num_finite;
     BRIO_TRY(brio_vote_labels(&r->graph, r->turned, r->label));
 done:
     return status;
@@ -96,12 +97,12 @@ static brio_status label(brio_reconstruction *r) {
     BRIO_TRY(brio_settle_labels(&r->graph, r->label, &r->stats.undecided));
     BRIO_TRY(brio_vote_energy(&r->graph, r->label, &r->stats.energy));
     brio_lap(r, &r->stats.labels_seconds);
-    if (r->own) BRIO_TRY(brio_drop_hull_patches(r->ctx, &r->dual, r->label));
+    if (r->own && !r->is_closed) BRIO_TRY(brio_drop_hull_patches(r->ctx, &r->dual, r->label));
     BRIO_TRY(drop_specks(r));
     BRIO_TRY(mend(r));
     take_signs(r);
     for (size_t p = 0; p < r->num_points; p++)
-        for (size_t k = 0; k < 3 && r->turned[p]; k++) r->outside[p][k] = -r->outside[p][k];
+        for (size_t k = 0; k < 3 && r->turned[p] != r->is_inverted; k++) r->outside[p][k] = -r->outside[p][k];
     brio_compare_with_evidence(r);
     brio_lap(r, &r->stats.manifold_seconds);
     if (!r->options->confidence) brio_vote_graph_free(&r->graph);
@@ -120,14 +121,16 @@ static void drop_infinite(const brio_reconstruction *r, brio_facets *boundary) {
     boundary->count = count;
 }
 
-/* Lists the boundary facets counterclockwise as seen from their outer tetrahedra. */
+/* Lists the boundary facets counterclockwise as seen from their outer tetrahedra, or from their inner ones if these
+ * stand for the outside. */
 static brio_status list_faces(brio_reconstruction *r, const brio_facets *boundary) {
     brio_status status = BRIO_ALLOC(r->ctx, r->faces, 3 * boundary->count);
     if (status != BRIO_OK) return status;
     for (size_t n = 0; n < boundary->count; n++) {
         uint32_t facet = boundary->facet[n];
         for (int k = 0; k < 3; k++)
-            r->faces[3 * n + (size_t)k] = r->dual.t.tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
+            r->faces[3 * n + (size_t)(r->is_inverted ? 2 - k : k)] =
+                r->dual.t.tet[brio_tet_of(facet)].vertex[BRIO_FACET[brio_slot_of(facet)][k]];
     }
     r->num_faces = boundary->count;
     return BRIO_OK;
@@ -137,7 +140,8 @@ static brio_status list_faces(brio_reconstruction *r, const brio_facets *boundar
 static brio_status find_boundary(brio_reconstruction *r, brio_facets *boundary) {
     brio_status status = BRIO_OK;
     size_t changed = 0;
-    brio_tet_labels labels = {.dual = &r->dual, .turned = r->turned, .watertight = !r->own, .label = r->label};
+    brio_tet_labels labels = {
+        .dual = &r->dual, .turned = r->turned, .watertight = !r->own || r->is_closed, .label = r->label};
     BRIO_TRY(brio_make_manifold(r->ctx, &labels, boundary, &changed));
     r->stats.relabeled += changed;
     BRIO_TRY(drop_specks(r));
@@ -298,6 +302,13 @@ done:
     return status;
 }
 
+/* Lets a closed surface round what scanners saw from within, such as a room, bound the free space: beyond the hull is
+ * the solid then. All signs change, and in the end the faces turn. */
+static void invert(brio_reconstruction *r) {
+    r->is_inverted = brio_hull_looks_inwards(&r->dual, r->own);
+    for (size_t p = 0; p < r->num_points && r->is_inverted; p++) r->own[p] = -r->own[p], r->turned[p] ^= 1;
+}
+
 /* Finds the surface that has both, labels and holes.
  *  ahead     whether to end without one where the votes leave no doubt that it is open.
  *  from, to  of the progress `bar`. */
@@ -306,6 +317,7 @@ static brio_status find_faces(brio_reconstruction *r, bool ahead, brio_bar bar, 
     double step = (to - from) / 4;
     brio_progress_part(r->ctx, bar, from, from + step);
     BRIO_TRY(brio_orient_axes(r));
+    if (r->own && r->is_closed) invert(r);
     brio_progress_part(r->ctx, bar, from + step, from + 2 * step);
     BRIO_TRY(vote(r));
     if (ahead && !r->own) BRIO_TRY(look_ahead(r));
@@ -450,6 +462,7 @@ static brio_status reconstruct(brio_context *ctx, const double *points, size_t n
                              .options = options,
                              .given = num_points,
                              .num_points = num_points,
+                             .is_closed = options->holes == BRIO_HOLES_CLOSED && options->open == 0,
                              .graph = {.ctx = ctx},
                              .lap = brio_seconds()};
     const brio_bar bar = brio_progress_bar(ctx);

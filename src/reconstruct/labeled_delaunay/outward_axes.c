@@ -5,13 +5,21 @@
  *
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000. */
 #include "base/memory.h"
+#include "base/vector.h"
 #include "reconstruct/cocone/rim_axes.h"
+#include "reconstruct/cocone/triangle.h"
 #include "reconstruct/labeled_delaunay/reconstruction.h"
 #include "reconstruct/labeled_delaunay/sheet_signs.h"
+#include <math.h>
 
 /* In log-odds, what the sign of a sample's sheet weighs, of an open surface or beside evidence. Chosen on scans of
  * models that nothing else was measured on. */
 static const double SHEET = 3;
+
+/* Share of what looks outwards on the hull, by area, that has to look inwards. The hull of a room, or a bowl, looks
+ * inwards all over, that of ground seen from above by half; with a solid below it, as thin as the noise, the ground
+ * would fall to pieces. Of an object seen from any side next to nothing does. Chosen. */
+static const double INWARDS = 0.5;
 
 /* Half the opening of the co-cones, for the first orientation: pi / 8 as in [Amenta Choi Dey Leekha 2000]. */
 static const double THETA = 0.39269908169872414;
@@ -85,6 +93,22 @@ brio_status brio_orient_axes(brio_reconstruction *r) {
     brio_lap(r, &r->stats.poles_seconds);
 done:
     return status;
+}
+
+bool brio_hull_looks_inwards(const brio_pole_vectors *v, const float *own) {
+    double inwards = 0, outwards = 0;
+    for (size_t tet = v->num_finite; tet < v->t.count; tet++) {
+        const uint32_t *s = v->t.tet[tet].vertex;
+        double area = brio_triangle_area(v->points + 3 * (size_t)s[0], v->points + 3 * (size_t)s[1],
+                                         v->points + 3 * (size_t)s[2]);
+        for (int k = 0; k < 3; k++) {
+            double to[3];
+            brio_towards_centre(v, tet, s[k], to);
+            double along = brio_dot(to, v->plane + 4 * (size_t)s[k]) * (double)own[s[k]] * area;
+            *(along < 0 ? &inwards : &outwards) += fabs(along);
+        }
+    }
+    return inwards > INWARDS * outwards;
 }
 
 void brio_compare_with_evidence(brio_reconstruction *r) {

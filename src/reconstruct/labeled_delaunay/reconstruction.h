@@ -26,6 +26,8 @@ typedef struct brio_reconstruction {
     float *own;            /* #P, or NULL: what evidence, or their sheet, tells of the samples, in BRIO_VOTE_UNIT */
     bool is_layered;       /* most samples have a second sheet close behind theirs */
     double proof;          /* as brio_unseen has it: of the votes alone */
+    bool is_closed;        /* all holes are to be filled, at the hull, too */
+    bool is_inverted;      /* the inner side of the labels is the outside: a closed surface that is seen from within */
     bool is_open;          /* the surface proved to be open */
     brio_vote_graph graph; /* until the surface is found */
     uint8_t *label;        /* #T and #P */
@@ -63,6 +65,10 @@ brio_status brio_drop_strays(brio_reconstruction *r);
 
 /** Finds the axes of the samples, and whether they point outwards as far as their neighbours, or evidence, tell. */
 brio_status brio_orient_axes(brio_reconstruction *r);
+
+/** Returns whether evidence says of most of the hull that what is beyond it is inside.
+ *  own  #P: of each sample, whether its axis points outwards (over 0) or inwards. */
+bool brio_hull_looks_inwards(const brio_pole_vectors *v, const float *own);
 
 /** Tells how well the result agrees with evidence, be it of use or not. */
 void brio_compare_with_evidence(brio_reconstruction *r);

@@ -8,7 +8,6 @@
 #include "order/canonical_points.h"
 #include "reconstruct/labeled_delaunay/reconstruction.h"
 #include "reconstruct/labeled_delaunay/stray_samples.h"
-#include "reconstruct/noise/rounded_samples.h"
 #include "reconstruct/noise/sample_noise.h"
 #include <math.h>
 #include <string.h>

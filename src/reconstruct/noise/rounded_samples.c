@@ -13,12 +13,11 @@
  *           Imaging Sciences 2009 (steps with momentum, each followed by a projection onto what is allowed).
  *           Carrara, Bitelli, Carla. Comparison of techniques for generating digital terrain models from contour lines.
  *           IJGIS 1997 (steps of contours become slopes). */
-#include "reconstruct/noise/rounded_samples.h"
+#include "reconstruct/noise/sample_noise.h"
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/vector.h"
 #include "query/nearest_points.h"
-#include "reconstruct/noise/step_levels.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

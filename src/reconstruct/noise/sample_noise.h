@@ -1,4 +1,4 @@
-/* The noise of samples: measuring and reducing it. */
+/* The noise of samples: measuring and reducing it, and undoing the rounding that hides it (rounded_samples.c). */
 #ifndef BRIO_RECONSTRUCT_SAMPLE_NOISE_H
 #define BRIO_RECONSTRUCT_SAMPLE_NOISE_H
 
@@ -30,5 +30,49 @@ brio_status brio_least_noise(brio_context *ctx, const double *points, size_t cou
  *  points  count by 3, read and written.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_smooth_samples(brio_context *ctx, double *points, size_t count);
+
+/** Depths that are rounded: along a direction, or the distance from a place. */
+typedef struct {
+    size_t count;     /* of the levels; 0: the samples are on none */
+    double *depth;    /* #L, rising */
+    double *step;     /* #L: to the nearer one of the levels beside it */
+    int32_t *number;  /* #L: counted in steps, so that levels without samples count, too */
+    bool is_distance; /* depths are distances from `place` */
+    double place[3], direction[3];
+    double spacing; /* of samples on one level, as their median */
+    double angle;   /* likewise, as seen from `place` */
+    double coarse;  /* the median step, of the samples that were looked at */
+} brio_step_levels;
+
+/** Finds whether the samples lie on levels more than a spacing apart, as those of a depth camera do whose depths are
+ *  rounded.
+ *  points  count by 3, neighbours in memory near each other in space.
+ *  place   of the scanner, or NULL.
+ *  out     freed with brio_step_levels_free, on failure too.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_find_step_levels(brio_context *ctx, const double *points, size_t count, const double *place,
+                                  brio_step_levels *out);
+void brio_step_levels_free(brio_context *ctx, brio_step_levels *levels);
+
+/** Returns the depth of a point. */
+double brio_depth_of(const brio_step_levels *levels, const double *point);
+
+/** Returns the level on which a point lies; levels->count if it lies on none. */
+size_t brio_level_of(const brio_step_levels *levels, const double *point);
+
+/** What was rounded. */
+typedef struct {
+    double step;  /* in the unit of the points: the median of the steps; 0: nothing is rounded */
+    size_t moved; /* samples */
+} brio_rounding;
+
+/** Finds whether the depths of samples are rounded to steps of over a spacing, along one direction or as distances from
+ *  one place. If so, moves each sample by at most half a step, towards the scanner or away from it, so that the steps
+ *  become slopes. Samples whose depths are not rounded stay, bit for bit.
+ *  points  count by 3, read and written; neighbours in memory near each other in space.
+ *  place   of the scanner that saw all of them, or NULL.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. Does not depend on the number of threads. */
+brio_status brio_unround_samples(brio_context *ctx, double *points, size_t count, const double *place,
+                                 brio_rounding *out);
 
 #endif

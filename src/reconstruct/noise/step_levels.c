@@ -13,7 +13,7 @@
  *
  * Based on: Khoshelham, Oude Elberink. Accuracy and resolution of Kinect depth data for indoor mapping applications.
  *           Sensors 2012 (steps that grow with the square of the depth). */
-#include "reconstruct/noise/step_levels.h"
+#include "reconstruct/noise/sample_noise.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
@@ -222,8 +222,8 @@ done:
     return status;
 }
 
-/* Counts the levels that have planes. Measures the steps there.   key  workspace.   Returns whether the levels are many,
- * and more than a spacing apart. */
+/* Counts the levels that have planes. Measures the steps there.   key  workspace.   Returns whether the levels are
+ * many, and more than a spacing apart. */
 static bool are_planes_on_many(const flat_look *l, size_t count, uint64_t *key, brio_step_levels *levels) {
     size_t on = 0, many = 0;
     for (size_t i = 0; i < count; i++) {
