@@ -1,4 +1,5 @@
-/* Least-significant-digit radix sorts of pairs and of items, a sort of rows by their first number, and the key of a rank.
+/* Least-significant-digit radix sorts of pairs and of items, a sort of rows by their first number, and
+ * the key of a rank.
  *
  * Member 0 looks between pieces of its part. Where the callback asks to stop, every member leaves its loops when it
  * sees `stop`, and all of them end after the same digit: they read `stop` between two barriers, where nobody looks. */

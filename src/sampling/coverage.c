@@ -264,8 +264,8 @@ done:
     return status;
 }
 
-/* Lists the faces of three corners or more whose boxes meet the box of a ball. Each ball takes the shape of a triangle with its
- * box, so that the tree is one of faces.
+/* Lists the faces of three corners or more whose boxes meet the box of a ball. Each ball takes the shape of a triangle
+ * with its box, so that the tree is one of faces.
  *  out  its vertices are those of the mesh; the caller frees face_offsets and face_vertices, on failure too. */
 static brio_status near_faces(brio_context *ctx, const brio_mesh *mesh, const ball *balls, size_t num_balls,
                               brio_mesh *out) {
