@@ -1,4 +1,5 @@
-/* Least-significant-digit radix sorts of pairs and of items, and a sort of rows by their first number.
+/* Least-significant-digit radix sorts of pairs and of items, a sort of rows by their first number, and
+ * the key of a rank.
  *
  * Member 0 looks between pieces of its part. Where the callback asks to stop, every member leaves its loops when it
  * sees `stop`, and all of them end after the same digit: they read `stop` between two barriers, where nobody looks. */
@@ -225,4 +226,36 @@ brio_status brio_sort_rows(brio_context *ctx, const brio_row_order *by, uint32_t
 done:
     brio_release(ctx, keys);
     return status;
+}
+
+/* --- one key --- */
+
+/* LOOKED_AT: keys between two looks; chosen. */
+enum { BYTE = 8, VALUES = 1 << BYTE, LOOKED_AT = 1 << 16 };
+
+/* Counts keys by the byte at `shift`: those whose higher bytes are those of `known`. */
+static brio_status count_bytes(brio_context *ctx, const uint64_t *keys, size_t n, uint64_t known, int shift,
+                               size_t *count) {
+    const uint64_t higher = shift + BYTE < 64 ? UINT64_MAX << (shift + BYTE) : 0;
+    for (int i = 0; i < VALUES; i++) count[i] = 0;
+    for (size_t begin = 0; begin < n; begin += LOOKED_AT) {
+        size_t end = n - begin < LOOKED_AT ? n : begin + LOOKED_AT;
+        for (size_t i = begin; i < end; i++)
+            if (((keys[i] ^ known) & higher) == 0) count[keys[i] >> shift & (VALUES - 1)]++;
+        BRIO_FORWARD(brio_look(ctx, end - begin));
+    }
+    return BRIO_OK;
+}
+
+/* Eight passes count by one byte after the other, from the highest, the keys that share the bytes known so far. */
+brio_status brio_key_of_rank(brio_context *ctx, const uint64_t *keys, size_t n, size_t rank, uint64_t *key) {
+    assert(rank < n);
+    *key = 0;
+    for (int shift = 64 - BYTE; shift >= 0; shift -= BYTE) {
+        size_t count[VALUES], value = 0;
+        BRIO_FORWARD(count_bytes(ctx, keys, n, *key, shift, count));
+        for (; rank >= count[value]; value++) rank -= count[value];
+        *key |= (uint64_t)value << shift;
+    }
+    return BRIO_OK;
 }

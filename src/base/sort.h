@@ -1,4 +1,5 @@
-/* Sorting: radix sorts in linear time (sort.c); sorts of keys and of indices in place (heap_sort.c). */
+/* Sorting: radix sorts, and keys by their rank, in linear time (sort.c); sorts of keys and of indices in
+ * place (heap_sort.c). */
 #ifndef BRIO_BASE_SORT_H
 #define BRIO_BASE_SORT_H
 

@@ -17,9 +17,9 @@
 #include "base/vector.h"
 #include "base/versioned.h"
 #include "mesh/closest_point.h"
+#include "mesh/crossing_faces.h"
 #include "mesh/edge_rings.h"
 #include "query/nearest_points.h"
-#include "sampling/near_faces.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -200,6 +200,94 @@ done:
     return status;
 }
 
+/* --- faces near a few points --- */
+
+enum { FACES_A_THREAD = 1 << 12 };
+
+typedef struct {
+    double centre[3], radius;
+} ball;
+
+typedef struct {
+    const brio_mesh *mesh;
+    brio_face_groups balls;
+    uint8_t *near; /* #F */
+} near_search;
+
+static void ask_face(void *user, size_t begin, size_t end, int thread) {
+    const near_search *s = user;
+    double low[3], high[3];
+    (void)thread;
+    for (size_t f = begin; f < end; f++) {
+        brio_face_bounds(s->mesh, f, low, high);
+        bool has_area = s->mesh->face_offsets[f + 1] - s->mesh->face_offsets[f] > 2;
+        s->near[f] = has_area && brio_groups_meet(&s->balls, low, high);
+    }
+}
+
+/* Makes a mesh of triangles from the lowest to the highest corner of the box of each ball. */
+static brio_status draw_boxes(brio_context *ctx, const ball *balls, size_t num_balls, brio_mesh *out) {
+    brio_status status = BRIO_OK;
+    *out = (brio_mesh){.context = ctx, .num_vertices = 2 * num_balls, .num_faces = num_balls};
+    BRIO_TRY(BRIO_ALLOC(ctx, out->vertices, 6 * num_balls));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_offsets, num_balls + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_vertices, 3 * num_balls));
+    for (size_t i = 0; i <= num_balls; i++) out->face_offsets[i] = 3 * i;
+    for (size_t i = 0; i < num_balls; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            out->vertices[6 * i + k] = balls[i].centre[k] - balls[i].radius;
+            out->vertices[6 * i + 3 + k] = balls[i].centre[k] + balls[i].radius;
+            out->face_vertices[3 * i + k] = (uint32_t)(2 * i + (k == 1));
+        }
+    }
+done:
+    return status;
+}
+
+static brio_status copy_near(brio_context *ctx, const near_search *s, brio_mesh *out) {
+    brio_status status = BRIO_OK;
+    const brio_mesh *m = s->mesh;
+    size_t faces = 0, corners = 0;
+    for (size_t f = 0; f < m->num_faces; f++)
+        if (s->near[f]) faces++, corners += (size_t)(m->face_offsets[f + 1] - m->face_offsets[f]);
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_offsets, faces + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, out->face_vertices, corners));
+    out->face_offsets[0] = 0;
+    for (size_t f = 0; f < m->num_faces; f++) {
+        if (!s->near[f]) continue;
+        size_t from = (size_t)m->face_offsets[f], count = (size_t)m->face_offsets[f + 1] - from;
+        uint64_t at = out->face_offsets[out->num_faces++];
+        if (count) memcpy(out->face_vertices + at, m->face_vertices + from, count * sizeof *out->face_vertices);
+        out->face_offsets[out->num_faces] = at + count;
+    }
+done:
+    return status;
+}
+
+/* Lists the faces of three corners or more whose boxes meet the box of a ball. Each ball takes the shape of a triangle
+ * with its box, so that the tree is one of faces.
+ *  out  its vertices are those of the mesh; the caller frees face_offsets and face_vertices, on failure too. */
+static brio_status near_faces(brio_context *ctx, const brio_mesh *mesh, const ball *balls, size_t num_balls,
+                              brio_mesh *out) {
+    brio_status status = BRIO_OK;
+    brio_mesh boxes = {0};
+    near_search s = {.mesh = mesh, .balls.ctx = ctx};
+    *out = (brio_mesh){
+        .size = sizeof *out, .context = ctx, .num_vertices = mesh->num_vertices, .vertices = mesh->vertices};
+    BRIO_TRY(draw_boxes(ctx, balls, num_balls, &boxes));
+    BRIO_TRY(brio_face_groups_new(ctx, &boxes, &s.balls));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.near, mesh->num_faces));
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, mesh->num_faces, FACES_A_THREAD), mesh->num_faces, ask_face, &s));
+    BRIO_TRY(copy_near(ctx, &s, out));
+done:
+    brio_face_groups_free(&s.balls);
+    brio_release(ctx, boxes.vertices);
+    brio_release(ctx, boxes.face_offsets);
+    brio_release(ctx, boxes.face_vertices);
+    brio_release(ctx, s.near);
+    return status;
+}
+
 /* --- points that the surface leaves --- */
 
 /* Marks the vertices of faces that have an area. */
@@ -289,17 +377,17 @@ static void look_at_points(void *user, size_t begin, size_t end, int thread) {
 /* Picks the faces near the points that are open. */
 static brio_status pick_faces(const coverage *c, size_t num_open, brio_mesh *out) {
     brio_status status = BRIO_OK;
-    brio_ball *ball = NULL;
+    ball *balls = NULL;
     size_t count = 0;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, ball, num_open));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, balls, num_open));
     for (size_t i = 0; i < c->tree.count; i++) {
         if (c->left_out[c->tree.index[i]] != OPEN) continue;
-        memcpy(ball[count].centre, c->tree.point[i], sizeof ball->centre);
-        ball[count++].radius = reach_of(c, i);
+        memcpy(balls[count].centre, c->tree.point[i], sizeof balls->centre);
+        balls[count++].radius = reach_of(c, i);
     }
-    BRIO_TRY(brio_near_faces(c->ctx, c->mesh, ball, count, out));
+    BRIO_TRY(near_faces(c->ctx, c->mesh, balls, count, out));
 done:
-    brio_release(c->ctx, ball);
+    brio_release(c->ctx, balls);
     return status;
 }
 

@@ -7,10 +7,10 @@
  *     min over all samples q of (spacing of q + GROWTH * distance to q),
  *
  * measured along Delaunay edges. Threads lower the limits across all edges, in any order, until none is lowered: what
- * they end with does not depend on the order. Where two scans overlap the spacing jumps, but a sample of the coarser one still has
- * neighbours at its own spacing, on both sides along a surface. A sample is a stray if even its second nearest sample
- * is LONELY times as far away as that. The second, because strays come in pairs by chance. Where over MANY of the
- * samples are SUSPECT times as far, a scan has strays, and LIKELY is enough.
+ * they end with does not depend on the order. Where two scans overlap the spacing jumps, but a sample of the coarser
+ * one still has neighbours at its own spacing, on both sides along a surface. A sample is a stray if even its second
+ * nearest sample is LONELY times as far away as that. The second, because strays come in pairs by chance. Where over
+ * MANY of the samples are SUSPECT times as far, a scan has strays, and LIKELY is enough.
  *
  * If over MOST of the samples were strays, there would be no surface for them to be far from: then none is.
  *

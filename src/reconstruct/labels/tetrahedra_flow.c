@@ -3,9 +3,9 @@
  * take.
  *
  * The open tetrahedra are cut into parts of consecutive ones, which are near each other in space. At first the arcs
- * between parts are closed, and any thread finds the maximum flow of each part. Then MERGED parts that follow each other
- * become one: the arcs between them open, and the flow goes on from there. Most flow is short, and only nodes at the
- * borders are active. In the end one thread merges what is left. A closed arc holds the complement of its residual
+ * between parts are closed, and any thread finds the maximum flow of each part. Then MERGED parts that follow each
+ * other become one: the arcs between them open, and the flow goes on from there. Most flow is short, and only nodes at
+ * the borders are active. In the end one thread merges what is left. A closed arc holds the complement of its residual
  * capacity, a negative number. So a part reads nothing that another part writes.
  *
  * Based on: Liu, Sun. Parallel graph-cuts by adaptive bottom-up merging. CVPR 2010.
