@@ -45,11 +45,10 @@ static void report(run *r, const brio_curve_stats *s) {
     cli_fact_count(f, "gaps", s->gaps);
 }
 
-/* Reports the certificate. Edges of a Delaunay triangulation do not cross. */
-static brio_status certify(run *r, const brio_mesh *curve, const brio_curve_stats *s) {
+brio_status cli_certify_edges(run *r, const brio_mesh *mesh, const size_t *corners, bool delaunay) {
     facts *f = &r->facts;
     brio_curve_certificate c = {0};
-    brio_status status = brio_mesh_curve_certificate(r->ctx, curve, &c);
+    brio_status status = brio_mesh_curve_certificate(r->ctx, mesh, &c);
     if (status != BRIO_OK) return status;
     cli_lap(r, "certify");
     cli_fact_open(f, "certificate", FACT_OBJECT);
@@ -58,10 +57,10 @@ static brio_status certify(run *r, const brio_mesh *curve, const brio_curve_stat
     cli_fact_count(f, "components", c.components);
     cli_fact_count(f, "loops", c.loops);
     cli_fact_count(f, "ends", c.ends);
-    cli_fact_count(f, "corners", s->corners);
+    if (corners) cli_fact_count(f, "corners", *corners);
     cli_fact_count(f, "branches", c.branches);
     cli_fact_count(f, "isolated", c.isolated);
-    cli_fact_count(f, "self_intersections", 0);
+    if (delaunay) cli_fact_count(f, "self_intersections", 0);
     cli_fact_real(f, "length", c.length);
     cli_fact_close(f);
     return BRIO_OK;
@@ -77,26 +76,89 @@ brio_status cli_require_edges(run *r) {
     return cli_fail(r, BRIO_ERR_ARGUMENT, "%s cannot hold edges: %s can", r->common.output, others);
 }
 
+/* Refuses outputs without edges, and work beyond the memory. */
+static brio_status require(run *r, const brio_mesh *points) {
+    FORWARD(cli_require_edges(r));
+    return cli_require_work(r, BRIO_OK, points, (uint64_t)(POINT_BYTES * (double)points->num_vertices));
+}
+
+/* Gives the vertices the properties of their points. */
+static brio_status carry(run *r, const brio_mesh *points, brio_mesh *curve) {
+    const brio_property *sample = brio_mesh_property(curve, "sample");
+    uint32_t *samples = malloc((curve->num_vertices + 1) * sizeof *samples);
+    if (!samples) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", curve->num_vertices);
+    for (size_t i = 0; i < curve->num_vertices; i++) samples[i] = (uint32_t)brio_property_value(sample, i);
+    brio_status status = cli_carry_properties(r, points, samples, curve);
+    free(samples);
+    return status;
+}
+
 brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed, brio_mesh **out) {
     brio_curve_options o = {0};
     brio_curve_stats s = {0};
-    uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
     o.open = open;
     o.closed = closed;
-    TRY(cli_require_edges(r));
-    TRY(cli_require_work(r, BRIO_OK, points, (uint64_t)(POINT_BYTES * (double)points->num_vertices)));
+    TRY(require(r, points));
     TRY(brio_curve(r->ctx, points->vertices, points->num_vertices, &o, out, &s));
-    samples = malloc((s.samples + 1) * sizeof *samples);
-    if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", s.samples);
-    for (size_t i = 0; i < s.samples; i++)
-        samples[i] = (uint32_t)brio_property_value(brio_mesh_property(*out, "sample"), i);
     r->lap = cli_clock();
-    TRY(cli_carry_properties(r, points, samples, *out));
+    TRY(carry(r, points, *out));
     report(r, &s);
     TRY(cli_check_interrupt(r));
-    TRY(certify(r, *out, &s));
+    TRY(cli_certify_edges(r, *out, &s.corners, true));
 done:
-    free(samples);
+    return status;
+}
+
+/* --- power crusts --- */
+
+static void report_crust(run *r, const brio_planar_crust_stats *s) {
+    facts *f = &r->facts;
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "crust", s->crust_seconds);
+    cli_fact_count(f, "poles", s->poles);
+    cli_fact_count(f, "inner", s->inner);
+    cli_fact_count(f, "outer", s->outer);
+    cli_fact_count(f, "confused", s->confused);
+    cli_fact_text(f, "method", "power-crust");
+    cli_fact_count(f, "samples", s->samples);
+    cli_fact_count(f, "vertices", s->samples);
+    cli_fact_count(f, "faces", 0);
+    cli_fact_count(f, "edges", s->edges);
+    cli_fact_text(f, "labeling", "greedy");
+}
+
+brio_status cli_planar_crust(run *r, const brio_mesh *points, brio_mesh **out) {
+    brio_planar_crust_stats s = {0};
+    brio_status status = BRIO_OK;
+    TRY(require(r, points));
+    TRY(brio_planar_crust(r->ctx, points->vertices, points->num_vertices, out, NULL, &s));
+    r->lap = cli_clock();
+    TRY(carry(r, points, *out));
+    report_crust(r, &s);
+    TRY(cli_check_interrupt(r));
+    TRY(cli_certify_edges(r, *out, NULL, true));
+done:
+    return status;
+}
+
+brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust, brio_mesh **shape) {
+    brio_planar_crust_stats s = {0};
+    facts *f = &r->facts;
+    brio_status status = BRIO_OK;
+    TRY(require(r, points));
+    TRY(brio_planar_crust(r->ctx, points->vertices, points->num_vertices, crust, shape, &s));
+    cli_stage(r, "delaunay", s.delaunay_seconds);
+    cli_stage(r, "shape", s.crust_seconds);
+    r->lap = cli_clock();
+    cli_fact_count(f, "samples", s.samples);
+    cli_fact_count(f, "poles", s.poles);
+    cli_fact_count(f, "inner", s.inner);
+    cli_fact_count(f, "outer", s.outer);
+    cli_fact_text(f, "labeling", "greedy");
+    cli_fact_count(f, "vertices", (*shape)->num_vertices);
+    cli_fact_count(f, "edges", (*shape)->num_edges);
+    TRY(carry(r, points, *crust));
+done:
     return status;
 }

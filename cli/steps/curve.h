@@ -16,4 +16,14 @@ brio_status cli_require_edges(run *r);
  *  open  of brio_curve_options.   closed  the same. */
 brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed, brio_mesh **out);
 
+/** Makes the power crust of points in a plane, as cli_curve. */
+brio_status cli_planar_crust(run *r, const brio_mesh *points, brio_mesh **out);
+
+/** Makes the power shape of points in a plane, and their power crust, and reports them as `brio medial` does. */
+brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust, brio_mesh **shape);
+
+/** Reports the certificate of the edges of a mesh.   corners  NULL where they were not looked for.
+ *  delaunay  the edges are of one Delaunay triangulation, so that none cross. */
+brio_status cli_certify_edges(run *r, const brio_mesh *mesh, const size_t *corners, bool delaunay);
+
 #endif
