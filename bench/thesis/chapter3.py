@@ -6,16 +6,15 @@ spacings of the samples: the mean of both ways, and the farthest. Where only a p
 import collections
 import surface_verdicts as say
 
-# method: words of a command line, or one of crust, robust and shape, which surfaces.py makes
+# method: words of a command line, or one of crust, robust and shape, which surfaces.py makes, or plane (planar.py)
 Shape = collections.namedtuple('Shape', 'label set method')
 CRUST = ('surface', '--method', 'power-crust', '--noise', 'keep')
 GREEDY = (*CRUST, '--labeling', 'greedy')
 COCONE = ('surface', '--method', 'cocone', '--extraction')
 STANDS_IN = ('knot', 'hand', 'part')
 SETS = (*STANDS_IN, *(f'shared-{name}' for name in STANDS_IN))
+PLANE = ('star', 'bean', 'ring')  # curves of planar.py
 OPEN = '10'  # spacings: the holes of the foot and of the shell are wider
-
-
 # name: (kind, seed, number of samples)
 SOLIDS = {'hand': ('implicit', 5, 8000), 'part': ('machined', 10, 6000)}
 SOLIDS.update({f'solid-{kind}-{seed}': (kind, seed, 10000) for kind in ('implicit', 'machined') for seed in range(2, 14, 2)})
@@ -43,6 +42,8 @@ def figures(Figure):
                say.walk_fails),
         Figure('3.3', 'surfaces', 'candidate triangles', over(('torus', 'cube', 'shell', *SETS), candidates=(*COCONE, 'candidates')),
                'For sharp corners and boundaries, the output may have gaps and holes.', say.gaps),
+        Figure('3.4', 'plane', 'power crusts of curves', [Shape(name, name, 'plane') for name in PLANE],
+               'In the plane all Voronoi vertices can be poles; the power crust, and the power shape of its interior solid.', say.planar),
         Figure('3.5', 'surfaces', 'a scan, its power crust, and its power shape', over(
             ('scan', 'shared-hand'), crust=GREEDY, shape='shape'),
                'Holes in the data are filled in an appropriate way; the power shape is homotopy equivalent to the solid.', say.scan_and_shape),

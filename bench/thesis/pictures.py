@@ -4,6 +4,7 @@ import os
 import sys
 
 import numpy as np
+import planar
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(1, os.path.join(HERE, '..', '..', 'docs', 'render'))
@@ -52,6 +53,7 @@ def panel(camera, path):
 
 def draw(name, surfaces, out):
     """Draws the picture of a figure to the file `out`, if it has one and its surfaces are there."""
+    if name == '3.4': planar.draw(surfaces.folder, out)
     if name not in PICTURES: return
     which, azimuth, elevation, panels = PICTURES[name]
     if not surfaces.scenes.scene(which):

@@ -51,6 +51,6 @@ def path(figure, folder): return f'{folder}/figure-{figure.name}.{"png" if figur
 
 
 def draw(figure, results, folder):
-    if figure.kind in ('table', 'pages', 'none', 'surfaces'): return
+    if figure.kind in ('table', 'pages', 'none', 'surfaces', 'plane'): return
     script = _script(figure, results, path(figure, folder))
     if script and shutil.which('gnuplot'): subprocess.run(['gnuplot'], input=script.encode(), check=True)

@@ -164,6 +164,10 @@ def _section(f, g, results, plots, images):
     elif g.kind == 'surfaces':
         f.write(SURFACES)
         for label, r in results.items(): f.write(_surface_row(label, r))
+    elif g.kind == 'plane':
+        f.write('\n| curve | samples | links | found | of them true | Euler characteristic | true |\n|---|--:|--:|--:|--:|--:|--:|\n')
+        for label, r in results.items():
+            f.write(f'| {label} | ' + ' | '.join(str(r.get(k, '')) for k in ('points', 'links', 'found', 'common', 'euler', 'true_euler')) + ' |\n')
     elif g.kind != 'none':
         f.write(TABLE)
         for label, r in results.items(): f.write(_row(label, r))

@@ -94,6 +94,14 @@ def gaps(results):
 def euler(r): return r['vertices'] - r['edges'] + r['triangles'] - r['tetrahedra']
 
 
+def planar(results):
+    if not results: return None, 'Nothing was run'
+    if any(r['status'] != 'done' for r in results.values()): return False, 'No answer'
+    words = '; '.join(f'{k}: {r["common"]} of {r["links"]} links, {r["found"] - r["common"]} others; Euler characteristic of the shape '
+                      f'{r["euler"]}, of the inside {r["true_euler"]}' for k, r in results.items())
+    return all(r['right'] for r in results.values()), words
+
+
 def scan_and_shape(results):
     sets = complete(results, 'crust', 'shape')
     if not sets: return None, 'Nothing was run'

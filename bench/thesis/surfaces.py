@@ -4,6 +4,7 @@ import resource
 
 import baselines
 import numpy as np
+import planar
 import scenes
 from chapter3 import OPEN, Shape
 from scenes import ply
@@ -82,6 +83,7 @@ class Surfaces:
 
     def measure(self, r):
         """A dict of what a run gave, or None where its data are not there."""
+        if r.method == 'plane': return planar.measure(self.brio, self.folder, r.set)
         scene = self.scenes.scene(r.set)
         if not scene: return None
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime

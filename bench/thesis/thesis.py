@@ -140,7 +140,7 @@ class Bench:
 
     def possible(self, f, r, results):
         """Whether a run can be made, and would tell something."""
-        if f.kind == 'surfaces': return True
+        if f.kind in ('surfaces', 'plane'): return True
         if r.locate == 'CGAL' and not os.path.exists(self.cgal): return False
         if r.share and self.no_limits: return False
         if r.needs and results.get(r.needs, {}).get('status') != 'done': return False
@@ -161,7 +161,7 @@ class Bench:
         results, first = {}, None
         for r in f.runs:
             if not self.possible(f, r, results): continue
-            if f.kind == 'surfaces':
+            if f.kind in ('surfaces', 'plane'):
                 self.surface(f, r, results)
                 continue
             memory = self.memory(r)
@@ -205,7 +205,7 @@ def main():
                     continue
                 found.append((f, bench.figure(f, write)))
                 plot.draw(*found[-1], o.out)
-                if f.kind == 'surfaces': pictures.draw(f.name, bench.surfaces, plot.path(f, o.out))
+                if f.kind in ('surfaces', 'plane'): pictures.draw(f.name, bench.surfaces, plot.path(f, o.out))
                 report.write(f'{o.out}/thesis-experiments.md', report.facts(bench, found), '')
         if o.report: report.publish(o.report, report.facts(bench, found), o.out)
     finally:

@@ -45,6 +45,12 @@ def shape(euler):
     return {**nothing(), "status": "done", "vertices": 100, "edges": 300, "triangles": 250, "tetrahedra": 50 - euler}
 
 
+def planar(common=160, found=160, euler=1):
+    right = (common, found, euler) == (160, 160, 1)
+    return {"star": {"points": 160, "status": "done", "links": 160, "found": found, "common": common, "euler": euler, "true_euler": 1,
+                     "right": right}}
+
+
 def scan(crust, euler): return sets(scan={"crust": crust, "shape": shape(euler)})
 
 
@@ -89,6 +95,7 @@ CASES = {
                    [walked(surface(), surface()), walked(nothing(), surface(4))], [{}, sets(torus={"walk": surface(), "labels": surface()})]),
     "3.3": ([candidates(surface(), open_surface()), candidates(open_surface(1, 1), open_surface(8))],
             [candidates(surface(), surface()), candidates(open_surface(500), open_surface())], [{}, sets(torus={"candidates": surface()})]),
+    "3.4": ([planar()], [planar(159), planar(found=161), planar(euler=0), {"star": nothing()}], [{}]),
     "3.5": ([scan(surface(3, 3), -2)], [scan(surface(3, 3), 0), scan(surface(4, 3), -2), scan(surface(3, 3, mean=2), -2), sets(
         scan={"crust": surface(), "shape": nothing()})], [{}, sets(scan={"crust": surface()})]),
     "3.6": ([hole(), hole(small=0)], [hole(wide=0), hole(wide=2), hole(mean=3), hole(components=2), hole(closed=surface(2, 0))],
