@@ -14,7 +14,7 @@ COCONE = ('surface', '--method', 'cocone', '--extraction')
 STANDS_IN = ('knot', 'hand', 'part')
 SETS = (*STANDS_IN, *(f'shared-{name}' for name in STANDS_IN))
 PLANE = ('star', 'bean', 'ring')  # curves of planar.py
-OPEN = '10'  # spacings: the holes of the foot and of the shell are wider
+OPEN, OPEN_INSIDE = '10', '8'  # spacings: the holes of the foot and of the shell are wider
 # name: (kind, seed, number of samples)
 SOLIDS = {'hand': ('implicit', 5, 8000), 'part': ('machined', 10, 6000)}
 SOLIDS.update({f'solid-{kind}-{seed}': (kind, seed, 10000) for kind in ('implicit', 'machined') for seed in range(2, 14, 2)})
@@ -62,7 +62,7 @@ def figures(Figure):
         Figure('3.3.4', 'surfaces', 'power crusts of models', over(solids, greedy=GREEDY),
                'Almost all of the inputs immediately produced perfect surface reconstructions.', say.almost_all),
         Figure('3.9', 'surfaces', 'a hole inside the hull', [
-            Shape('closed', 'shell', GREEDY), Shape('open', 'shell', (*GREEDY, '--open', OPEN, '--triangulate'))],
+            Shape('closed', 'shell', GREEDY), Shape('open', 'shell', (*GREEDY, '--open', OPEN_INSIDE, '--triangulate', '--keep-largest'))],
                'The area in the interior, where there are no samples, is detected and left as a hole.', say.hole_stays),
         Figure('3.10', 'surfaces', 'edges without samples', [
             Shape('sharp', 'cube', (*GREEDY, '--sharp')), Shape('all poles', 'cube', GREEDY), Shape('cocone', 'cube', (*COCONE, 'labels'))],

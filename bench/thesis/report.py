@@ -63,8 +63,10 @@ steps. A share of the time from {location[0]:.0%} to {location[1]:.0%} is signif
 the thesis': each section names both, as far as the thesis says them.
 
 {machine}, {cores} cores, commit {commit}; {size}; {minutes:.0f} minutes in all. The load was {load:.1f} when it began: over the number of
-cores, the machine had other work, and times say little.
+cores, the machine had other work, and times say little.{earlier}
 '''
+EARLIER = ''' Results of {figures} are those of an earlier run, of commit {commit}, {minutes:.0f} minutes
+at a load of {load:.1f} when it began.'''
 
 
 def facts(bench, found):
@@ -88,6 +90,17 @@ def _slim(r):
     every = len(r['curve']) // 100 + 1
     kept['curve'] = [[p, round(s, 3)] for p, s in r['curve'][:-1:every] + r['curve'][-1:]]
     return kept
+
+
+def with_earlier(facts, before, names):
+    """The results of a run, and of an earlier one those of the figures that it left out."""
+    figures_ = {name: results or (before['figures'].get(name, {}) if name not in names else {}) for name, results in facts['figures'].items()}
+    taken = [name for name, results in figures_.items() if results and not facts['figures'][name]]
+    facts = {**facts, 'figures': figures_, 'left_out': [x for x in facts['left_out'] if x.partition(':')[0] not in taken]}
+    facts['plots'] = [name for name in figures_ if name in facts['plots'] or (name in taken and name in before['plots'])]
+    if taken: facts['earlier'] = {'figures': ', '.join(taken),
+                                  **{k: before[k] for k in ('commit', 'minutes', 'load')}}
+    return facts
 
 
 def figures_of(facts):
@@ -181,7 +194,7 @@ def write(path, facts, images):
         size = 'all points' if facts['shrink'] == 1 else f'every {facts["shrink"]}th point'
         f.write(HEAD.format(patience=facts['patience'], finishes=FINISHES, linear=LINEAR, nearly=NEARLY, slower=SLOWER, about=ABOUT,
                             tenth=TENTH, slightly=SLIGHTLY, noise=NOISE, wasted=WASTED, location=LOCATION, page=figures.PAGE,
-                            size=size, cgal=facts['cgal'] or '(left out: not installed)', **{k: facts[k] for k in ('machine', 'cores', 'load', 'commit', 'minutes')}))
+                            size=size, earlier=EARLIER.format(**facts['earlier']) if 'earlier' in facts else '', cgal=facts['cgal'] or '(left out: not installed)', **{k: facts[k] for k in ('machine', 'cores', 'load', 'commit', 'minutes')}))
         if facts['no_limits']: f.write(f'\nRuns with little memory were left out: {facts["no_limits"]}.\n')
         if facts['left_out']: f.write(f'\nLeft out, the time being over: {"; ".join(facts["left_out"])}.\n')
         f.write('\n| figure | claim | here |\n|---|---|---|\n')
@@ -212,7 +225,9 @@ def publish(path, facts, drawn):
     folder = os.path.join(os.path.dirname(path) or '.', 'images', 'thesis')
     if drawn:
         os.makedirs(folder, exist_ok=True)
-        for old in os.listdir(folder): os.remove(os.path.join(folder, old))
+        wanted = {os.path.basename(plot.path(g, folder)) for g in figures_of(facts) if g.name in facts['plots']}
+        for old in os.listdir(folder):
+            if old not in wanted: os.remove(os.path.join(folder, old))
         for g in figures_of(facts):
             if os.path.exists(plot.path(g, drawn)): shutil.copy(plot.path(g, drawn), folder)
         keep(os.path.splitext(path)[0] + '.json', facts)

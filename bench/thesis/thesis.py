@@ -39,6 +39,7 @@ def options_of_call():
     a.add_argument('brio')
     a.add_argument('--out', default='out/thesis', help='folder of the results (default out/thesis)')
     a.add_argument('--report', help='also write the report there, its results (.json) and plots beside it')
+    a.add_argument('--keep', action='store_true', help='with --only: the results of other figures stay as REPORT has them')
     a.add_argument('--again', action='store_true', help='write REPORT again from its results, without any runs')
     a.add_argument('--scratch', help='folder of the data and the scratch files (default: OUT)')
     a.add_argument('--full', action='store_true', help='full sizes (default: a fourth)')
@@ -52,7 +53,7 @@ def options_of_call():
     a.add_argument('--patience', type=float, default=6, metavar='X',
                    help='most time of a limited run, as a multiple of the first one of its figure (default 6)')
     o = a.parse_args()
-    if o.again and not o.report: a.error('--again goes with --report')
+    if (o.again or o.keep) and not o.report: a.error('--again and --keep go with --report')
     o.shrink = o.shrink or (1 if o.full else 4)
     o.copies = o.copies or ([1, 2, 4, 10] if o.full else [1, 2, 4])
     o.headline = o.headline or ([10, 20] if o.full else [5, 10])
@@ -180,6 +181,7 @@ class Bench:
 def main():
     o = options_of_call()
     if o.again: return report.publish(o.report, report.kept(os.path.splitext(o.report)[0] + '.json'), None)
+    before = report.kept(os.path.splitext(o.report)[0] + '.json') if o.keep else None
     bench = Bench(o)
     plot.clear(o.out)
     if bench.no_limits: print(f'{bench.no_limits}: the runs with little memory are left out')
@@ -207,7 +209,10 @@ def main():
                 plot.draw(*found[-1], o.out)
                 if f.kind in ('surfaces', 'plane'): pictures.draw(f.name, bench.surfaces, plot.path(f, o.out))
                 report.write(f'{o.out}/thesis-experiments.md', report.facts(bench, found), '')
-        if o.report: report.publish(o.report, report.facts(bench, found), o.out)
+        if o.report:
+            facts = report.facts(bench, found)
+            if before: facts = report.with_earlier(facts, before, o.only or [])
+            report.publish(o.report, facts, o.out)
     finally:
         bench.close()
 

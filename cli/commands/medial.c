@@ -155,8 +155,9 @@ static brio_status try_plane(run *r, const brio_mesh *input, bool *done) {
         *done = false;
         return BRIO_OK;
     }
+    cli_suggest_labeling(r, status, input, false);
     if (status != BRIO_OK) goto done;
-    if (a->crust) TRY(cli_certify_edges(r, crust, NULL, true));
+    if (a->crust) TRY(cli_certify_edges(r, crust, NULL, true, NULL));
     if (a->crust) TRY(cli_write_to(r, a->crust, crust));
     TRY(write_shape(r, shape));
 done:

@@ -23,7 +23,11 @@ brio_status cli_planar_crust(run *r, const brio_mesh *points, brio_mesh **out);
 brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust, brio_mesh **shape);
 
 /** Reports the certificate of the edges of a mesh.   corners  NULL where they were not looked for.
- *  delaunay  the edges are of one Delaunay triangulation, so that none cross. */
-brio_status cli_certify_edges(run *r, const brio_mesh *mesh, const size_t *corners, bool delaunay);
+ *  delaunay  the edges are of one Delaunay triangulation, so that none cross.   found  NULL, or receives it. */
+brio_status cli_certify_edges(run *r, const brio_mesh *mesh, const size_t *corners, bool delaunay,
+                              brio_curve_certificate *found);
+
+/** Reports the certificate of the edges of a file; BRIO_ERR_CHECK where they branch, or end and are not to. */
+brio_status cli_check_edges(run *r, const brio_mesh *mesh, bool open);
 
 #endif

@@ -77,6 +77,8 @@ typedef struct brio_planar_crust_stats {
     size_t edges;                       /* of the crust */
     size_t poles, inner, outer;         /* vertices of the Voronoi diagram; by label */
     size_t confused;                    /* poles that had evidence for both labels when they were labeled */
+    size_t fat;                         /* edges whose Voronoi edge is less than 1.25 times as long: few along curves,
+                                           over a tenth where points lie on an area */
     double delaunay_seconds, crust_seconds;
 } brio_planar_crust_stats;
 

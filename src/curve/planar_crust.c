@@ -37,6 +37,9 @@ typedef struct {
 
 enum { NO_SIDE = 2 };
 
+/* A Voronoi edge up to this many times as long as its Delaunay edge is short, as in edges.c. */
+static const double SHORT = 1.25;
+
 /* The labels of triangles: 0 outer, 1 inner, NO_SIDE none yet. */
 typedef struct {
     brio_context *ctx;
@@ -330,10 +333,22 @@ done:
     return status;
 }
 
+/* Returns whether the edge opposite to corner i of triangle t has a short Voronoi edge: half the sum of the cotangents of the
+ * two angles opposite to it is the ratio of the two. */
+static bool is_fat(const crust *c, uint32_t t, uint32_t i) {
+    uint32_t mate = c->triangle[t].mate[i];
+    double a[2], b[2];
+    angle_at(c, t, i, a);
+    angle_at(c, mate / 4, mate % 4, b);
+    return a[0] * b[1] + b[0] * a[1] < 2 * SHORT * a[1] * b[1];
+}
+
 static void count_sides(const crust *c, brio_planar_crust_stats *s) {
-    for (size_t t = 0; t < c->num_finite; t++) {
+    for (uint32_t t = 0; t < c->num_finite; t++) {
         s->inner += c->side[t] == 1;
         s->confused += c->belief[t][0] > 0 && c->belief[t][1] > 0;
+        for (uint32_t i = 0; i < 3 && c->side[t] == 1; i++)
+            s->fat += c->side[c->triangle[t].mate[i] / 4] != 1 && is_fat(c, t, i);
     }
     s->poles = c->num_finite;
     s->outer = s->poles - s->inner;
