@@ -65,8 +65,9 @@ the thesis': each section names both, as far as the thesis says them.
 {machine}, {cores} cores, commit {commit}; {size}; {minutes:.0f} minutes in all. The load was {load:.1f} when it began: over the number of
 cores, the machine had other work, and times say little.{earlier}
 '''
-EARLIER = ''' Results of {figures} are those of an earlier run, of commit {commit}, {minutes:.0f} minutes
-at a load of {load:.1f} when it began.'''
+EARLIER = '''
+
+Of an earlier run, of commit {commit}, {minutes:.0f} minutes at a load of {load:.1f} when it began, are {figures}.'''
 
 
 def facts(bench, found):
@@ -98,8 +99,10 @@ def with_earlier(facts, before, names):
     taken = [name for name, results in figures_.items() if results and not facts['figures'][name]]
     facts = {**facts, 'figures': figures_, 'left_out': [x for x in facts['left_out'] if x.partition(':')[0] not in taken]}
     facts['plots'] = [name for name in figures_ if name in facts['plots'] or (name in taken and name in before['plots'])]
-    if taken: facts['earlier'] = {'figures': ', '.join(taken),
-                                  **{k: before[k] for k in ('commit', 'minutes', 'load')}}
+    older = [{**e, 'figures': [n for n in e['figures'] if n in taken]} for e in before.get('earlier', [])]
+    named = [n for e in older for n in e['figures']]
+    one = {'figures': [n for n in taken if n not in named], **{k: before[k] for k in ('commit', 'minutes', 'load')}}
+    facts['earlier'] = [e for e in [*older, one] if e['figures']]
     return facts
 
 
@@ -165,6 +168,10 @@ def verdict_of(g, results):
     return g.verdict(results) if results else (None, 'Left out')
 
 
+def earlier(facts):
+    return ''.join(EARLIER.format(**{**e, 'figures': ', '.join(e['figures'])}) for e in facts.get('earlier', []))
+
+
 def _section(f, g, results, plots, images):
     holds, words = verdict_of(g, results)
     f.write(f'\n## {g.name}: {g.title}\n\n{g.whose}: {g.claim}\n\nHere: **{WORDS[holds]}**. {words}.\n')
@@ -194,7 +201,7 @@ def write(path, facts, images):
         size = 'all points' if facts['shrink'] == 1 else f'every {facts["shrink"]}th point'
         f.write(HEAD.format(patience=facts['patience'], finishes=FINISHES, linear=LINEAR, nearly=NEARLY, slower=SLOWER, about=ABOUT,
                             tenth=TENTH, slightly=SLIGHTLY, noise=NOISE, wasted=WASTED, location=LOCATION, page=figures.PAGE,
-                            size=size, earlier=EARLIER.format(**facts['earlier']) if 'earlier' in facts else '', cgal=facts['cgal'] or '(left out: not installed)', **{k: facts[k] for k in ('machine', 'cores', 'load', 'commit', 'minutes')}))
+                            size=size, earlier=earlier(facts), cgal=facts['cgal'] or '(left out: not installed)', **{k: facts[k] for k in ('machine', 'cores', 'load', 'commit', 'minutes')}))
         if facts['no_limits']: f.write(f'\nRuns with little memory were left out: {facts["no_limits"]}.\n')
         if facts['left_out']: f.write(f'\nLeft out, the time being over: {"; ".join(facts["left_out"])}.\n')
         f.write('\n| figure | claim | here |\n|---|---|---|\n')

@@ -1,5 +1,5 @@
-/* brio check: the certificate of the faces of a file, the exact Delaunay check of its tetrahedra, or both; of a file of edges
- * alone the certificate of its curves. */
+/* brio check: the certificate of the faces of a file, the exact Delaunay check of its tetrahedra, or both; of a file of
+ * edges alone the certificate of its curves. */
 #include "cli/files/read_write.h"
 #include "cli/steps/certificate.h"
 #include "cli/run/commands.h"
@@ -118,8 +118,9 @@ const command cli_check = {
     .name = "check",
     .operands = "FILE",
     .summary = "certificate of a surface or of curves, or exact Delaunay check of tetrahedra",
-    .description = "Exit code 5 says that the file does not pass, the report and the message why. A file of edges alone "
-                   "has curves: whether they are closed, where they end, and whether they branch.",
+    .description =
+        "Exit code 5 says that the file does not pass, the report and the message why. A file of edges alone "
+        "has curves: whether they are closed, where they end, and whether they branch.",
     .examples = "brio check surface.ply\nclosed, manifold, oriented?\n"
                 "brio check surface.ply --self-intersections\ndo faces run through each other, too?\n"
                 "brio check surface.ply --open --samples scan.ply\nwhat of it did the scan see?\n"

@@ -138,7 +138,7 @@ static brio_status write_crust(run *r, const brio_mesh *crust) {
     return cli_write_to(r, a->crust, crust);
 }
 
-/* Makes the shape of points that lie in a plane, unless an option asks for what only space has.   done  whether it did. */
+/* Makes the shape of points in a plane, unless an option asks for what only space has.   done  whether it did. */
 static brio_status try_plane(run *r, const brio_mesh *input, bool *done) {
     const arguments *a = r->arguments;
     brio_mesh *crust = NULL, *shape = NULL;

@@ -506,28 +506,6 @@ done:
     return status;
 }
 
-/* Makes the power crust of points in a plane, which has one labeling and no other option of the one in space. */
-static brio_status planar_crust(run *r, const brio_mesh *points, brio_mesh **result) {
-    const power_crust_options *o = &((const arguments *)r->arguments)->crust;
-    const struct {
-        const char *name;
-        bool given;
-    } idle[] = {{"labeling", o->labeling != NO_LABELING && o->labeling != BRIO_LABELING_GREEDY},
-                {"sampling-density", o->sampling_density != 0},
-                {"sharp", o->sharp},
-                {"open", o->open != NULL},
-                {"simplify", o->simplify},
-                {"normals", o->normals != NULL}};
-    brio_status status = cli_planar_crust(r, points, result);
-    for (size_t i = 0; i < sizeof idle / sizeof *idle && status == BRIO_OK; i++)
-        if (idle[i].given)
-            return cli_fail(r, BRIO_ERR_ARGUMENT,
-                            "--%s is for points in space, and these lie in a plane: their power crust has the greedy "
-                            "labels and is closed",
-                            idle[i].name);
-    return status;
-}
-
 /* Tries curves: asked for, or the default of points that may be in a plane.   done  false: they are not. */
 static brio_status try_curves(run *r, const brio_mesh *points, brio_mesh **result, bool *done) {
     const arguments *a = r->arguments;
@@ -536,7 +514,8 @@ static brio_status try_curves(run *r, const brio_mesh *points, brio_mesh **resul
     *done = false;
     if (!asked && (a->method == NO_METHOD || crust)) TRY(cli_may_be_flat(r, points, &flat));
     if (!flat) return BRIO_OK;
-    status = crust ? planar_crust(r, points, result) : curves(r, points, result);
+    status = crust ? cli_planar_crust(r, points, &a->crust, a->crust.labeling == NO_LABELING, result)
+                   : curves(r, points, result);
     *done = asked || status != BRIO_ERR_NO_ANSWER || !strstr(brio_message(r->ctx), "not in a plane");
     if (!*done) status = BRIO_OK;
 done:

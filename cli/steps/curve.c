@@ -125,8 +125,8 @@ done:
 
 /* --- power crusts --- */
 
-/* From this share of fat edges on the points lie on an area. Chosen: 10 % along an open curve, where the crust closes it, 58 % of a
- * grid. */
+/* From this share of fat edges on the points lie on an area. Chosen: 10 % along an open curve, where the crust closes
+ * it, 58 % of a grid. */
 static const double MOST_FAT = 0.25;
 
 static brio_status crust_of_curves(run *r, const brio_mesh *points, brio_mesh **crust, brio_mesh **shape,
@@ -156,10 +156,31 @@ static void report_crust(run *r, const brio_planar_crust_stats *s) {
     cli_fact_text(f, "labeling", "greedy");
 }
 
-brio_status cli_planar_crust(run *r, const brio_mesh *points, brio_mesh **out) {
+static brio_status refuse_options_of_space(run *r, const power_crust_options *o, bool any_labeling) {
+    const struct {
+        const char *name;
+        bool given;
+    } idle[] = {{"labeling", !any_labeling && o->labeling != BRIO_LABELING_GREEDY},
+                {"sampling-density", o->sampling_density != 0},
+                {"sharp", o->sharp},
+                {"open", o->open != NULL},
+                {"simplify", o->simplify},
+                {"normals", o->normals != NULL}};
+    for (size_t i = 0; i < sizeof idle / sizeof *idle; i++)
+        if (idle[i].given)
+            return cli_fail(r, BRIO_ERR_ARGUMENT,
+                            "--%s is for points in space, and these lie in a plane: their power crust has the greedy "
+                            "labels and is closed",
+                            idle[i].name);
+    return BRIO_OK;
+}
+
+brio_status cli_planar_crust(run *r, const brio_mesh *points, const power_crust_options *options, bool any_labeling,
+                             brio_mesh **out) {
     brio_planar_crust_stats s = {0};
     brio_status status = BRIO_OK;
     TRY(crust_of_curves(r, points, out, NULL, &s));
+    TRY(refuse_options_of_space(r, options, any_labeling));
     r->lap = cli_clock();
     TRY(carry(r, points, *out));
     report_crust(r, &s);

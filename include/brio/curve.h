@@ -73,11 +73,11 @@ BRIO_API brio_status brio_mesh_curve_certificate(brio_context *ctx, const brio_m
 
 typedef struct brio_planar_crust_stats {
     size_t size;
-    size_t points, samples;             /* the points; their distinct positions */
-    size_t edges;                       /* of the crust */
-    size_t poles, inner, outer;         /* vertices of the Voronoi diagram; by label */
-    size_t confused;                    /* poles that had evidence for both labels when they were labeled */
-    size_t fat;                         /* edges whose Voronoi edge is less than 1.25 times as long: few along curves,
+    size_t points, samples;     /* the points; their distinct positions */
+    size_t edges;               /* of the crust */
+    size_t poles, inner, outer; /* vertices of the Voronoi diagram; by label */
+    size_t confused;            /* poles that had evidence for both labels when they were labeled */
+    size_t fat;                 /* edges whose Voronoi edge is less than 1.25 times as long: few along curves,
                                            over a tenth where points lie on an area */
     double delaunay_seconds, crust_seconds;
 } brio_planar_crust_stats;

@@ -430,7 +430,6 @@ PyMethodDef surface_methods[] = {
     SURFACE(surface,
             "a mesh and a report; number: the distance; out: the sample of each vertex, or normals of the points."),
     SURFACE(power_shape, "a mesh."),
-    SURFACE(cocone, "a mesh."),
     SURFACE(curve, "a mesh of edges."),
     SURFACE(spanning_tree, "a mesh of edges."),
     SURFACE(planar_crust, "a mesh of edges."),

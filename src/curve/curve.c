@@ -11,7 +11,6 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
-#include "curve/flat_points.h"
 #include "curve/samples_mesh.h"
 #include "curve/work.h"
 #include <math.h>

@@ -1,16 +1,16 @@
 /* The power crust of points in a plane: closed curves through them, and the power shape of what they enclose.
  *
- *   points -> coordinates in their plane -> Delaunay triangles, infinite ones included -> beliefs, outer and inner, by the
- *   greedy labels -> the edges between outer and inner triangles; the Voronoi edges between inner triangles
+ *   points -> coordinates in their plane -> Delaunay triangles, infinite ones too -> greedy labels, outer and inner
+ *   -> the edges between outer and inner triangles; the Voronoi edges between inner triangles
  *
- * In the plane all vertices of the Voronoi diagram are poles. The power diagram of their balls, which are the circumcircles
- * of the Delaunay triangles, is the Delaunay triangulation itself: two circumcircles have equal power on the line through the
- * edge that their triangles share, and a point has the least power in the circle of the triangle that holds it. So the
- * crust needs no second triangulation, consists of Delaunay edges, and is exact. Outer balls with centres at infinity are
- * the half-planes of the infinite triangles.
+ * In the plane all vertices of the Voronoi diagram are poles. The power diagram of their balls, which are the
+ * circumcircles of the Delaunay triangles, is the Delaunay triangulation itself: two circumcircles have equal power on
+ * the line through the edge that their triangles share, and a point has the least power in the circle of the triangle
+ * that holds it. So the crust needs no second triangulation, consists of Delaunay edges, and is exact. Outer balls with
+ * centres at infinity are the half-planes of the infinite triangles.
  *
- * The balls of two triangles meet at an angle that the angles opposite of their edge tell: its cosine, negated, is that of
- * the sum of the two, negated. An infinite triangle has an angle of 0.
+ * The weight of two balls, -cos of the angle at which they meet, is -cos of the sum of the angles opposite to the edge
+ * of their triangles. An infinite triangle has an angle of 0.
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figures 3.4 and 3.8.
  *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001.
@@ -18,7 +18,6 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
-#include "curve/flat_points.h"
 #include "curve/samples_mesh.h"
 #include <math.h>
 
@@ -32,7 +31,7 @@ typedef struct {
 #define HEAP_ABOVE(a, b, user)                                                                                         \
     ((a).priority > (b).priority || ((a).priority == (b).priority && (a).triangle < (b).triangle))
 #define HEAP_DOWN sink
-#define HEAP_UP rise
+#define HEAP_UP   rise
 #include "base/heap.h"
 
 enum { NO_SIDE = 2 };
@@ -209,7 +208,8 @@ static brio_status offer(crust *c, uint32_t t, int side, double strength) {
 
 static brio_status settle(crust *c, uint32_t t, int side, double strength) {
     c->side[t] = (uint8_t)side;
-    for (uint32_t i = 0; i < 3; i++) BRIO_FORWARD(offer(c, c->triangle[t].mate[i] / 4, side, strength * depth(c, t, i)));
+    for (uint32_t i = 0; i < 3; i++)
+        BRIO_FORWARD(offer(c, c->triangle[t].mate[i] / 4, side, strength * depth(c, t, i)));
     for (uint32_t k = c->begin[t]; k < c->begin[t + 1]; k++) {
         uint32_t p = c->sample[k], other = c->poles[p][c->poles[p][0] == t];
         BRIO_FORWARD(offer(c, other, !side, strength * c->opposite[p]));
@@ -217,7 +217,7 @@ static brio_status settle(crust *c, uint32_t t, int side, double strength) {
     return brio_look(c->ctx, 1);
 }
 
-/* Both infinite triangles of a row on the hull stand for its first pole; the list has the last one, and all are outer. */
+/* Both infinite triangles of a row on the hull stand for its first pole; the list has the last one. All are outer. */
 static brio_status label_all(crust *c) {
     brio_status status = BRIO_OK;
     for (size_t t = 0; t < c->count; t++) c->side[t] = is_finite(c, (uint32_t)t) ? NO_SIDE : 0;
@@ -333,8 +333,8 @@ done:
     return status;
 }
 
-/* Returns whether the edge opposite to corner i of triangle t has a short Voronoi edge: half the sum of the cotangents of the
- * two angles opposite to it is the ratio of the two. */
+/* Returns whether the edge opposite to corner i of triangle t has a short Voronoi edge: half the sum of the cotangents
+ * of the two angles opposite to it is the ratio of the two. */
 static bool is_fat(const crust *c, uint32_t t, uint32_t i) {
     uint32_t mate = c->triangle[t].mate[i];
     double a[2], b[2];

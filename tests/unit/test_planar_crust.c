@@ -18,7 +18,8 @@ static size_t sample(const ring *rings, int num_rings, double *out) {
     size_t n = 0;
     for (int c = 0; c < num_rings; c++)
         for (int i = 0; i < rings[c].count; i++, n++) {
-            double angle = 2 * acos(-1) * i / rings[c].count, r = rings[c].radius * (1 + rings[c].swing * sin(5 * angle));
+            double angle = 2 * acos(-1) * i / rings[c].count,
+                   r = rings[c].radius * (1 + rings[c].swing * sin(5 * angle));
             double x = rings[c].x + r * cos(angle), y = rings[c].y + r * sin(angle);
             out[3 * n] = x, out[3 * n + 1] = 0.6 * y, out[3 * n + 2] = 0.8 * y;
         }
@@ -89,7 +90,8 @@ static void balls_of_the_shape_are_empty(void) {
     size_t n = sample(STAR, 1, p);
     EXPECT(brio_planar_crust(ctx, p, n, &mesh, &shape, NULL) == BRIO_OK);
     for (size_t v = 0; shape && v < shape->num_vertices; v++) {
-        const double *c = shape->vertices + 3 * v, radius = ((const double *)brio_mesh_property(shape, "radius")->data)[v];
+        const double *c = shape->vertices + 3 * v,
+                     radius = ((const double *)brio_mesh_property(shape, "radius")->data)[v];
         double least = INFINITY;
         for (size_t i = 0; i < n; i++)
             least = fmin(least, hypot(hypot(p[3 * i] - c[0], p[3 * i + 1] - c[1]), p[3 * i + 2] - c[2]));
