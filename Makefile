@@ -144,6 +144,8 @@ votes: all
 # Root, for the limits of memory: docs/measured/benchmarks.md.
 thesis: all
 	@sh scripts/setup.sh thesis
+	@cmake -S . -B build-bench -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_PEERS=ON
+	@cmake --build build-bench -j $(JOBS) --target cgal_hierarchy || echo "thesis: without CGAL" >&2
 	/usr/bin/python3 bench/thesis/thesis.py $(BRIO) $(THESIS)
 
 # Other processors, systems and compilers give the same bits: docs/measured/machines.md.

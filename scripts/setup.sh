@@ -80,6 +80,7 @@ missing() {
     fi
     if [ "$1" = thesis ]; then
         has_python_with numpy || echo python3-numpy
+        has_python_with scipy || echo python3-scipy
         has gnuplot || echo gnuplot-nox
     fi
     if [ "$1" = machines ]; then
@@ -119,7 +120,7 @@ missing_peers() {
         has clang-tidy || echo clang-tidy
         has cppcheck || echo cppcheck
     fi
-    case $1 in build | model | threads | analyze | fuzz | coverage | oracles | quality | thesis | deb) return 0 ;; esac
+    case $1 in build | model | threads | analyze | fuzz | coverage | oracles | quality | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -139,8 +140,9 @@ missing_peers() {
         has mold || echo mold # links the tests' programs
         return 0
     fi
+    [ "$1" != thesis ] || has g++ || echo g++
     [ -d /usr/include/CGAL ] || echo libcgal-dev
-    [ "$1" != rivals ] || return 0
+    case $1 in rivals | thesis) return 0 ;; esac
     [ -d /usr/include/libqhull_r ] || echo libqhull-dev
     [ -d /usr/include/voro++ ] || echo voro++-dev
     if [ "$1" = crosscheck ]; then

@@ -26,6 +26,23 @@ def write_copies(points, copies, path):
             (points + np.array([i * step, 0, 0])).astype('<f4').tofile(f)
 
 
+BLOCK = 2000  # points of a block, about
+
+
+def sequence(points, order):
+    """The order of insertion, as `brio delaunay --order` describes it: blocks are cells of an octree, depth first, and points of
+    one block are in random order; in a BRIO, of rounds each of which has half of the points before it."""
+    rng = np.random.default_rng(3)
+    shuffled = rng.permutation(len(points))
+    if order == 'random': return shuffled
+    levels = max(1, int(np.ceil(np.log2(max(1, len(points) / BLOCK)) / 2)))  # a surface meets a quarter of the cells of a level
+    extent = np.ptp(points, axis=0).max() or 1
+    cell = np.minimum((points - points.min(0)) / extent * 2 ** levels, 2 ** levels - 1).astype(np.int64)
+    code = sum(((cell[:, k] >> bit) & 1) << (3 * bit + k) for bit in range(levels) for k in range(3))
+    rounds = np.zeros(len(points), int) if order == 'octree' else -rng.geometric(0.5, len(points))
+    return shuffled[np.lexsort((code[shuffled], rounds[shuffled]))]
+
+
 class Data:
     """Sets by name, each made when it is first asked for, all removed by close()."""
 
@@ -100,6 +117,14 @@ class Data:
         else:
             self._surface(path, {'b1': 1, 'b2': 2}[name])
         self.made[name] = path
+        return path
+
+    def raw(self, name, order):
+        """The points of a set as doubles, in an order of insertion: random, octree or brio-octree."""
+        path = f'{self.path(name)}.{order}.raw'
+        if not os.path.exists(path):
+            points = read_points(self.path(name)).astype('<f8')
+            points[sequence(points, order)].tofile(path)
         return path
 
     def points(self, name):

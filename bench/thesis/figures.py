@@ -1,15 +1,17 @@
-"""What the thesis shows in chapters 4 and 5, and the runs that show it here.
+"""What the thesis shows in chapters 3 to 5, and the runs that show it here; those of chapter 3 are in chapter3.py.
 
 The thesis' programs are strategies of point location here: hull the history DAG, searched depth first up to the first
-conflict that is alive, CGAL the Delaunay hierarchy, pyramid jump-and-walk, and pyramid "with the simplified point location" the walk from the last point. Its insertion orders are
+conflict that is alive, CGAL the Delaunay hierarchy, pyramid jump-and-walk, and pyramid "with the simplified point location" the walk from the last point. `CGAL` is that library itself, with its hierarchy and its
+own storage. Insertion orders are
 `random`, `brio-octree` (its BRIO) and `octree` (pure locality); `brio` is the tuned order of this program.
 
 Memory is given as a share of what the same work takes without a limit: the thesis' machines held about as much of
 theirs. See `--patience` for when a run is stopped."""
 import collections
+import chapter3
 from verdicts import (LINEAR, TENTH, block_sizes, both, copies_scale, does_not_finish, faster, finishes, headline, history_sizes,
                       linear_tetrahedra, locality, location_share, model, near_linear, order_time, slower, thrash_in_turn,
-                      thrashes, wasted_search, within)
+                      thrashes, thrashes_after, wasted_search, within)
 
 # share: of the memory without a limit, (share, strategy) of what another strategy takes, bytes, or None for no limit;
 # clock: the run whose time a point says when this one is stopped; needs: a run that has to be done before
@@ -71,7 +73,7 @@ def pages(kind, points):
 def figures(uniform, memory, copies, headline_copies):
     """All figures. uniform: points of the uniform set; memory: bytes of the headline; copies: numbers of copies."""
     four = [c for c in copies if c <= 4][-1]
-    return [
+    return chapter3.figures(Figure) + [
         most_points(memory, headline_copies, [8, 4, 2]),
         eighth('eighth-uniform', f'{uniform / 1e6:g} M uniform points', f'uniform-{uniform}'),
         eighth('eighth-happy', f'{four} copies of happy', f'happy-{four}'),
@@ -83,6 +85,8 @@ def figures(uniform, memory, copies, headline_copies):
             hull('hull', 'b1', 'random', (0.6, 'jump')), run('CGAL hierarchy', 'b1', 'random', 'hierarchy', (0.6, 'jump')),
             run('pyramid', 'b1', 'random', 'jump', 0.6)],
             'Near-linear until memory is exceeded, then thrashing; hull first, then CGAL, pyramid last.', thrash_in_turn),
+        Figure('4.6-CGAL', 'time', 'CGAL itself in random order', [run('random', 'b1', 'random', 'CGAL', 0.6)],
+               'Near-linear until memory is exceeded, then thrashing.', lambda r: thrashes_after(r, 'random')),
         Figure('4.7', 'location', 'time of point location and all time', [
             hull('hull', 'mtd', 'random'), run('pyramid', 'mtd', 'random', 'jump')],
             'Location is a significant, but not overwhelming, fraction of the time.', location_share),
@@ -92,6 +96,10 @@ def figures(uniform, memory, copies, headline_copies):
             lambda r: both(thrashes(r, 'random'), near_linear(r, 'BRIO'))),
         Figure('5.2', 'time', 'CGAL hierarchy on happy: BRIO and random order', [
             run('BRIO', 'happy-1', 'brio-octree', 'hierarchy', 0.125), run('random', 'happy-1', 'random', 'hierarchy', 0.125)],
+            'Random order thrashes at a tenth of the points, BRIO finishes.',
+            lambda r: both(thrashes(r, 'random', TENTH), finishes(r, 'BRIO'))),
+        Figure('5.2-CGAL', 'time', 'CGAL itself on happy: BRIO and random order', [
+            run('BRIO', 'happy-1', 'brio-octree', 'CGAL', 0.125), run('random', 'happy-1', 'random', 'CGAL', 0.125)],
             'Random order thrashes at a tenth of the points, BRIO finishes.',
             lambda r: both(thrashes(r, 'random', TENTH), finishes(r, 'BRIO'))),
         Figure('5.3', 'time', 'pyramid with jump-and-walk on happy, BRIO', [
@@ -118,6 +126,9 @@ def figures(uniform, memory, copies, headline_copies):
             lambda r: faster(r, 'octree', 'BRIO', slightly=True, not_before=True)),
         Figure('5.9', 'time', 'CGAL hierarchy on happy: BRIO and octree order', [
             run('BRIO', 'happy-1', 'brio-octree', 'hierarchy', 0.125), run('octree', 'happy-1', 'octree', 'hierarchy', 0.125)],
+            'BRIO is slightly faster.', lambda r: faster(r, 'BRIO', 'octree', slightly=True)),
+        Figure('5.9-CGAL', 'time', 'CGAL itself on happy: BRIO and octree order', [
+            run('BRIO', 'happy-1', 'brio-octree', 'CGAL', 0.125), run('octree', 'happy-1', 'octree', 'CGAL', 0.125)],
             'BRIO is slightly faster.', lambda r: faster(r, 'BRIO', 'octree', slightly=True)),
         Figure('5.10', 'time', 'the walk on happy: octree order and BRIO', [
             run('BRIO', 'happy-1', 'brio-octree', 'walk', 0.125), run('octree', 'happy-1', 'octree', 'walk', 0.125)],

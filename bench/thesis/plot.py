@@ -44,13 +44,13 @@ def _script(figure, results, path):
 
 def clear(folder):
     """Removes the plots of an earlier call, which a report would take for its own."""
-    for old in glob.glob(f'{folder}/figure-*.svg'): os.remove(old)
+    for old in glob.glob(f'{folder}/figure-*.svg') + glob.glob(f'{folder}/figure-*.png'): os.remove(old)
 
 
-def path(figure, folder): return f'{folder}/figure-{figure.name}.svg'
+def path(figure, folder): return f'{folder}/figure-{figure.name}.{"png" if figure.kind == "surfaces" else "svg"}'
 
 
 def draw(figure, results, folder):
-    if figure.kind in ('table', 'pages', 'none'): return
+    if figure.kind in ('table', 'pages', 'none', 'surfaces', 'plane'): return
     script = _script(figure, results, path(figure, folder))
     if script and shutil.which('gnuplot'): subprocess.run(['gnuplot'], input=script.encode(), check=True)

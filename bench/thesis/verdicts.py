@@ -42,7 +42,9 @@ def both(*verdicts):
     return (all(known) if len(known) == len(verdicts) else None if all(known) else False), '. '.join(w for _, w in verdicts)
 
 
-def an_insertion(r): return f'{r["created"] / r["vertices"]:.1f} tetrahedra created an insertion'
+def an_insertion(r):
+    if 'created' not in r: return f'{r["tetrahedra"] / r["vertices"]:.1f} tetrahedra a point'
+    return f'{r["created"] / r["vertices"]:.1f} tetrahedra created an insertion'
 
 
 def slower(results, slow, fast, times):
@@ -181,6 +183,14 @@ def thrashes(results, label, share=None):
     if at is None: return (False if r['status'] == 'done' else None), words
     if share is None: return True, words
     return share[0] <= at / r['points'] <= share[1], words + f': at {at / r["points"]:.0%} of the points'
+
+
+def thrashes_after(results, label):
+    """Whether a run is near-linear, then thrashes."""
+    if label not in results: return missing(results, label)
+    words, at, calm = thrashing(label, results[label])
+    if at is None: return (False if results[label]['status'] == 'done' else None), words
+    return calm, words
 
 
 def finishes(results, label):

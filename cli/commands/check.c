@@ -1,8 +1,10 @@
-/* brio check: the certificate of the faces of a file, the exact Delaunay check of its tetrahedra, or both. */
+/* brio check: the certificate of the faces of a file, the exact Delaunay check of its tetrahedra, or both; of a file of
+ * edges alone the certificate of its curves. */
 #include "cli/files/read_write.h"
 #include "cli/steps/certificate.h"
 #include "cli/run/commands.h"
 #include "cli/steps/coverage.h"
+#include "cli/steps/curve.h"
 #include "cli/steps/hints.h"
 #include "cli/steps/weights.h"
 #include <stdlib.h>
@@ -15,7 +17,7 @@ typedef struct arguments {
 
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
-    {"open", 0, OPTION_FLAG, offsetof(arguments, open), NULL, "a surface may have a boundary", 0},
+    {"open", 0, OPTION_FLAG, offsetof(arguments, open), NULL, "a surface may have a boundary, curves ends", 0},
     {"self-intersections", 0, OPTION_FLAG, offsetof(arguments, self_intersections), NULL,
      "faces may not run through each other; counts the pairs that do", 0},
     {"samples", 0, OPTION_INPUT, offsetof(arguments, samples), "FILE",
@@ -60,7 +62,7 @@ static brio_status refuse_idle(run *r, const arguments *a, const brio_mesh *mesh
     } given[] = {{"weights", "tetrahedra", a->weights.file && !mesh->num_tetrahedra},
                  {"weights-mod", "tetrahedra", a->weights.exponent != NO_EXPONENT && !mesh->num_tetrahedra},
                  {"unweighted", "tetrahedra", a->weights.unweighted && !mesh->num_tetrahedra},
-                 {"open", "faces", a->open && !mesh->num_faces},
+                 {"open", "faces or edges", a->open && !mesh->num_faces && !mesh->num_edges},
                  {"self-intersections", "faces", a->self_intersections && !mesh->num_faces},
                  {"samples", "faces", a->samples && !mesh->num_faces}};
     for (size_t i = 0; i < sizeof given / sizeof *given; i++)
@@ -89,7 +91,8 @@ static brio_status check(run *r) {
     TRY(cli_check_weights_options(r, &a->weights));
     if (r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "check writes no file; -o has no meaning here");
     TRY(cli_read(r, r->operands[0], &mesh));
-    if (!mesh->num_faces && !mesh->num_tetrahedra) {
+    bool curves = !mesh->num_faces && !mesh->num_tetrahedra;
+    if (curves && !mesh->num_edges) {
         cli_hint(r, HINT_SURFACE);
         FAIL(r, BRIO_ERR_FORMAT, "%s: expected faces or tetrahedra to check, found points only", r->operands[0]);
     }
@@ -97,6 +100,8 @@ static brio_status check(run *r) {
     cli_fact_count(&r->facts, "vertices", mesh->num_vertices);
     cli_fact_count(&r->facts, "faces", mesh->num_faces);
     cli_fact_count(&r->facts, "tetrahedra", mesh->num_tetrahedra);
+    if (curves) cli_fact_count(&r->facts, "edges", mesh->num_edges);
+    if (curves) status = blame_file(r, cli_check_edges(r, mesh, a->open));
     if (mesh->num_tetrahedra) TRY(check_tetrahedra(r, a, mesh));
     unsigned how = (a->open ? CERTIFY_OPEN : 0u) | (a->self_intersections ? CERTIFY_EMBEDDED : 0u);
     if (mesh->num_faces) status = blame_file(r, cli_certify(r, mesh, how | CERTIFY_INPUT));
@@ -114,8 +119,10 @@ done:
 const command cli_check = {
     .name = "check",
     .operands = "FILE",
-    .summary = "certificate of a surface, or exact Delaunay check of tetrahedra",
-    .description = "Exit code 5 says that the file does not pass, the report and the message why.",
+    .summary = "certificate of a surface or of curves, or exact Delaunay check of tetrahedra",
+    .description =
+        "Exit code 5 says that the file does not pass, the report and the message why. A file of edges alone "
+        "has curves: whether they are closed, where they end, and whether they branch.",
     .examples = "brio check surface.ply\nclosed, manifold, oriented?\n"
                 "brio check surface.ply --self-intersections\ndo faces run through each other, too?\n"
                 "brio check surface.ply --open --samples scan.ply\nwhat of it did the scan see?\n"

@@ -1,12 +1,14 @@
 /* brio medial: the medial axis of a surface, known by points of it or as a closed mesh. */
 #include "cli/steps/certificate.h"
 #include "cli/run/commands.h"
+#include "cli/steps/curve.h"
 #include "cli/steps/estimate.h"
 #include "cli/files/files.h"
 #include "cli/files/read_write.h"
 #include "cli/steps/power_crust.h"
 #include "cli/steps/properties.h"
 #include <math.h>
+#include <string.h>
 
 typedef struct arguments {
     int labeling, sides, noise;
@@ -136,16 +138,46 @@ static brio_status write_crust(run *r, const brio_mesh *crust) {
     return cli_write_to(r, a->crust, crust);
 }
 
+/* Makes the shape of points in a plane, unless an option asks for what only space has.   done  whether it did. */
+static brio_status try_plane(run *r, const brio_mesh *input, bool *done) {
+    const arguments *a = r->arguments;
+    brio_mesh *crust = NULL, *shape = NULL;
+    brio_status status = BRIO_OK;
+    bool greedy = a->labeling == defaults.labeling || a->labeling == BRIO_LABELING_GREEDY;
+    *done = false;
+    if (input->num_faces || a->sides != BRIO_SIDES_INNER || !greedy || a->simplify || a->scale != 0 ||
+        a->redundancy > 0 || a->sampling_density != 0 || a->sharp || a->noise || a->spacing > 0)
+        return BRIO_OK;
+    TRY(cli_may_be_flat(r, input, done));
+    if (!*done) return BRIO_OK;
+    status = cli_planar_shape(r, input, &crust, &shape);
+    if (status == BRIO_ERR_NO_ANSWER && strstr(brio_message(r->ctx), "not in a plane")) {
+        *done = false;
+        return BRIO_OK;
+    }
+    cli_suggest_labeling(r, status, input, false);
+    if (status != BRIO_OK) goto done;
+    if (a->crust) TRY(cli_certify_edges(r, crust, NULL, true, NULL));
+    if (a->crust) TRY(cli_write_to(r, a->crust, crust));
+    TRY(write_shape(r, shape));
+done:
+    brio_mesh_free(crust);
+    brio_mesh_free(shape);
+    return status;
+}
+
 static brio_status medial(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL, *samples = NULL, *shape = NULL, *crust = NULL;
     brio_power_shape_stats s = {0};
     brio_status status = BRIO_OK;
     int labeling = a->labeling;
-    bool by_mesh;
+    bool by_mesh, planar;
     TRY(check_arguments(r));
     TRY(cli_require_output(r, false));
     TRY(cli_read(r, r->operands[0], &input));
+    TRY(try_plane(r, input, &planar));
+    if (planar) goto done;
     TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
     uint64_t work;
     size_t usual;

@@ -509,12 +509,13 @@ done:
 /* Tries curves: asked for, or the default of points that may be in a plane.   done  false: they are not. */
 static brio_status try_curves(run *r, const brio_mesh *points, brio_mesh **result, bool *done) {
     const arguments *a = r->arguments;
-    bool asked = method_of(a) == CURVES, flat = asked;
+    bool asked = method_of(a) == CURVES, crust = method_of(a) == POWER_CRUST, flat = asked;
     brio_status status = BRIO_OK;
     *done = false;
-    if (a->method == NO_METHOD && !asked && !has_power_crust_options(a)) TRY(cli_may_be_flat(r, points, &flat));
+    if (!asked && (a->method == NO_METHOD || crust)) TRY(cli_may_be_flat(r, points, &flat));
     if (!flat) return BRIO_OK;
-    status = curves(r, points, result);
+    status = crust ? cli_planar_crust(r, points, &a->crust, a->crust.labeling == NO_LABELING, result)
+                   : curves(r, points, result);
     *done = asked || status != BRIO_ERR_NO_ANSWER || !strstr(brio_message(r->ctx), "not in a plane");
     if (!*done) status = BRIO_OK;
 done:

@@ -101,6 +101,7 @@ const glossary_line cli_glossary[] = {
      STYLE_PLAIN},
     {"tree", NULL, "vertices", NULL, "distinct positions", LINE_PLAIN, STYLE_PLAIN},
     {"tree", NULL, "edges", NULL, "edges of the tree", LINE_PLAIN, STYLE_PLAIN},
+    {"check", NULL, "edges", NULL, "edges of the curves, of a file that has no faces", LINE_PLAIN, STYLE_PLAIN},
     {"tree", NULL, "length", NULL, "the sum of their lengths", LINE_PLAIN, STYLE_PLAIN},
     {"tree", NULL, "exact_calls", NULL, "comparisons of lengths that floating-point arithmetic did not settle",
      LINE_VERBOSE, STYLE_PLAIN},

@@ -22,7 +22,7 @@
 #define HINT_LIMIT        "a larger --max-memory"
 #define HINT_PIECES       "--method cocone --pieces %d works through the points in parts, one after the other"
 #define HINT_ESTIMATE     "'brio info FILE' estimates what each command needs"
-#define HINT_OPEN         "--open accepts a surface with a boundary"
+#define HINT_OPEN         "--open accepts a surface with a boundary, or curves with ends"
 #define HINT_REPORT       "'brio check --help --verbose' explains the lines of the report"
 #define HINT_ISO          "'brio iso' reads maps and atoms; 'brio surface' makes surfaces of points"
 #define HINT_INPUT_FORMAT "--input-format EXT names the format of a file whose name does not tell it"

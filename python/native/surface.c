@@ -288,6 +288,46 @@ static PyObject *power_shape(PyObject *module, PyObject *args) {
     return result;
 }
 
+static PyObject *curve(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    brio_curve_options o = {0};
+    const option table[] = {{"open", DOUBLE, &o.open}, {"closed", INT, &o.closed}, {NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, input_open, 'd', 3))
+        RUN_SURFACE(table, brio_curve(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
+static PyObject *spanning_tree(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    const option table[] = {{NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, input_open, 'd', 3))
+        RUN_SURFACE(table, brio_spanning_tree(c.ctx, s.p.data, s.p.rows, &mesh, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
+static PyObject *planar_crust(PyObject *module, PyObject *args) {
+    surface_call s;
+    call c;
+    brio_status status;
+    brio_mesh *mesh = NULL;
+    PyObject *result = NULL;
+    const option table[] = {{NULL, INT, NULL}};
+    if (!open_surface_call(&s, args, input_open, 'd', 3))
+        RUN_SURFACE(table, brio_planar_crust(c.ctx, s.p.data, s.p.rows, &mesh, NULL, NULL));
+    close_surface_call(&s);
+    return result;
+}
+
 /* Of options: polygons. The extra array receives the point of each vertex. */
 static PyObject *convex_hull(PyObject *module, PyObject *args) {
     surface_call s;
@@ -390,6 +430,9 @@ PyMethodDef surface_methods[] = {
     SURFACE(surface,
             "a mesh and a report; number: the distance; out: the sample of each vertex, or normals of the points."),
     SURFACE(power_shape, "a mesh."),
+    SURFACE(curve, "a mesh of edges."),
+    SURFACE(spanning_tree, "a mesh of edges."),
+    SURFACE(planar_crust, "a mesh of edges."),
     SURFACE(convex_hull, "a mesh; out: the point of each vertex."),
     {"surface_methods", list_surface_methods, METH_NOARGS,
      "surface_methods(): tuples of name, number, options, traits"},

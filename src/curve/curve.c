@@ -10,65 +10,14 @@
  * Differs from the papers: links.c and gaps.c say how. */
 #include "base/float_state.h"
 #include "base/memory.h"
-#include "base/scale.h"
 #include "base/versioned.h"
 #include "curve/samples_mesh.h"
 #include "curve/work.h"
-#include "order/canonical_points.h"
 #include <math.h>
-
-/* Points off their plane by at most this share of their extent are taken for points of it: as single precision, or
- * decimals of a file, leave them. Chosen. */
-static const double THIN = 0x1p-20;
 
 /* From this share of fat links on the points lie on an area and not on curves. Measured: none along curves, 12 to 50 %
  * of points at random or on a shaken grid. */
 static const double MOST_FAT = 0.1;
-
-/* --- points to rows --- */
-
-/* The points in canonical order, times a power of two that brings the greatest coordinate near 1, and their plane. */
-typedef struct {
-    uint32_t *order; /* the point of each row */
-    double *rows, (*at)[2];
-    int exponent;
-    brio_plane_frame frame;
-} flat_points;
-
-static double extent_of(const double *points, size_t num_points) {
-    double extent = 0;
-    for (size_t k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
-        for (size_t i = 0; i < num_points; i++) {
-            low = fmin(low, points[3 * i + k]);
-            high = fmax(high, points[3 * i + k]);
-        }
-        extent = fmax(extent, high - low);
-    }
-    return extent;
-}
-
-/* Takes the points; writes their coordinates in the plane. */
-static brio_status take_points(brio_context *ctx, const double *points, size_t n, flat_points *out) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_refuse_points(ctx, points, n));
-    BRIO_REQUIRE(ctx, n > 0, BRIO_ERR_NO_ANSWER, "no points, so no curve");
-    BRIO_TRY(brio_canonical_points(ctx, points, n, &out->order));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->rows, 3 * n));
-    brio_copy_points(points, out->order, n, out->rows);
-    out->exponent = brio_exponent(brio_greatest(out->rows, 3 * n));
-    BRIO_TRY(brio_scale(ctx, out->rows, 3 * n, -out->exponent, out->rows));
-    BRIO_TRY(brio_plane_fit(ctx, out->rows, n, &out->frame));
-    BRIO_REQUIRE(ctx, out->frame.dimension < 3 || out->frame.thickness <= THIN * extent_of(out->rows, n),
-                 BRIO_ERR_NO_ANSWER, "the points are not in a plane: one is %g off the plane that fits them best",
-                 ldexp(out->frame.thickness, out->exponent));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->at, n));
-    brio_plane_project(&out->frame, out->rows, n, *out->at);
-done:
-    brio_release(ctx, out->rows);
-    out->rows = NULL;
-    return status;
-}
 
 /* --- the result --- */
 
@@ -170,7 +119,7 @@ brio_status brio_curve(brio_context *ctx, const double *points, size_t num_point
     brio_status status = BRIO_OK;
     brio_curve_options o = {0};
     brio_curve_stats mine = {.points = num_points};
-    flat_points flat = {.frame = {0}};
+    brio_flat_points flat = {.frame = {0}};
     brio_curve_work w = {.ctx = ctx, .num_rows = num_points};
     brio_curve_chains chains = {0};
     *out = NULL;
@@ -179,7 +128,7 @@ brio_status brio_curve(brio_context *ctx, const double *points, size_t num_point
     BRIO_REQUIRE(ctx, o.open >= 0 && (o.open == 0 || o.open >= 1), BRIO_ERR_ARGUMENT,
                  "open is %g; it is 0, or 1 or more", o.open);
     double start = brio_seconds();
-    BRIO_TRY(take_points(ctx, points, num_points, &flat));
+    BRIO_TRY(brio_flat_points_take(ctx, points, num_points, &flat));
     w.at = (const double(*)[2])flat.at;
     BRIO_TRY(brio_curve_edges(&w));
     mine.delaunay_seconds = brio_seconds() - start;
@@ -194,7 +143,6 @@ brio_status brio_curve(brio_context *ctx, const double *points, size_t num_point
 done:
     brio_curve_work_free(&w);
     brio_curve_chains_free(ctx, &chains);
-    brio_release(ctx, flat.order);
-    brio_release(ctx, flat.at);
+    brio_flat_points_free(ctx, &flat);
     return status;
 }

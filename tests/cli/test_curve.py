@@ -96,6 +96,48 @@ class Curves(CliTest):
         for name in ("o.vtp", "o.vtu", "o.vtk", "o.glb"):
             self.expect(0, "surface", ring, "-o", self.path(name), "--quiet")
 
+    def test_power_crusts(self):
+        """Rings have the links of their samples and a shape of the right Euler characteristic; others are closed, too."""
+        ring = [(r * math.cos(2 * math.pi * i / n), r * math.sin(2 * math.pi * i / n)) for r, n in ((1, 90), (0.4, 50)) for i in range(n)]
+        for points in (ring, turned(ring)):
+            facts, joined = self.curves_of(points, "--method", "power-crust")
+            c = facts["certificate"]
+            self.assertEqual((facts["method"], facts["labeling"], facts["edges"]), ("power-crust", "greedy", 140))
+            self.assertEqual((c["closed"], c["manifold"], c["components"], c["loops"], c["isolated"]), (True, True, 2, 2, 0))
+            self.assertEqual({tuple(sorted(pair)) for pair in joined},
+                             {tuple(sorted((first + i, first + (i + 1) % n))) for first, n in ((0, 90), (90, 50)) for i in range(n)})
+            shape = self.facts("medial", self.path("c.xyz"), "-o", self.path("m.ply"), "--crust", self.path("k.ply"))
+            self.assertEqual((shape["vertices"], shape["edges"], shape["labeling"]), (facts["internals"]["inner"], shape["vertices"], "greedy"))
+            self.assertEqual(self.facts("check", self.path("k.ply"))["certificate"]["loops"], 2)
+        facts, _ = self.curves_of([(0.05 * i, 0.3 * math.sin(0.3 * i)) for i in range(60)], "--method", "power-crust")
+        self.assertTrue(facts["certificate"]["closed"])
+        out = self.path("o.ply")
+        for option in (["--sharp"], ["--labeling", "naive"], ["--open", "3"]):
+            self.usage("is for points in space", "surface", self.path("c.xyz"), "-o", out, "--method", "power-crust", *option)
+        grid = self.xyz("grid.xyz", [(x, y, 0) for x in range(20) for y in range(20)])
+        for command in (["surface", grid, "--method", "power-crust"], ["medial", grid]):
+            self.assertIn("on an area", self.facts(*command, "-o", out, code=3)["error"])
+        ball = self.xyz("ball.xyz", self.sphere(300))
+        self.assertEqual(self.facts("surface", ball, "--method", "power-crust", "-o", out)["certificate"]["genus"], 0)
+
+    def test_check_tells_closed_curves_from_others(self):
+        def edges(name, count, pairs):
+            rows = "".join("%r %r 0\n" % (math.cos(i), math.sin(i)) for i in range(count)) + "".join("%d %d\n" % p for p in pairs)
+            return self.file(name, "ply\nformat ascii 1.0\nelement vertex %d\nproperty double x\nproperty double y\nproperty double z\n"
+                             "element edge %d\nproperty int vertex1\nproperty int vertex2\nend_header\n%s" % (count, len(pairs), rows))
+        ring, star = [(i, (i + 1) % 5) for i in range(5)], [(0, 1), (0, 2), (0, 3)]
+        c = self.facts("check", edges("ring.ply", 5, ring))["certificate"]
+        self.assertEqual((c["closed"], c["manifold"], c["loops"], c["ends"], c["branches"]), (True, True, 1, 0, 0))
+        path = edges("path.ply", 5, ring[:3])
+        facts = self.facts("check", path, code=5)
+        self.assertIn("not closed: 2 ends in 1 of 1 curves", facts["error"])
+        self.assertTrue(any("--open" in hint for hint in facts["hints"]))
+        self.assertEqual(self.facts("check", path, "--open")["certificate"]["isolated"], 1)
+        for options in [], ["--open"]:
+            self.assertIn("branch: 1 vertices", self.facts("check", edges("star.ply", 4, star), *options, code=5)["error"])
+        self.assertIn("index 9", self.facts("check", edges("bad.ply", 4, [(0, 9)]), code=2)["error"])
+        self.usage("--self-intersections is about faces", "check", path, "--self-intersections")
+
     def test_thin_is_flat(self):
         """Single precision leaves a slanting plane by 1e-7 of the extent, and a surface by more is none."""
         ring = turned([(math.cos(i / 8), math.sin(i / 8)) for i in range(51)], (0, 0, 0))

@@ -13,6 +13,7 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path.insert(0, os.path.join(ROOT, "bench", "thesis"))
 import figures
 import report
+from surface_cases import CASES
 
 FIGURES = {f.name: f for f in figures.figures(2000000, 256 << 20, [1, 2, 4, 10], [10, 20])}
 
@@ -153,6 +154,8 @@ ALL = {  # the claims that hold, those that do not, and what does not tell
             [three(run(), run(), run()), in_turn(0.5, 0.2, 0.8), in_turn(0.5, 0.5, 0.5), three(*list(in_turn(0.2, 0.5, 0.8).values())[:2], run()),
              three(run(bends=((0.11, 3), (0.4, 20))), run(bends=((0.5, 20),)), run(bends=((0.8, 20),)))],
             [three(stopped(0.2), stopped(0.5), stopped(0.8)), {}, {"hull": run(bends=THRASHES)}]),
+    "4.6-CGAL": ([{"random": run(bends=THRASHES)}], [{"random": run()}, {"random": run(bends=((0.11, 3), (0.4, 20)))}],
+                 [{"random": stopped(0.2)}, {}]),
     "4.7": ([located(0.2), located(0.7)], [located(0.05), located(0.8), located(0.99)], [{}, {"hull": stopped(0.5)}]),
     "5.1": ([{"BRIO": run(), "random": run(bends=THRASHES)}, {"BRIO": run(), "random": stopped(0.7, bends=THRASHES)}],
             [{"BRIO": run(), "random": run()}, {"BRIO": run(bends=((0.5, 9),)), "random": run(bends=THRASHES)}],
@@ -184,6 +187,7 @@ ALL = {  # the claims that hold, those that do not, and what does not tell
     "model": ([modelled(), modelled(1.4, 0.7)], [modelled(3), modelled(1, 4), modelled(0.3, 0.2)], [{"BRIO, pyramid": run()}, {}]),
 }
 ALL["eighth-happy"] = ALL["eighth-uniform"]
+ALL.update(CASES)
 
 
 def cases_of(name): return ALL.get(name) or ALL[name.split("-")[0]]
@@ -213,7 +217,7 @@ class Verdicts(unittest.TestCase):
 
     def test_hull_searches_to_the_first_conflict(self):
         for f in FIGURES.values():
-            for r in f.runs:
+            for r in f.runs if f.kind not in ("surfaces", "plane") else ():
                 self.assertNotIn("--all-conflicts", r.options, f.name)
                 if "hull" in f.title and r.locate == "history":
                     self.assertTrue("--first-conflict" in r.options or f.kind == "history", f.name)
@@ -234,7 +238,7 @@ class Page(unittest.TestCase):
         docs = os.path.join(ROOT, "docs", "measured")
         with open(os.path.join(docs, "thesis-experiments.md")) as f:
             named = {part.split(")")[0] for part in f.read().split("](")[1:]}
-        plots = {name for name in named if name.endswith(".svg")}
+        plots = {name for name in named if name.endswith((".svg", ".png"))}
         folder = os.path.join(docs, "images", "thesis")
         self.assertEqual(plots, {"images/thesis/" + name for name in (os.listdir(folder) if os.path.isdir(folder) else [])})
 

@@ -200,6 +200,7 @@ ENDS_WITH(brio_convex_hull_stats, exact_calls);
 ENDS_WITH(brio_curve_options, reserved_int);
 ENDS_WITH(brio_curve_stats, curve_seconds);
 ENDS_WITH(brio_curve_certificate, length);
+ENDS_WITH(brio_planar_crust_stats, crust_seconds);
 ENDS_WITH(brio_spanning_tree_stats, tree_seconds);
 
 static void statuses_have_words_of_their_own(void) {

@@ -2,6 +2,7 @@
 
 from . import errors
 from ._alpha import AlphaComplex, AlphaShape, alpha_complex
+from ._curves import Curve, curve, spanning_tree
 from ._delaunay import Delaunay
 from ._files import Conversion, build_info, convert, read, write
 from ._halfspaces import HalfspaceIntersection
@@ -16,9 +17,9 @@ from ._voronoi import Voronoi
 from .errors import *  # noqa: F403
 
 __all__ = [
-    "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Delaunay", "Distance",
+    "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Curve", "Delaunay", "Distance",
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "SphericalVoronoi", "Surface",
-    "Voronoi", "__version__", "alpha_complex", "build_info", "convert", "errors", "griddata", "medial_axis",
-    "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "thin", "write",
+    "Voronoi", "__version__", "alpha_complex", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
+    "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "spanning_tree", "thin", "write",
     *errors.__all__,
 ]
