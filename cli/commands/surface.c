@@ -509,7 +509,7 @@ done:
 /* Tries curves: asked for, or the default of points that may be in a plane.   done  false: they are not. */
 static brio_status try_curves(run *r, const brio_mesh *points, brio_mesh **result, bool *done) {
     const arguments *a = r->arguments;
-    bool asked = method_of(a) == CURVES, crust = method_of(a) == POWER_CRUST, flat = asked;
+    bool asked = method_of(a) == CURVES, crust = method_of(a) == BRIO_SURFACE_POWER_CRUST, flat = asked;
     brio_status status = BRIO_OK;
     *done = false;
     if (!asked && (a->method == NO_METHOD || crust)) TRY(cli_may_be_flat(r, points, &flat));
