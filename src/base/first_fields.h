@@ -6,6 +6,8 @@
 
 #define BRIO_FIRST_brio_alpha_complex         triangulation2
 #define BRIO_FIRST_brio_alpha_shape_stats     singular_facets
+#define BRIO_FIRST_brio_ball_union_options    seed
+#define BRIO_FIRST_brio_ball_union_stats      mesh_seconds
 #define BRIO_FIRST_brio_cells_options         num_planes
 #define BRIO_FIRST_brio_certificate           volume
 #define BRIO_FIRST_brio_convert_options       crs
@@ -38,6 +40,8 @@
 #define BRIO_FIRST_brio_spanning_tree_stats   tree_seconds
 #define BRIO_FIRST_brio_surface_options       reserved_int
 #define BRIO_FIRST_brio_surface_stats         rounding
+#define BRIO_FIRST_brio_voronoi_axis_options  seed
+#define BRIO_FIRST_brio_voronoi_axis_stats    label_seconds
 #define BRIO_FIRST_brio_write_options         reserved_int
 
 #endif
