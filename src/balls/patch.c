@@ -3,7 +3,7 @@
  *   1. The points go to the plane, from a place of the sphere outside the patch (a stereographic projection). There the
  *      patch is a polygon with holes.
  *   2. Holes are joined to the outline by bridges, the shortest ones first that cross nothing.
- *   3. Ears are cut off, the one of the best shape first.
+ *   3. Ears are cut off, the one with the shortest new edge first: so narrow patches are crossed, not followed.
  *   4. Edges inside the patch are halved until they are short. The new vertices are on the sphere.
  *
  * The result is a disk with the right holes whatever the positions are. Where edges of the cycles cross in the plane,
@@ -18,12 +18,13 @@
 #include <string.h>
 
 enum { NONE = UINT32_MAX, MOST_PASSES = 40, BISECTIONS = 40 };
+static const double SAME = 1e-9; /* chosen: of the radius; corners are known less well where spheres hardly cross */
 
 /* A place in the outline. A vertex at which a bridge ends has several. */
 typedef struct {
     double x, y;
     uint32_t vertex, next, previous;
-    double shape; /* of the ear here; 0: there is none */
+    double worth; /* of the ear here; 0: there is none */
 } slot;
 
 typedef struct {
@@ -69,8 +70,10 @@ static double area(const slot *a, const slot *b, const slot *c) {
     return (b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x);
 }
 
+/* Returns whether two places are one up to rounding, as corners at which more than three spheres meet are. */
 static bool same_place(const slot *a, const slot *b) {
-    return a->vertex == b->vertex || (a->x == b->x && a->y == b->y);
+    double x = a->x - b->x, y = a->y - b->y, scale = SAME * (1 + a->x * a->x + a->y * a->y);
+    return a->vertex == b->vertex || x * x + y * y <= scale * scale;
 }
 
 /* --- holes --- */
@@ -101,7 +104,13 @@ static double cycle_area(const work *w, size_t first, size_t end) {
     return sum;
 }
 
+static bool boxes_meet(const slot *a, const slot *b, const slot *c, const slot *d) {
+    return fmax(a->x, b->x) >= fmin(c->x, d->x) && fmax(c->x, d->x) >= fmin(a->x, b->x) &&
+           fmax(a->y, b->y) >= fmin(c->y, d->y) && fmax(c->y, d->y) >= fmin(a->y, b->y);
+}
+
 static bool crosses(const slot *a, const slot *b, const slot *c, const slot *d) {
+    if (!boxes_meet(a, b, c, d)) return false;
     if (same_place(a, c) || same_place(a, d) || same_place(b, c) || same_place(b, d)) return false;
     return (area(a, b, c) > 0) != (area(a, b, d) > 0) && (area(c, d, a) > 0) != (area(c, d, b) > 0);
 }
@@ -172,9 +181,9 @@ static double square_side(const slot *a, const slot *b) {
     return (a->x - b->x) * (a->x - b->x) + (a->y - b->y) * (a->y - b->y);
 }
 
-/* Returns the shape of the ear at a slot, 1 for an equilateral triangle; 0 where another point of the outline is in
+/* Returns how good the ear at a slot is: the inverse of the square of its new edge, on the sphere; 0 where another point of the outline is in
  * it, or the corners are not distinct. */
-static double ear_shape(const work *w, uint32_t at) {
+static double ear_worth(const work *w, uint32_t at) {
     const slot *b = &w->slot[at], *a = &w->slot[b->previous], *c = &w->slot[b->next];
     double twice = area(a, b, c);
     if (!(twice > 0) || a->vertex == c->vertex) return 0;
@@ -183,20 +192,20 @@ static double ear_shape(const work *w, uint32_t at) {
         if (same_place(p, a) || same_place(p, b) || same_place(p, c)) continue;
         if (area(a, b, p) >= 0 && area(b, c, p) >= 0 && area(c, a, p) >= 0) return 0;
     }
-    return 3.4641016151377544 * twice / (square_side(a, b) + square_side(b, c) + square_side(c, a));
+    return (1 + a->x * a->x + a->y * a->y) * (1 + c->x * c->x + c->y * c->y) / (square_side(c, a) + 1e-300);
 }
 
-/* Returns the slot whose ear is cut next: the best one, or where there is none the least bent one with three distinct
- * corners. */
+/* Returns the slot whose ear is cut next: the best one, or where there is none the one of least area with three
+ * distinct corners. */
 static uint32_t next_ear(const work *w, uint32_t start) {
     uint32_t best = NONE, spare = NONE;
-    double most = 0, least = -INFINITY;
+    double most = 0, least = INFINITY;
     uint32_t i = start;
     do {
         const slot *b = &w->slot[i], *a = &w->slot[b->previous], *c = &w->slot[b->next];
-        double turned = area(a, b, c);
-        if (b->shape > most) most = b->shape, best = i;
-        if (a->vertex != c->vertex && turned > least) least = turned, spare = i;
+        double turned = fabs(area(a, b, c));
+        if (b->worth > most) most = b->worth, best = i;
+        if (a->vertex != c->vertex && turned < least) least = turned, spare = i;
         i = b->next;
     } while (i != start);
     return best != NONE ? best : spare != NONE ? spare : start;
@@ -217,19 +226,19 @@ static brio_status cut_ear(work *w, uint32_t at) {
 static brio_status cut_ears(work *w) {
     uint32_t start = 0;
     size_t left = w->num_slots;
-    for (uint32_t i = 0; i < left; i++) w->slot[i].shape = ear_shape(w, i);
+    for (uint32_t i = 0; i < left; i++) w->slot[i].worth = ear_worth(w, i);
     for (; left > 2; left--) {
         uint32_t ear = next_ear(w, start);
-        if (!(w->slot[ear].shape > 0)) { /* ears that were blocked may be free now */
+        if (!(w->slot[ear].worth > 0)) { /* ears that were blocked may be free now */
             uint32_t i = ear;
-            do w->slot[i].shape = ear_shape(w, i), i = w->slot[i].next;
+            do w->slot[i].worth = ear_worth(w, i), i = w->slot[i].next;
             while (i != ear);
             ear = next_ear(w, ear);
         }
         uint32_t before = w->slot[ear].previous, after = w->slot[ear].next;
         BRIO_FORWARD(cut_ear(w, ear));
-        w->slot[before].shape = ear_shape(w, before);
-        w->slot[after].shape = ear_shape(w, after);
+        w->slot[before].worth = ear_worth(w, before);
+        w->slot[after].worth = ear_worth(w, after);
         start = before;
         BRIO_FORWARD(brio_look(w->m->ctx, left));
     }
@@ -408,6 +417,24 @@ static brio_status make_octahedron(work *w) {
         w->num_corners += 3;
     }
     return BRIO_OK;
+}
+
+brio_status brio_patch_crossings(brio_growing_mesh *m, const brio_patch_outline *o, uint8_t *crossing) {
+    brio_status status = BRIO_OK;
+    work w = {.m = m, .o = o};
+    make_frame(&w);
+    BRIO_TRY(BRIO_ALLOC(m->ctx, w.slot, o->cycle_end[o->num_cycles - 1]));
+    link_cycles(&w);
+    for (size_t i = 0; i < w.num_slots; i++) {
+        const slot *a = &w.slot[i], *b = &w.slot[a->next];
+        crossing[i] = 0;
+        for (size_t j = 0; j < i; j++)
+            if (crosses(a, b, &w.slot[j], &w.slot[w.slot[j].next])) crossing[i] = crossing[j] = 1;
+        BRIO_TRY(brio_look(m->ctx, 1 + i / 64));
+    }
+done:
+    brio_release(m->ctx, w.slot);
+    return status;
 }
 
 static brio_status give_triangles(work *w) {

@@ -92,6 +92,10 @@ typedef struct {
 /** Adds a vertex to a mesh. */
 brio_status brio_grow_vertex(brio_growing_mesh *m, const double place[3], const uint32_t on[3], uint32_t *number);
 
+/** Finds the edges of cycles that cross another one, in the plane in which the patch is cut into triangles.
+ *  crossing  for each vertex of the cycles: set to 1 if the edge from it to the next one crosses, else to 0. */
+brio_status brio_patch_crossings(brio_growing_mesh *m, const brio_patch_outline *outline, uint8_t *crossing);
+
 /** Adds the triangles of a patch to a mesh, and the vertices inside the patch. The triangles have each edge of the
  *  cycles once and other edges twice; no other edge has two ends on the circle of one other ball. */
 brio_status brio_patch_triangles(brio_growing_mesh *m, const brio_patch_outline *outline);

@@ -1,7 +1,12 @@
 /* The boundary of a union of balls as a mesh: corners and points of arcs first, then patch after patch.
  *
- * An arc has enough points that its chords are near it, two chords at least; both of its patches have the same points.
+ * An arc has points where it meets the planes of a grid, so many that its chords are near it, and one at least; both of
+ * its patches have the same points. Two arcs that run side by side meet the same planes, so that their chords do not
+ * cross.
  * So the mesh is closed and manifold because the patches are (union_boundary.h, I1).
+ *
+ * Two arcs that are nearer to each other than their chords to them may have chords that cross. These arcs get twice as
+ * many points, until nothing crosses or they have very many.
  *
  * A triangle whose corners are on a sphere of radius r, with edges of at most L, is within r - sqrt(r^2 - L^2 / 3) of
  * it: a point of the triangle, at the barycentric coordinates a, b, c, has the power - (a b L1^2 + b c L2^2 + c a L3^2),
@@ -12,8 +17,12 @@
 #include "base/vector.h"
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+/* Both chosen: how often the points of an arc are doubled at most, and its points. */
+enum { MOST_ROUNDS = 5, MOST_CHORDS = 1 << 12 };
+static const double TURN = 6.283185307179586476925;
 static const double WIDEST_STEP = 0.8; /* of a point of an arc to the next one, in radians. Chosen */
 
 typedef struct {
@@ -24,9 +33,15 @@ typedef struct {
     uint32_t *of_patch; /* 2 #arcs: arcs and sides, 2 arc + side, those of a patch together */
     size_t *start;     /* #patches + 1 */
     uint8_t *seen;     /* 2 #arcs */
+    double *turn;      /* the points of the arc at hand, as angles from its beginning */
+    size_t num_turns, turn_capacity;
+    uint8_t *doubled;  /* #arcs: how often its points were */
+    uint8_t *crossed;  /* #arcs: 1 if they are to be doubled */
     uint32_t *vertex;  /* the cycles of the patch at hand */
+    uint32_t *arc_of;  /* the arc from each of these vertices on */
+    uint8_t *crossing; /* whether the edge from it crosses another */
     size_t *cycle_end;
-    size_t num_vertex, vertex_capacity, num_cycles, cycle_capacity;
+    size_t num_vertex, vertex_capacity, arc_of_capacity, crossing_capacity, num_cycles, cycle_capacity;
 } maker;
 
 /* Returns the longest edge on a sphere. */
@@ -36,14 +51,48 @@ static double longest_edge(double radius, double error) {
 
 /* --- arcs --- */
 
-static size_t chords_of(const maker *m, const brio_arc *a, double circle) {
+/* Returns the distance of the planes at which an arc has points: a power of two. */
+static double step_of_planes(const maker *m, const brio_arc *a, double circle) {
     double step = WIDEST_STEP;
     for (int s = 0; s < 2; s++) {
         double longest = longest_edge(sqrt(m->b->weight[a->ball[s]]), m->error);
         if (longest < 2 * circle) step = fmin(step, 2 * asin(longest / (2 * circle)));
     }
     if (m->error < circle) step = fmin(step, 2 * acos(1 - m->error / circle));
-    return (size_t)fmax(2, ceil(a->angle / step));
+    return ldexp(exp2(floor(log2(step * circle / sqrt(3)))), -m->doubled[a - m->b->arc]);
+}
+
+static int by_value(const void *a, const void *b) {
+    double p = *(const double *)a, q = *(const double *)b;
+    return (p > q) - (p < q);
+}
+
+static brio_status add_turn(maker *m, double turn, double most) {
+    while (turn < 0) turn += TURN;
+    while (turn >= TURN) turn -= TURN;
+    if (turn >= most) return BRIO_OK;
+    BRIO_FORWARD(BRIO_RESERVE(m->b->ctx, m->turn, m->turn_capacity, m->num_turns + 1));
+    m->turn[m->num_turns++] = turn;
+    return BRIO_OK;
+}
+
+/* Finds the angles at which an arc, centre + u cos + v sin, meets the planes x, y, z = i step; or its middle. */
+static brio_status find_turns(maker *m, const brio_arc *a, double circle, const double *centre, const double *u,
+                              const double *v) {
+    double step = circle > 0 ? step_of_planes(m, a, circle) : 0;
+    m->num_turns = 0;
+    for (int k = 0; k < 3 && step > 0; k++) {
+        double reach = hypot(u[k], v[k]), phase = atan2(v[k], u[k]), last = floor((centre[k] + reach) / step);
+        for (double i = ceil((centre[k] - reach) / step); i <= last; i++) {
+            double turn = acos(fmin(fmax((i * step - centre[k]) / reach, -1), 1));
+            BRIO_FORWARD(add_turn(m, phase + turn, a->angle));
+            BRIO_FORWARD(add_turn(m, phase - turn, a->angle));
+        }
+    }
+    for (size_t i = 0; m->num_turns < 3 && i < 3 && (!i || a->corner[0] == BRIO_NO_CORNER); i++)
+        BRIO_FORWARD(add_turn(m, a->angle * (0.5 + (double)i) / 3, TURN));
+    if (m->num_turns > 1) qsort(m->turn, m->num_turns, sizeof *m->turn, by_value);
+    return BRIO_OK;
 }
 
 static brio_status add_arc_points(maker *m, const brio_arc *a) {
@@ -64,9 +113,9 @@ static brio_status add_arc_points(maker *m, const brio_arc *a) {
     double length = brio_length(u);
     for (int k = 0; k < 3; k++) u[k] *= length > 0 ? circle / length : 0;
     brio_cross(axis, u, v);
-    size_t chords = chords_of(m, a, circle);
-    for (size_t i = a->corner[0] == BRIO_NO_CORNER ? 0 : 1; i < chords; i++) {
-        double turn = a->angle * (double)i / (double)chords, place[3];
+    BRIO_FORWARD(find_turns(m, a, circle, centre, u, v));
+    for (size_t i = 0; i < m->num_turns; i++) {
+        double turn = m->turn[i], place[3];
         uint32_t number;
         for (int k = 0; k < 3; k++) place[k] = centre[k] + cos(turn) * u[k] + sin(turn) * v[k];
         BRIO_FORWARD(brio_grow_vertex(&m->mesh, place, on, &number));
@@ -77,7 +126,7 @@ static brio_status add_arc_points(maker *m, const brio_arc *a) {
 static brio_status add_arcs(maker *m) {
     const brio_union_boundary *b = m->b;
     uint32_t number;
-    BRIO_FORWARD(BRIO_ALLOC(b->ctx, m->first, b->num_arcs + 1));
+    m->mesh.num_vertices = 0;
     for (size_t c = 0; c < b->num_corners; c++)
         BRIO_FORWARD(brio_grow_vertex(&m->mesh, b->corner[c].place, b->corner[c].ball, &number));
     for (size_t a = 0; a < b->num_arcs; a++) {
@@ -104,8 +153,11 @@ static brio_status sort_sides(maker *m) {
     return BRIO_OK;
 }
 
-static brio_status add_to_cycle(maker *m, uint32_t vertex) {
+static brio_status add_to_cycle(maker *m, uint32_t vertex, uint32_t arc) {
     BRIO_FORWARD(BRIO_RESERVE(m->b->ctx, m->vertex, m->vertex_capacity, m->num_vertex + 1));
+    BRIO_FORWARD(BRIO_RESERVE(m->b->ctx, m->arc_of, m->arc_of_capacity, m->num_vertex + 1));
+    BRIO_FORWARD(BRIO_RESERVE(m->b->ctx, m->crossing, m->crossing_capacity, m->num_vertex + 1));
+    m->arc_of[m->num_vertex] = arc;
     m->vertex[m->num_vertex++] = vertex;
     return BRIO_OK;
 }
@@ -114,8 +166,8 @@ static brio_status add_to_cycle(maker *m, uint32_t vertex) {
 static brio_status follow_arc(maker *m, uint32_t arc, int side) {
     const brio_arc *a = &m->b->arc[arc];
     uint32_t low = m->first[arc], count = m->first[arc + 1] - low;
-    if (a->corner[0] != BRIO_NO_CORNER) BRIO_FORWARD(add_to_cycle(m, a->corner[!side]));
-    for (uint32_t i = 0; i < count; i++) BRIO_FORWARD(add_to_cycle(m, side ? low + i : low + count - 1 - i));
+    if (a->corner[0] != BRIO_NO_CORNER) BRIO_FORWARD(add_to_cycle(m, a->corner[!side], arc));
+    for (uint32_t i = 0; i < count; i++) BRIO_FORWARD(add_to_cycle(m, side ? low + i : low + count - 1 - i, arc));
     return BRIO_OK;
 }
 
@@ -153,16 +205,73 @@ static void find_covered(const maker *m, size_t patch, double covered[3]) {
     }
 }
 
-static brio_status add_patch(maker *m, size_t patch) {
+/* Follows the cycles of a patch. */
+static brio_status outline_patch(maker *m, size_t patch, brio_patch_outline *o) {
     const brio_union_boundary *b = m->b;
     uint32_t ball = b->patch[patch];
-    brio_patch_outline o = {.ball = ball, .centre = b->centre + 3 * (size_t)ball, .radius = sqrt(b->weight[ball])};
     m->num_vertex = m->num_cycles = 0;
+    for (size_t i = m->start[patch]; i < m->start[patch + 1]; i++) m->seen[m->of_patch[i]] = 0;
     for (size_t i = m->start[patch]; i < m->start[patch + 1]; i++)
         if (!m->seen[m->of_patch[i]]) BRIO_FORWARD(follow_cycle(m, m->of_patch[i]));
-    find_covered(m, patch, o.covered);
-    o.longest = longest_edge(o.radius, m->error);
-    o.vertex = m->vertex, o.cycle_end = m->cycle_end, o.num_cycles = m->num_cycles;
+    *o = (brio_patch_outline){.ball = ball, .centre = b->centre + 3 * (size_t)ball, .radius = sqrt(b->weight[ball])};
+    find_covered(m, patch, o->covered);
+    o->longest = longest_edge(o->radius, m->error);
+    o->vertex = m->vertex, o->cycle_end = m->cycle_end, o->num_cycles = m->num_cycles;
+    return BRIO_OK;
+}
+
+/* Marks the arcs whose chords cross in a patch. */
+static brio_status mark_crossed(maker *m, size_t patch) {
+    brio_patch_outline o;
+    BRIO_FORWARD(outline_patch(m, patch, &o));
+    if (!o.num_cycles) return BRIO_OK;
+    BRIO_FORWARD(brio_patch_crossings(&m->mesh, &o, m->crossing));
+    for (size_t i = 0; i < m->num_vertex; i++)
+        if (m->crossing[i]) m->crossed[m->arc_of[i]] = 1;
+    return BRIO_OK;
+}
+
+/* Doubles the points of the arcs that are marked. Returns how many there are; patches at none of them need no look. */
+static size_t double_crossed(maker *m, uint8_t *look) {
+    const brio_union_boundary *b = m->b;
+    size_t count = 0;
+    memset(look, 0, b->num_patches);
+    for (size_t a = 0; a < b->num_arcs; a++) {
+        if (!m->crossed[a]) continue;
+        m->crossed[a] = 0;
+        if (m->first[a + 1] - m->first[a] > MOST_CHORDS / 2) continue;
+        m->doubled[a]++;
+        look[b->arc[a].patch[0]] = look[b->arc[a].patch[1]] = 1;
+        count++;
+    }
+    return count;
+}
+
+/* Places the points of all arcs, so dense that chords do not cross. */
+static brio_status place_arcs(maker *m) {
+    const brio_union_boundary *b = m->b;
+    brio_status status = BRIO_OK;
+    uint8_t *look = NULL;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, m->first, b->num_arcs + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, m->doubled, b->num_arcs));
+    BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, m->crossed, b->num_arcs));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, look, b->num_patches));
+    memset(look, 1, b->num_patches);
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        BRIO_TRY(add_arcs(m));
+        for (size_t p = 0; p < b->num_patches; p++)
+            if (look[p]) BRIO_TRY(mark_crossed(m, p));
+        if (!double_crossed(m, look)) break;
+    }
+    BRIO_TRY(add_arcs(m));
+done:
+    brio_release(b->ctx, look);
+    return status;
+}
+
+static brio_status add_patch(maker *m, size_t patch) {
+    brio_patch_outline o;
+    BRIO_FORWARD(outline_patch(m, patch, &o));
     return brio_patch_triangles(&m->mesh, &o);
 }
 
@@ -187,8 +296,8 @@ done:
 brio_status brio_union_mesh(const brio_union_boundary *b, double error, brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     maker m = {.b = b, .error = ldexp(error, -b->exponent), .mesh = {.ctx = b->ctx}};
-    BRIO_TRY(add_arcs(&m));
     BRIO_TRY(sort_sides(&m));
+    BRIO_TRY(place_arcs(&m));
     for (size_t p = 0; p < b->num_patches; p++) {
         if (p % 256 == 0) BRIO_TRY(brio_progress(b->ctx, "mesh", (double)p / (double)b->num_patches));
         BRIO_TRY(add_patch(&m, p));
@@ -203,6 +312,11 @@ done:
     brio_release(b->ctx, m.of_patch);
     brio_release(b->ctx, m.start);
     brio_release(b->ctx, m.seen);
+    brio_release(b->ctx, m.turn);
+    brio_release(b->ctx, m.doubled);
+    brio_release(b->ctx, m.crossed);
+    brio_release(b->ctx, m.arc_of);
+    brio_release(b->ctx, m.crossing);
     brio_release(b->ctx, m.vertex);
     brio_release(b->ctx, m.cycle_end);
     return status;
