@@ -91,11 +91,12 @@ const command cli_balls = {
     .name = "balls",
     .operands = "IN",
     .summary = "volume, area and surface of the union of balls",
-    .description = "A point with the property radius is a ball, as brio medial writes them. Volume and area are exact up "
-                   "to rounding. The surface is closed and manifold; its faces have the property ball, the index of "
-                   "their ball.",
-    .examples = "brio medial scan.ply -o axis.ply\nthe balls of a solid, and then\nbrio balls axis.ply -o union.ply\nits "
-                "surface as the union of its balls\n",
+    .description =
+        "A point with the property radius is a ball, as brio medial writes them. Volume and area are exact up "
+        "to rounding. The surface is closed and manifold; its faces have the property ball, the index of "
+        "their ball.",
+    .examples =
+        "brio balls axis.ply -o union.ply\nof the balls that brio medial wrote: a solid as the union of its balls\n",
     .has_output = true,
     .holds = CLI_SURFACES,
     .output_optional = true,
