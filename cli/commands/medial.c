@@ -71,8 +71,7 @@ static brio_status check_voronoi(run *r, const arguments *a) {
                   {"sharp", a->sharp},
                   {"labeling", a->labeling != LABELS_OF_INPUT && a->labeling != LABELS_OF_MESH}};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (others[i].given)
-            return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method power-shape", others[i].name);
+        if (others[i].given) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method power-shape", others[i].name);
     return BRIO_OK;
 }
 

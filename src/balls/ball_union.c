@@ -13,8 +13,8 @@
  * the other ball of an arc covers.
  *
  * Based on: Edelsbrunner. The union of balls and its dual shape. DCG 1995.
- * Differs from the paper: the terms of arcs and corners are summed as what their angles leave, so that no intersection of
- *                         three balls is computed, and simplices inside the complex have no terms. */
+ * Differs from the paper: the terms of arcs and corners are summed as what their angles leave, so that no intersection
+ *                         of three balls is computed, and simplices inside the complex have no terms. */
 #include "balls/union_boundary.h"
 #include "base/float_state.h"
 #include "base/memory.h"

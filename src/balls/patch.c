@@ -62,8 +62,7 @@ static void to_plane(const work *w, const double *place, double *x, double *y) {
 static void from_plane(const work *w, double x, double y, double place[3]) {
     double square = x * x + y * y, scale = 2 / (1 + square), up = (square - 1) / (1 + square);
     for (int k = 0; k < 3; k++)
-        place[k] = w->o->centre[k] +
-                   w->o->radius * (scale * (x * w->e1[k] + y * w->e2[k]) + up * w->o->covered[k]);
+        place[k] = w->o->centre[k] + w->o->radius * (scale * (x * w->e1[k] + y * w->e2[k]) + up * w->o->covered[k]);
 }
 
 static double area(const slot *a, const slot *b, const slot *c) {
@@ -181,8 +180,8 @@ static double square_side(const slot *a, const slot *b) {
     return (a->x - b->x) * (a->x - b->x) + (a->y - b->y) * (a->y - b->y);
 }
 
-/* Returns how good the ear at a slot is: the inverse of the square of its new edge, on the sphere; 0 where another point of the outline is in
- * it, or the corners are not distinct. */
+/* Returns how good the ear at a slot is: the inverse of the square of its new edge, on the sphere; 0
+ * where another point of the outline is in it, or the corners are not distinct. */
 static double ear_worth(const work *w, uint32_t at) {
     const slot *b = &w->slot[at], *a = &w->slot[b->previous], *c = &w->slot[b->next];
     double twice = area(a, b, c);

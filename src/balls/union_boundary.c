@@ -75,8 +75,8 @@ static brio_status take_balls(brio_union_boundary *b, const double *centres, con
 
 /* --- the dual complex --- */
 
-/* Returns whether a simplex is in the complex: its power face meets the inside of the union. A tetrahedron is in it also
- * when its spheres meet in one point, which is then no void, and so are its faces; but balls that only touch stay
+/* Returns whether a simplex is in the complex: its power face meets the inside of the union. A tetrahedron is in it
+ * also when its spheres meet in one point, which is then no void, and so are its faces; but balls that only touch stay
  * apart. */
 static bool is_in(const brio_alpha_complex *c, int dimension, size_t i) {
     return c->values[dimension][i] < 0 || c->solid[dimension][i] <= 0;

@@ -70,10 +70,10 @@ brio_status brio_union_mesh(const brio_union_boundary *b, double error, brio_mes
 /** A mesh of triangles that grows. */
 typedef struct {
     brio_context *ctx;
-    double *place;       /* #vertices by 3 */
-    uint32_t (*on)[3];   /* #vertices: the balls on whose spheres it is, BRIO_NO_CORNER for none */
-    uint32_t *corners;   /* three for each triangle */
-    uint32_t *of_ball;   /* one for each triangle */
+    double *place;     /* #vertices by 3 */
+    uint32_t (*on)[3]; /* #vertices: the balls on whose spheres it is, BRIO_NO_CORNER for none */
+    uint32_t *corners; /* three for each triangle */
+    uint32_t *of_ball; /* one for each triangle */
     size_t num_vertices, place_capacity, on_capacity, num_corners, corner_capacity, num_triangles, ball_capacity;
 } brio_growing_mesh;
 

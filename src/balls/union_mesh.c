@@ -9,7 +9,7 @@
  * many points, until nothing crosses or they have very many.
  *
  * A triangle whose corners are on a sphere of radius r, with edges of at most L, is within r - sqrt(r^2 - L^2 / 3) of
- * it: a point of the triangle, at the barycentric coordinates a, b, c, has the power - (a b L1^2 + b c L2^2 + c a L3^2),
+ * it: a point of the triangle, of barycentric coordinates a, b, c, has the power - (a b L1^2 + b c L2^2 + c a L3^2),
  * and a b + b c + c a is at most 1/3. */
 #include "balls/union_boundary.h"
 #include "base/memory.h"
@@ -29,11 +29,11 @@ typedef struct {
     const brio_union_boundary *b;
     double error;
     brio_growing_mesh mesh;
-    uint32_t *first;   /* #arcs + 1: the first vertex of each arc inside it */
+    uint32_t *first;    /* #arcs + 1: the first vertex of each arc inside it */
     uint32_t *of_patch; /* 2 #arcs: arcs and sides, 2 arc + side, those of a patch together */
-    size_t *start;     /* #patches + 1 */
-    uint8_t *seen;     /* 2 #arcs */
-    double *turn;      /* the points of the arc at hand, as angles from its beginning */
+    size_t *start;      /* #patches + 1 */
+    uint8_t *seen;      /* 2 #arcs */
+    double *turn;       /* the points of the arc at hand, as angles from its beginning */
     size_t num_turns, turn_capacity;
     uint8_t *doubled;  /* #arcs: how often its points were */
     uint8_t *crossed;  /* #arcs: 1 if they are to be doubled */
@@ -148,8 +148,7 @@ static brio_status sort_sides(maker *m) {
     BRIO_FORWARD(BRIO_ALLOC_ZERO(b->ctx, m->seen, 2 * b->num_arcs));
     for (size_t i = 0; i < 2 * b->num_arcs; i++) m->start[b->arc[i / 2].patch[i % 2] + 2]++;
     for (size_t p = 0; p < b->num_patches; p++) m->start[p + 2] += m->start[p + 1];
-    for (size_t i = 0; i < 2 * b->num_arcs; i++)
-        m->of_patch[m->start[b->arc[i / 2].patch[i % 2] + 1]++] = (uint32_t)i;
+    for (size_t i = 0; i < 2 * b->num_arcs; i++) m->of_patch[m->start[b->arc[i / 2].patch[i % 2] + 1]++] = (uint32_t)i;
     return BRIO_OK;
 }
 

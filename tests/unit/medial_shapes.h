@@ -190,7 +190,8 @@ static inline void cylinder_on_axis(brio_rng *rng, double *p) {
 /* --- the capsule of radius 0.5 about the segment from -1 to 1 of the z axis --- */
 
 static inline void capsule_profile(double t, double *r, double *z) {
-    double s = t * (2 + 0.5 * MEDIAL_PI), a = s / 0.5, b = (s - 2) / 0.5; /* along the lower cap, the side, the upper cap */
+    double s = t * (2 + 0.5 * MEDIAL_PI), a = s / 0.5,
+           b = (s - 2) / 0.5; /* along the lower cap, the side, the upper cap */
     if (a < MEDIAL_PI / 2)
         *r = 0.5 * sin(a), *z = -1 - 0.5 * cos(a);
     else if (b > MEDIAL_PI / 2)
@@ -218,7 +219,8 @@ static const medial_shape medial_ellipsoid = {"ellipsoid", ellipsoid_cloud,   el
 static const medial_shape medial_box = {"box", box_cloud, box_off_axis, NULL, box_on_axis, 1};
 static const medial_shape medial_cylinder = {"cylinder", cylinder_cloud, cylinder_off_axis, NULL, cylinder_on_axis, 1};
 
-static const medial_shape medial_capsule = {"capsule", capsule_cloud, capsule_off_axis, capsule_distance, capsule_on_axis, 1};
+static const medial_shape medial_capsule = {"capsule",        capsule_cloud,   capsule_off_axis,
+                                            capsule_distance, capsule_on_axis, 1};
 
 static inline cloud medial_sample(const medial_shape *shape, double h, uint64_t seed) {
     cloud c = {.rng = brio_rng_new(seed)};

@@ -40,7 +40,8 @@ static void expect_near(double is, double wanted, const char *what) {
 }
 
 static void one_and_two_balls_have_their_volumes(void) {
-    static const double cases[][3] = {{1, 1, 1}, {1, 0.5, 1.2}, {3, 0.1, 3.05}, {1, 1, 1e-3}, {1, 1, 1.999}, {5, 1, 4.5}};
+    static const double cases[][3] = {{1, 1, 1},    {1, 0.5, 1.2}, {3, 0.1, 3.05},
+                                      {1, 1, 1e-3}, {1, 1, 1.999}, {5, 1, 4.5}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         double r = cases[i][0], s = cases[i][1], d = cases[i][2];
         balls b = {.count = 0};

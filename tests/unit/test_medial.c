@@ -304,8 +304,7 @@ static void scale_axis_is_what_a_union_by_brute_force_finds(void) {
             dropped += !keep[i], kept_covered += keep[i] && covered;
             bool one = false;
             for (size_t j = 0; j < n; j++)
-                one |= j != i && distance_between(centre + 3 * i, centre + 3 * j) <=
-                                     sqrt(scaled[j]) - sqrt(scaled[i]);
+                one |= j != i && distance_between(centre + 3 * i, centre + 3 * j) <= sqrt(scaled[j]) - sqrt(scaled[i]);
             single += one;
             EXPECT(!one || !keep[i]);
         }

@@ -418,8 +418,9 @@ static void check_nearest_balls(const theory *x, double worst[2]) {
             if (square < nearest) nearest = square, s = q;
         }
         double d = sqrt(square_between(u, x->points + 3 * s));
-        for (int k = 0; k < 2; k++) of[x->truth[x->poles.of_sample[2 * s + (size_t)k]] == BRIO_LABEL_INNER] =
-            x->poles.of_sample[2 * s + (size_t)k];
+        for (int k = 0; k < 2; k++)
+            of[x->truth[x->poles.of_sample[2 * s + (size_t)k]] == BRIO_LABEL_INNER] =
+                x->poles.of_sample[2 * s + (size_t)k];
         if (least[0] > 0 && least[1] > 0) {
             int small = x->poles.square[of[1]] < x->poles.square[of[0]];
             double rho = sqrt(x->poles.square[of[small]]), away = sqrt(power_of(x, of[small], u) + rho * rho) - rho;
@@ -479,7 +480,8 @@ static void lemmas_37_to_53_hold_for_polar_balls(void) {
         check_nearest_balls(&x, away[i]);
         /* lemmas 50 and 51: at most so many r^2 LFS^2 / rho and r LFS for any r. (The most was 1.2 and 2.6.) */
         EXPECT(away[i][0] < 12 && away[i][1] < 4, "lemmas 50 and 51 at r = %g: %g, %g", x.r, away[i][0], away[i][1]);
-        if (getenv("BRIO_TEST_VERBOSE")) fprintf(stderr, "r %g: lemma 50 %g, lemma 51 %g\n", x.r, away[i][0], away[i][1]);
+        if (getenv("BRIO_TEST_VERBOSE"))
+            fprintf(stderr, "r %g: lemma 50 %g, lemma 51 %g\n", x.r, away[i][0], away[i][1]);
         theory_free(&x);
     }
     /* lemma 45, theorem 46 and observation 52: O(sqrt r), and at most pi / 6 */

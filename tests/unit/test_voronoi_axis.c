@@ -47,10 +47,11 @@ static errors compare(const medial_shape *shape, double h, uint64_t seed) {
     EXPECT(brio_power_shape(ctx, c.points, c.count, NULL, &power, NULL, NULL) == BRIO_OK);
     errors e = errors_of(shape, facets), p = errors_of(shape, power);
     if (getenv("BRIO_TEST_VERBOSE"))
-        fprintf(stderr, "%s h %g: %zu samples; voronoi %zu vertices %zu facets, errors over h %g (mean %g) %g; power "
-                "%zu vertices, %g (mean %g) %g\n", shape->name, h, c.count, facets->num_vertices, facets->num_faces,
-                e.from_result / h, e.mean / h, e.from_axis / h, power->num_vertices, p.from_result / h, p.mean / h,
-                p.from_axis / h);
+        fprintf(stderr,
+                "%s h %g: %zu samples; voronoi %zu vertices %zu facets, errors over h %g (mean %g) %g; power "
+                "%zu vertices, %g (mean %g) %g\n",
+                shape->name, h, c.count, facets->num_vertices, facets->num_faces, e.from_result / h, e.mean / h,
+                e.from_axis / h, power->num_vertices, p.from_result / h, p.mean / h, p.from_axis / h);
     brio_mesh_free(facets);
     brio_mesh_free(power);
     brio_context_free(ctx);

@@ -6,15 +6,15 @@
  *
  * Based on: Miklos, Giesen, Pauly. Discrete scale axis representations for 3D geometry. SIGGRAPH 2010.
  *           Giesen, Miklos, Pauly, Wormser. The scale axis transform. SCG 2009.
- * Differs from the papers: medial balls of the scaled union that are no ball of the input are not added, so each ball of
- *                          the result is as empty as it was. */
+ * Differs from the papers: medial balls of the scaled union that are no ball of the input are not added, so each ball
+ *                          of the result is as empty as it was. */
 #include "balls/union_boundary.h"
 #include "base/memory.h"
 #include "reconstruct/medial/ball_cover.h"
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ROUNDS = 16 };         /* chosen: each round keeps a ball at each corner of a void that is too many */
+enum { MOST_ROUNDS = 16 };          /* chosen: each round keeps a ball at each corner of a void that is too many */
 static const double TOUCHES = 1e-9; /* chosen: a corner deeper in a ball than by this share of its square is inside */
 
 /* The scaled balls. */

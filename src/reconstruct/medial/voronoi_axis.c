@@ -6,10 +6,10 @@
  *   4. What is inside: winding numbers of the Voronoi vertices about a closed surface, the caller's or the labeled
  *      Delaunay triangulation's.
  *
- * Based on: Dey, Zhao. Approximating the medial axis from the Voronoi diagram with a convergence guarantee. Algorithmica
- *           2004.
- * Differs from the paper: facets without end are left out, and so are facets that cross the surface, which dense samples
- *                         do not have. */
+ * Based on: Dey, Zhao. Approximating the medial axis from the Voronoi diagram with a convergence guarantee.
+ *           Algorithmica 2004.
+ * Differs from the paper: facets without end are left out, and so are facets that cross the surface, which dense
+ *                         samples do not have. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rng.h"
@@ -260,8 +260,8 @@ static void drop_facets(axis *a, const uint8_t *label) {
     for (size_t f = 0; f < a->num_facets; f++) {
         size_t end = a->end[f];
         uint8_t first = label[a->number[a->facet[from]]];
-        bool whole = true, wanted = a->o.sides == BRIO_SIDES_BOTH ||
-                                    (first == BRIO_LABEL_INNER) == (a->o.sides == BRIO_SIDES_INNER);
+        bool whole = true,
+             wanted = a->o.sides == BRIO_SIDES_BOTH || (first == BRIO_LABEL_INNER) == (a->o.sides == BRIO_SIDES_INNER);
         for (size_t i = from; i < end; i++) whole = whole && label[a->number[a->facet[i]]] == first;
         a->stats.across += !whole;
         for (; whole && wanted && from < end; from++) a->facet[to++] = a->facet[from];
