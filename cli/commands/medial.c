@@ -11,8 +11,8 @@
 #include <string.h>
 
 typedef struct arguments {
-    int labeling, sides, noise;
-    double sampling_density, spacing, scale, redundancy; /* the last three: 0 where they are not given */
+    int method, labeling, sides, noise;
+    double sampling_density, spacing, scale, redundancy, scale_axis, theta, rho; /* 0 where they are not given */
     bool sharp, simplify;
     const char *crust; /* file, or NULL */
 } arguments;
@@ -20,7 +20,16 @@ typedef struct arguments {
 static const option_choice sides[] = {
     {"inner", BRIO_SIDES_INNER}, {"outer", BRIO_SIDES_OUTER}, {"both", BRIO_SIDES_BOTH}, {NULL, 0}};
 
+enum { POWER_SHAPE, VORONOI };
+static const option_choice methods[] = {{"power-shape", POWER_SHAPE}, {"voronoi", VORONOI}, {NULL, 0}};
+
 static const option options[] = {
+    {"method", 0, OPTION_CHOICE, offsetof(arguments, method), "NAME",
+     "the power shape of the poles, or facets of the points' Voronoi diagram (default power-shape)", methods},
+    {"theta", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, theta), "T",
+     "voronoi: the angle condition's, in radians, below pi/2 (default pi/8)", 0},
+    {"rho", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, rho), "R",
+     "voronoi: the ratio condition's (default 8)", 0},
     {"sides", 0, OPTION_CHOICE, offsetof(arguments, sides), "NAME",
      "the side of the surface whose axis is wanted (default inner)", sides},
     {"labeling", 0, OPTION_CHOICE, offsetof(arguments, labeling), "NAME",
@@ -33,6 +42,8 @@ static const option options[] = {
      "leave out balls that lie in another when both are scaled by S", 0},
     {"redundancy", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, redundancy), "E",
      "leave out balls that lie in another enlarged by E of its radius", 0},
+    {"scale-axis", 0, OPTION_NUMBER | OPTION_POSITIVE, offsetof(arguments, scale_axis), "S",
+     "leave out balls that lie in the union of the others when all are scaled by S", 0},
     {"crust", 0, OPTION_OUTPUT, offsetof(arguments, crust), "FILE",
      "also write the surface of the balls: their power crust", 0},
     {"noise", 0, OPTION_CHOICE, offsetof(arguments, noise), "NAME",
@@ -48,9 +59,32 @@ static const arguments defaults = {.labeling = LABELS_OF_INPUT};
 static const double SCALE = 1.1, REDUNDANCY = 0.01; /* of --simplify */
 static const double SPACING = 0.01;                 /* of samples, in diagonals of the mesh; chosen */
 
+/* Refuses what --method voronoi does not have. */
+static brio_status check_voronoi(run *r, const arguments *a) {
+    const struct {
+        const char *name;
+        bool given;
+    } others[] = {{"simplify", a->simplify},
+                  {"scale", a->scale != 0},
+                  {"redundancy", a->redundancy != 0},
+                  {"scale-axis", a->scale_axis != 0},
+                  {"crust", a->crust != NULL},
+                  {"sampling-density", a->sampling_density != 0},
+                  {"sharp", a->sharp},
+                  {"labeling", a->labeling != LABELS_OF_INPUT && a->labeling != LABELS_OF_MESH}};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (others[i].given) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method power-shape", others[i].name);
+    return BRIO_OK;
+}
+
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
     if (a->scale != 0 && a->scale < 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "--scale: %g is less than 1", a->scale);
+    if (a->scale_axis != 0 && a->scale_axis < 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--scale-axis: %g is less than 1", a->scale_axis);
+    if (a->method == VORONOI) return check_voronoi(r, a);
+    if (a->theta != 0 || a->rho != 0)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s is for --method voronoi", a->theta != 0 ? "theta" : "rho");
     if (a->crust) FORWARD(cli_check_mesh_beside(r, "crust", a->crust, CLI_SURFACES));
     return BRIO_OK;
 }
@@ -68,6 +102,8 @@ static brio_power_shape_options medial_options(const run *r, int labeling, const
     if (a->simplify) o.scale = SCALE, o.redundancy = REDUNDANCY;
     if (a->scale != 0) o.scale = a->scale;
     if (a->redundancy > 0) o.redundancy = a->redundancy;
+    o.size = sizeof o;
+    o.scale_axis = a->scale_axis;
     return o;
 }
 
@@ -101,6 +137,7 @@ static void report(run *r, const brio_power_shape_options *o, const brio_power_s
     cli_stage(r, "label", s->poles.label_seconds);
     cli_stage(r, "shape", s->shape_seconds);
     r->lap = cli_clock();
+    cli_fact_text(f, "method", "power-shape");
     cli_fact_count(f, "samples", s->samples);
     cli_report_noise(r, s->noise, s->smoothed);
     cli_fact_count(f, "poles", s->poles.poles);
@@ -109,7 +146,7 @@ static void report(run *r, const brio_power_shape_options *o, const brio_power_s
     cli_fact_count(f, "outer", s->poles.outer);
     cli_fact_count(f, "unlabelled", s->unlabeled);
     cli_fact_text(f, "labeling", o->poles.solid ? "mesh" : cli_labelings[o->poles.labeling].name);
-    if (o->scale > 1 || o->redundancy > 0) {
+    if (o->scale > 1 || o->redundancy > 0 || o->scale_axis > 1) {
         cli_stage(r, "simplify", s->simplify_seconds);
         cli_fact_count(f, "left_out", s->left_out);
     }
@@ -145,8 +182,9 @@ static brio_status try_plane(run *r, const brio_mesh *input, bool *done) {
     brio_status status = BRIO_OK;
     bool greedy = a->labeling == defaults.labeling || a->labeling == BRIO_LABELING_GREEDY;
     *done = false;
-    if (input->num_faces || a->sides != BRIO_SIDES_INNER || !greedy || a->simplify || a->scale != 0 ||
-        a->redundancy > 0 || a->sampling_density != 0 || a->sharp || a->noise || a->spacing > 0)
+    if (a->method == VORONOI || a->scale_axis != 0 || input->num_faces || a->sides != BRIO_SIDES_INNER || !greedy ||
+        a->simplify || a->scale != 0 || a->redundancy > 0 || a->sampling_density != 0 || a->sharp || a->noise ||
+        a->spacing > 0)
         return BRIO_OK;
     TRY(cli_may_be_flat(r, input, done));
     if (!*done) return BRIO_OK;
@@ -166,10 +204,66 @@ done:
     return status;
 }
 
+static void report_voronoi(run *r, const brio_voronoi_axis_stats *s, const brio_mesh *axis) {
+    facts *f = &r->facts;
+    cli_stage(r, "surface", s->surface_seconds);
+    cli_stage(r, "delaunay", s->delaunay_seconds);
+    cli_stage(r, "facets", s->choose_seconds);
+    cli_stage(r, "label", s->label_seconds);
+    r->lap = cli_clock();
+    cli_fact_text(f, "method", "voronoi");
+    cli_fact_count(f, "samples", s->samples);
+    cli_report_noise(r, s->noise, s->smoothed);
+    cli_fact_count(f, "judged", s->edges);
+    cli_fact_count(f, "by_angle", s->by_angle);
+    cli_fact_count(f, "by_ratio", s->by_ratio);
+    cli_fact_count(f, "across", s->across);
+    cli_fact_count(f, "unbounded", s->unbounded);
+    cli_fact_count(f, "vertices", axis->num_vertices);
+    cli_fact_count(f, "faces", s->facets);
+}
+
+/* Makes the axis of facets of the Voronoi diagram.   solid  the closed mesh that was sampled, or NULL. */
+static brio_status make_voronoi(run *r, const brio_mesh *points, const brio_mesh *solid, brio_mesh **axis) {
+    const arguments *a = r->arguments;
+    brio_voronoi_axis_stats s = {.size = sizeof s};
+    brio_voronoi_axis_options o = {.size = sizeof o};
+    brio_surface_options surface = {.size = sizeof surface};
+    uint64_t work;
+    size_t usual;
+    o.noise = (brio_noise)a->noise;
+    o.sides = (brio_sides)a->sides;
+    o.solid = solid;
+    o.theta = a->theta;
+    o.rho = a->rho;
+    o.seed = r->common.seed;
+    FORWARD(cli_usual_points(r, points, NULL, false, &usual));
+    brio_status status = brio_estimate_surface(r->ctx, usual, &surface, &work); /* which takes more than the axis */
+    FORWARD(cli_require_work(r, status, points, work));
+    FORWARD(brio_voronoi_axis(r->ctx, points->vertices, points->num_vertices, &o, axis, &s));
+    report_voronoi(r, &s, *axis);
+    return BRIO_OK;
+}
+
+static brio_status make_power_shape(run *r, const brio_mesh *points, const brio_mesh *solid, int labeling,
+                                    brio_mesh **shape, brio_mesh **crust) {
+    const arguments *a = r->arguments;
+    brio_power_shape_stats s = {0};
+    brio_power_shape_options o = medial_options(r, labeling, solid);
+    uint64_t work;
+    size_t usual;
+    FORWARD(cli_usual_points(r, points, NULL, false, &usual));
+    brio_status status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
+    FORWARD(cli_require_work(r, status, points, work));
+    status = brio_power_shape(r->ctx, points->vertices, points->num_vertices, &o, shape, a->crust ? crust : NULL, &s);
+    cli_suggest_labeling(r, status, points, solid != NULL);
+    if (status == BRIO_OK) report(r, &o, &s, *shape);
+    return status;
+}
+
 static brio_status medial(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL, *samples = NULL, *shape = NULL, *crust = NULL;
-    brio_power_shape_stats s = {0};
     brio_status status = BRIO_OK;
     int labeling = a->labeling;
     bool by_mesh, planar;
@@ -179,20 +273,14 @@ static brio_status medial(run *r) {
     TRY(try_plane(r, input, &planar));
     if (planar) goto done;
     TRY(cli_settle_labeling(r, input, &labeling, &by_mesh));
-    uint64_t work;
-    size_t usual;
-    brio_power_shape_options o = medial_options(r, labeling, by_mesh ? input : NULL);
     if (a->spacing > 0 && !by_mesh)
         FAIL(r, BRIO_ERR_ARGUMENT, "--spacing is for closed meshes: the points are samples already");
     if (by_mesh) TRY(sample_faces(r, input, &samples));
-    const brio_mesh *points = by_mesh ? samples : input;
-    TRY(cli_usual_points(r, points, NULL, false, &usual));
-    status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
-    TRY(cli_require_work(r, status, points, work));
-    status = brio_power_shape(r->ctx, points->vertices, points->num_vertices, &o, &shape, a->crust ? &crust : NULL, &s);
-    cli_suggest_labeling(r, status, points, by_mesh);
-    if (status != BRIO_OK) goto done;
-    report(r, &o, &s, shape);
+    const brio_mesh *points = by_mesh ? samples : input, *solid = by_mesh ? input : NULL;
+    if (a->method == VORONOI)
+        TRY(make_voronoi(r, points, solid, &shape));
+    else
+        TRY(make_power_shape(r, points, solid, labeling, &shape, &crust));
     TRY(cli_carry_properties(r, input, NULL, shape));
     if (crust) TRY(cli_carry_properties(r, input, NULL, crust));
     brio_mesh_free(input);
@@ -214,8 +302,11 @@ const command cli_medial = {
     .summary = "medial axis of the solid that points, or a closed mesh, bound",
     .description = "The balls of the power shape, each a vertex with the property radius, and how they are joined. A "
                    "mesh with faces says itself what is inside, and its faces are sampled; of points the labeling "
-                   "finds the inside.",
+                   "finds the inside. --method voronoi takes facets of the points' Voronoi diagram instead, by an "
+                   "angle and a ratio that hold for any model.",
     .examples = "brio medial scan.ply -o axis.vtp --simplify\nthe axis without what noise adds\n"
+                "brio medial scan.ply -o axis.ply --scale-axis 1.2\nwithout branches that vanish in what is larger\n"
+                "brio medial scan.ply -o axis.ply --method voronoi\nby facets of the Voronoi diagram of the points\n"
                 "brio medial mesh.off -o axis.ply --sides both\nof a closed mesh, inside and outside\n",
     .has_output = true,
     .holds = CLI_BALLS,

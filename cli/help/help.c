@@ -30,6 +30,7 @@ const manual_entry cli_advice[] = {
     {"brio hull IN -o OUT", "the convex hull"},
     {"brio iso MAP --level L -o OUT", "values on a grid, or atoms, and not points of a surface"},
     {"brio medial IN -o OUT", "the medial axis: the balls that fill the object"},
+    {"brio balls AXIS -o OUT", "the union of these balls: its volume, its area, its surface"},
     {"brio offset IN --distance D -o OUT", "the surface at a distance from the object"},
     {NULL, NULL},
 };

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define MESHES         "surface hull alpha offset iso generate subdivide simplify medial check restricted"
+#define MESHES         "surface hull alpha offset iso generate subdivide simplify medial check restricted balls"
 #define TRIANGULATIONS "delaunay voronoi"
 #define POLES          "surface medial offset"
 
@@ -15,6 +15,24 @@ const glossary_line cli_glossary[] = {
 
     /* What was made. */
     {"surface offset hull alpha", NULL, "method", NULL, "how the surface was made", LINE_PLAIN, STYLE_PLAIN},
+    {"medial", NULL, "method", NULL, "how the axis was found", LINE_PLAIN, STYLE_PLAIN},
+    {"balls", NULL, "balls", NULL, "points with a radius above 0", LINE_PLAIN, STYLE_PLAIN},
+    {"balls", NULL, "exposed", NULL, "balls that reach the surface of the union", LINE_PLAIN, STYLE_PLAIN},
+    {"balls", NULL, "union_volume", "volume of the union", "by formula, exact up to rounding", LINE_PLAIN, STYLE_PLAIN},
+    {"balls", NULL, "union_area", "area of the union", "of its surface, by formula", LINE_PLAIN, STYLE_PLAIN},
+    {"balls", NULL, "union_components", "parts of the union", "balls that overlap are of one part", LINE_PLAIN,
+     STYLE_PLAIN},
+    {"balls", NULL, "tunnels", NULL, "tunnels through the union", LINE_PLAIN, STYLE_PLAIN},
+    {"balls", NULL, "voids", NULL, "hollows that the union encloses", LINE_PLAIN, STYLE_PLAIN},
+    {"balls", NULL, "patches", NULL, "pieces of spheres on the surface", LINE_VERBOSE, STYLE_PLAIN},
+    {"balls", NULL, "arcs", NULL, "pieces of circles of two spheres", LINE_VERBOSE, STYLE_PLAIN},
+    {"balls", NULL, "corners", NULL, "points of three spheres", LINE_VERBOSE, STYLE_PLAIN},
+    {"balls", NULL, "error", NULL, "most distance of a triangle from its ball's sphere", LINE_PLAIN, STYLE_PLAIN},
+    {"medial", NULL, "judged", NULL, "Delaunay edges that are on no umbrella", LINE_VERBOSE, STYLE_PLAIN},
+    {"medial", NULL, "by_angle", NULL, "of these, edges that fulfil the angle condition", LINE_VERBOSE, STYLE_PLAIN},
+    {"medial", NULL, "by_ratio", NULL, "edges that fulfil the ratio condition", LINE_VERBOSE, STYLE_PLAIN},
+    {"medial", NULL, "across", NULL, "chosen facets that cross the surface: left out", LINE_PLAIN, STYLE_UNLESS_ZERO},
+    {"medial", NULL, "unbounded", NULL, "chosen facets without end: left out", LINE_VERBOSE, STYLE_PLAIN},
     {"offset", NULL, "distance", NULL, "from the surface through the points to this one, as asked for", LINE_PLAIN,
      STYLE_PLAIN},
     {"alpha", NULL, "alpha", NULL, "squared radius of the alpha shape", LINE_PLAIN, STYLE_PLAIN},
@@ -240,8 +258,8 @@ const glossary_line cli_glossary[] = {
     {"surface", NULL, "dropped_faces", NULL, "their faces", LINE_PLAIN, STYLE_PLAIN},
     {"surface", NULL, "boundary_samples", NULL, "points found to be at a boundary of the surface (--boundaries)",
      LINE_PLAIN, STYLE_PLAIN},
-    {"medial", NULL, "left_out", NULL, "balls left out by --simplify, --scale or --redundancy", LINE_PLAIN,
-     STYLE_PLAIN},
+    {"medial", NULL, "left_out", NULL, "balls left out by --simplify, --scale, --redundancy or --scale-axis",
+     LINE_PLAIN, STYLE_PLAIN},
     {"surface", NULL, "strays", NULL,
      "points that lie alone, far from all others, and were left out (--noise keep: not)", LINE_PLAIN,
      STYLE_UNLESS_ZERO},

@@ -8,6 +8,7 @@
     X(delaunay)                                                                                                        \
     X(surface)                                                                                                         \
     X(medial)                                                                                                          \
+    X(balls)                                                                                                           \
     X(hull)                                                                                                            \
     X(alpha)                                                                                                           \
     X(offset)                                                                                                          \

@@ -270,20 +270,39 @@ static PyObject *list_surface_methods(PyObject *module, PyObject *args) {
     return list;
 }
 
+/* The options of medial axes: those of the power shape, and those of the Voronoi facets where `voronoi` is not 0. */
+typedef struct {
+    brio_power_shape_options shape;
+    brio_voronoi_axis_options axis;
+    int voronoi;
+} axis_options;
+
+#define AXIS_OPTIONS(o)                                                                                                \
+    POLE_OPTIONS((o).shape), {"sides", INT, &(o).shape.sides}, {"scale", DOUBLE, &(o).shape.scale},                    \
+        {"redundancy", DOUBLE, &(o).shape.redundancy}, {"scale_axis", DOUBLE, &(o).shape.scale_axis},                  \
+        {"theta", DOUBLE, &(o).axis.theta}, {"rho", DOUBLE, &(o).axis.rho}, {                                          \
+        "voronoi", INT, &(o).voronoi                                                                                   \
+    }
+
+static brio_status make_axis(brio_context *ctx, const double *points, size_t n, axis_options *o, brio_mesh **out) {
+    if (!o->voronoi) return brio_power_shape(ctx, points, n, &o->shape, out, NULL, NULL);
+    o->axis.noise = o->shape.noise;
+    o->axis.sides = o->shape.sides;
+    o->axis.seed = o->shape.seed;
+    o->axis.solid = o->shape.poles.solid;
+    return brio_voronoi_axis(ctx, points, n, &o->axis, out, NULL);
+}
+
 static PyObject *power_shape(PyObject *module, PyObject *args) {
     surface_call s;
     call c;
     brio_status status;
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
-    brio_power_shape_options o = {0};
-    const option table[] = {POLE_OPTIONS(o),
-                            {"sides", INT, &o.sides},
-                            {"scale", DOUBLE, &o.scale},
-                            {"redundancy", DOUBLE, &o.redundancy},
-                            {NULL, INT, NULL}};
+    axis_options o = {.shape = {.size = sizeof o.shape}, .axis = {.size = sizeof o.axis}};
+    const option table[] = {AXIS_OPTIONS(o), {NULL, INT, NULL}};
     if (!open_surface_call(&s, args, input_open, 'd', 3))
-        RUN_SURFACE(table, brio_power_shape(c.ctx, s.p.data, s.p.rows, &o, &mesh, NULL, NULL));
+        RUN_SURFACE(table, make_axis(c.ctx, s.p.data, s.p.rows, &o, &mesh));
     close_surface_call(&s);
     return result;
 }
@@ -364,12 +383,12 @@ static PyObject *mesh_offset(PyObject *module, PyObject *args) {
 }
 
 /* The power shape of samples of a mesh's faces, whose labels the mesh gives. */
-static brio_status shape_of_mesh(brio_context *ctx, const brio_mesh *m, double spacing, brio_power_shape_options *o,
+static brio_status shape_of_mesh(brio_context *ctx, const brio_mesh *m, double spacing, axis_options *o,
                                  brio_mesh **out) {
     brio_mesh *samples = NULL;
     brio_status status = brio_mesh_samples(ctx, m, spacing, &samples);
-    o->poles.solid = m;
-    if (status == BRIO_OK) status = brio_power_shape(ctx, samples->vertices, samples->num_vertices, o, out, NULL, NULL);
+    o->shape.poles.solid = m;
+    if (status == BRIO_OK) status = make_axis(ctx, samples->vertices, samples->num_vertices, o, out);
     brio_mesh_free(samples);
     return status;
 }
@@ -382,18 +401,43 @@ static PyObject *mesh_shape(PyObject *module, PyObject *args) {
     call c;
     brio_mesh *made = NULL;
     brio_status status;
-    brio_power_shape_options o = {0};
-    const option table[] = {POLE_OPTIONS(o),
-                            {"sides", INT, &o.sides},
-                            {"scale", DOUBLE, &o.scale},
-                            {"redundancy", DOUBLE, &o.redundancy},
-                            {NULL, INT, NULL}};
+    axis_options o = {.shape = {.size = sizeof o.shape}, .axis = {.size = sizeof o.axis}};
+    const option table[] = {AXIS_OPTIONS(o), {NULL, INT, NULL}};
     if (!PyArg_ParseTuple(args, "OdO!iO", &object, &spacing, &PyDict_Type, &options, &threads, &progress)) return NULL;
     const brio_mesh *m = handle_object(state_of(module), object, KIND_MESH);
     if (!m || set_options(state_of(module), table, options) || call_begin(&c, state_of(module), threads, progress))
         return NULL;
     CALL(c, status, shape_of_mesh(c.ctx, m, spacing, &o, &made));
     return call_end_with_mesh(&c, status, made);
+}
+
+/* --- unions of balls --- */
+
+/* ball_union(centres, weights, areas, error, threads, progress): a mesh, and what was measured as a dict. */
+static PyObject *ball_union(PyObject *module, PyObject *args) {
+    PyObject *centres, *weights, *areas, *progress, *mesh = NULL;
+    brio_ball_union_options o = {.size = sizeof o};
+    brio_ball_union_stats s = {.size = sizeof s};
+    brio_mesh *made = NULL;
+    brio_status status;
+    int threads;
+    input p, w = {.held = 0}, a = {.held = 0};
+    call c;
+    if (!PyArg_ParseTuple(args, "OOOdiO", &centres, &weights, &areas, &o.error, &threads, &progress)) return NULL;
+    if (input_open(&p, centres, "centres", 'd', 3)) return NULL;
+    if (!input_open(&w, weights, "radii", 'd', 0) && !input_has_rows(&w, "radii", p.rows) &&
+        !output_open(&a, areas, "areas", 'd', 0) && !input_has_rows(&a, "areas", p.rows) &&
+        !call_begin(&c, state_of(module), threads, progress)) {
+        CALL(c, status, brio_ball_union(c.ctx, p.data, w.data, p.rows, &o, a.data, &made, &s));
+        mesh = call_end_with_mesh(&c, status, made);
+    }
+    input_close(&p);
+    input_close(&w);
+    input_close(&a);
+    return mesh ? Py_BuildValue("N{sdsdsnsnsnsn}", mesh, "volume", s.volume, "area", s.area, "components",
+                                (Py_ssize_t)s.components, "tunnels", (Py_ssize_t)s.tunnels, "voids",
+                                (Py_ssize_t)s.voids, "exposed", (Py_ssize_t)s.exposed)
+                : NULL;
 }
 
 /* --- normals --- */
@@ -438,6 +482,7 @@ PyMethodDef surface_methods[] = {
      "surface_methods(): tuples of name, number, options, traits"},
     {"mesh_offset", mesh_offset, METH_VARARGS, "mesh_offset(mesh, distance, error, threads, progress)"},
     {"mesh_shape", mesh_shape, METH_VARARGS, "mesh_shape(mesh, spacing, options, threads, progress)"},
+    {"ball_union", ball_union, METH_VARARGS, "ball_union(centres, weights, areas, error, threads, progress)"},
     {"point_normals", point_normals, METH_VARARGS, "point_normals(points, mesh, samples, out, threads, progress)"},
     {NULL, NULL, 0, NULL},
 };

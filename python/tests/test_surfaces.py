@@ -627,3 +627,22 @@ def test_objects_of_pyvista():
 def test_objects_of_open3d():
     pytest.importorskip("open3d")
     assert brio.Mesh(CORNERS, TRIANGLES).to_open3d().is_watertight()
+
+
+def test_medial_axis_by_voronoi_facets_and_the_scale_axis(ball):
+    axis = brio.medial_axis(ball, method="voronoi", rho=6)
+    assert set(axis.properties) >= {"radius", "side"} and len(axis.faces) > 100
+    assert len(brio.medial_axis(ball, scale_axis=1.2).vertices) < len(brio.medial_axis(ball).vertices)
+    for options in ({"method": "voronoi", "scale": 2}, {"theta": 1}, {"method": "thinning"}):
+        with pytest.raises(brio.errors.ArgumentError):
+            brio.medial_axis(ball, **options)
+
+
+def test_union_of_balls_is_measured():
+    two = brio.ball_union([[0, 0, 0], [1, 0, 0]], [1, 1], error=0.01)
+    assert abs(two.volume - 27 / 12 * np.pi) < 1e-12 and abs(two.areas.sum() - two.area) < 1e-12
+    assert (two.components, two.tunnels, two.voids, two.exposed) == (1, 0, 0, 2)
+    assert two.certificate.closed and two.certificate.manifold
+    for centres, radii in (([[0, 0, 0]], [1, 2]), ([[0, 0, 0]], [-1])):
+        with pytest.raises(brio.errors.ArgumentError):
+            brio.ball_union(centres, radii)

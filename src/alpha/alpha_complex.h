@@ -1,4 +1,7 @@
-/* What the uses of an alpha complex share. */
+/* What the uses of an alpha complex share.
+ *
+ * Simplices of a triangulation in space come in the order of its tetrahedra: facets by the lower one of their two
+ * handles, edges by the first tetrahedron that has them and then by their slots. src/balls relies on it. */
 #ifndef BRIO_ALPHA_ALPHA_COMPLEX_H
 #define BRIO_ALPHA_ALPHA_COMPLEX_H
 

@@ -16,6 +16,8 @@
  * with. */
 #define BRIO_FIRST_brio_alpha_complex         triangulation2
 #define BRIO_FIRST_brio_alpha_shape_stats     singular_facets
+#define BRIO_FIRST_brio_ball_union_options    seed
+#define BRIO_FIRST_brio_ball_union_stats      mesh_seconds
 #define BRIO_FIRST_brio_cells_options         num_planes
 #define BRIO_FIRST_brio_certificate           volume
 #define BRIO_FIRST_brio_convert_options       crs
@@ -49,6 +51,8 @@
 #define BRIO_FIRST_brio_spanning_tree_stats   tree_seconds
 #define BRIO_FIRST_brio_surface_options       reserved_int
 #define BRIO_FIRST_brio_surface_stats         rounding
+#define BRIO_FIRST_brio_voronoi_axis_options  seed
+#define BRIO_FIRST_brio_voronoi_axis_stats    label_seconds
 #define BRIO_FIRST_brio_write_options         reserved_int
 
 /** What is known of a struct: its name, the bytes that it has in this version, and those that it had at first. */

@@ -11,7 +11,7 @@ import formats
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
 COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide", "simplify", "terrain",
-            "locate", "interpolate", "voronoi", "restricted", "tree"]
+            "locate", "interpolate", "voronoi", "restricted", "tree", "balls"]
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
@@ -22,7 +22,7 @@ OWN_OPTIONS = {
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
                 "--vertex-normals", "--self-intersections", "--polygons", "--extraction", "--keep-largest",
                 "--min-component", "--from", "--ignore-normals", "--ignore-origins", "--left-out"],
-    "medial": ["--sides", "--spacing", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust",
+    "medial": ["--sides", "--spacing", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust", "--scale-axis", "--method", "--theta", "--rho",
                "--sampling-density", "--sharp"],
     "offset": ["--distance", "--error", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",
                "--vertex-normals", "--self-intersections"],
@@ -42,6 +42,7 @@ OWN_OPTIONS = {
     "interpolate": ["--at", "--plane", "--property", "--method"],
     "restricted": ["--surface"],
     "tree": ["--plane"],
+    "balls": ["--error", "--weights", "--weights-mod", "--unweighted"],
 }
 
 

@@ -20,9 +20,9 @@ ANYWHERE = {"json", "quiet", "verbose", "progress", "threads", "seed", "max-memo
 VALUES = {
     "format": ["zzz"], "input-format": ["obj", "zzz"], "columns": ["-,x,y,z"], "weights": ["w.txt"], "weights-mod": ["-9"],
     "order": ["random", "hilbert"], "block-size": ["7"], "round-ratio": ["0.9"], "locate": ["jump"], "record-every": ["5"],
-    "subgraph": ["tree"], "page-size": ["4K"], "surface": ["mesh.ply"], "cache-size": ["64K"], "plane": ["xy"], "method": ["cocone", "linear"], "labeling": ["naive"], "noise": ["smooth", "0.5"],
+    "subgraph": ["tree"], "page-size": ["4K"], "surface": ["mesh.ply"], "cache-size": ["64K"], "plane": ["xy"], "method": ["cocone", "linear", "voronoi"], "labeling": ["naive"], "noise": ["smooth", "0.5"],
     "open": ["4"], "from": ["0,0,9"], "crs": ["crs.prj"], "error": ["0.05", "1e-9"], "spacing": ["0.2"], "left-out": ["left.ply"], "normals": ["n.ply"], "sampling-density": ["0.3"], "theta": ["0.1"], "pieces": ["3"],
-    "extraction": ["candidates"], "min-component": ["100000", "2"], "sides": ["outer"], "scale": ["1.5"], "redundancy": ["0.5"],
+    "extraction": ["candidates"], "min-component": ["100000", "2"], "sides": ["outer"], "scale": ["1.5"], "scale-axis": ["1.5"], "rho": ["0.5"], "redundancy": ["0.5"],
     "crust": ["c.ply"], "alpha": ["0.5"], "filtration": ["f.txt"], "distance": ["0.2"], "box": ["0,0,0,1,1,1"],
     "faces": ["f.csv", "20"], "samples": ["50", "cloud.ply"], "level": ["-3"], "resolution": ["9", "20"], "points": ["40"], "blobbiness": ["4"],
     "crop": ["0,0,0,0.5,1,1"], "drop-outliers": ["8"], "thin": ["0.4"], "merge": ["0.3"], "views": ["3"], "truth": ["t.ply"],
@@ -36,7 +36,7 @@ MODES = [
     "surface cloud.ply", "surface cloud.ply -o out.ply", "surface cloud.ply -o out.stl",
     "surface cloud.ply --method power-crust -o out.ply", "surface cloud.ply --method cocone -o out.ply",
     "surface cloud.ply --method cocone --pieces 3 -o out.ply",
-    "medial cloud.ply -o out.ply", "medial cloud.ply", "hull text.csv",
+    "medial cloud.ply -o out.ply", "medial cloud.ply", "medial cloud.ply --method voronoi -o out.ply", "balls axis.ply -o out.ply", "hull text.csv",
     "alpha cloud.ply --alpha auto -o out.ply", "offset cloud.ply -D 0.1 -o out.ply", "offset cloud.ply -D 0.1",
     "voronoi cloud.ply -o out.csv", "voronoi cloud.ply",
     "check mesh.ply", "check open.off", "check flat.node", "compare mesh.ply mesh2.ply",
@@ -99,6 +99,7 @@ class IdleOptions(CliTest):
         self.file("text.csv", "x,y,z,q\n" + "".join("%r,%r,%r,%d\n" % (*p, i) for i, p in enumerate(
             CUBE + [(x / 3 + 0.01, y / 3, 0.2 * x + y * y / 9) for x in range(3) for y in range(3)])))
         self.file("p.csv", "x,y,z,q\n0.4,0.3,0.2,1\n0.6,0.5,0.3,2\n0.2,0.2,0.2,3\n")
+        self.expect(0, "medial", self.path("cloud.ply"), "-o", self.path("axis.ply"), "--quiet")
         self.inputs = set(os.listdir(self.folder))
 
     def options_of(self, command):

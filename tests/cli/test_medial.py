@@ -31,7 +31,7 @@ class Facts(CliTest):
         points, out = self.cloud("a.ply", 2000, "sphere"), self.path("out.ply")
         counts = "samples poles inner outer unlabelled vertices edges triangles tetrahedra".split()
         seconds = {key: number for key in "read noise delaunay poles power label shape write total".split()}
-        schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "noise": number,
+        schema = {**COMMON_FACTS, **{key: count for key in counts}, "labeling": str, "method": str, "noise": number,
                   "smoothed": bool, "seconds": seconds}
         facts = self.facts("medial", points, "-o", out)
         self.assert_schema(facts, schema)
@@ -69,6 +69,37 @@ class Facts(CliTest):
         self.assert_schema(facts, {"certificate": CERTIFICATE})
         self.assertEqual((facts["certificate"]["closed"], facts["certificate"]["genus"]), (True, 1))
         self.assertTrue(self.facts("check", crust)["certificate"]["manifold"])
+
+
+class Voronoi(CliTest):
+    def test_facets_of_points_and_of_a_mesh(self):
+        points, out = self.cloud("a.ply", 1000, "torus"), self.path("out.ply")
+        facts = self.facts("medial", points, "-o", out, "--method", "voronoi")
+        self.assertEqual(facts["method"], "voronoi")
+        self.assertGreater(facts["faces"], 500)
+        self.assertGreaterEqual(facts["by_angle"] + facts["by_ratio"], facts["faces"])
+        self.assertEqual(set(self.facts("info", out)["properties"]), {"radius", "side"})
+        strict = self.facts("medial", points, "-o", out, "--method", "voronoi", "--theta", "1.2", "--rho", "30")
+        self.assertLess(strict["faces"], facts["faces"])
+        mesh = self.off("m.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        self.assertGreater(self.facts("medial", mesh, "-o", out, "--method", "voronoi", "--spacing", "0.2")["faces"], 50)
+
+    def test_options_of_the_other_method_are_refused(self):
+        points = self.cloud("a.ply", 100, "torus")
+        for option in (["--simplify"], ["--scale", "2"], ["--redundancy", "1"], ["--scale-axis", "2"], ["--sharp"],
+                       ["--crust", self.path("c.ply")], ["--labeling", "greedy"], ["--sampling-density", "0.4"]):
+            self.usage("is for --method power-shape", "medial", points, "-o", self.path("x.ply"), "--method", "voronoi", *option)
+        for option in ("--theta", "--rho"):
+            self.usage("is for --method voronoi", "medial", points, "-o", self.path("x.ply"), option, "0.5")
+        self.usage("less than 1", "medial", points, "-o", self.path("x.ply"), "--scale-axis", "0.5")
+        self.expect(1, "medial", points, "-o", self.path("x.ply"), "--method", "voronoi", "--theta", "2")
+
+    def test_scale_axis_leaves_balls_out(self):
+        points = self.cloud("a.ply", 1500, "torus")
+        whole = self.facts("medial", points, "-o", self.path("out.ply"))
+        facts = self.facts("medial", points, "-o", self.path("out.ply"), "--scale-axis", "1.3")
+        self.assertGreater(facts["left_out"], 0)
+        self.assertLess(facts["vertices"], whole["vertices"])
 
 
 class Files(CliTest):

@@ -57,7 +57,9 @@ class People(CliTest):
         for how in [["--keep-largest"], ["--method", "power-crust", "--sharp", "--labeling", "naive", "--open", "90"],
                     ["--method", "cocone", "--density", "--boundaries"], ["--method", "cocone", "--pieces", "2"]]:
             yield "surface", points, "-o", out, *how
+        yield "medial", points, "-o", out, "--method", "voronoi"
         yield "medial", points, "-o", out, "--simplify", "--crust", self.path("crust.ply")
+        yield "balls", out, "-o", self.path("union.ply")
         yield "hull", points, "-o", out
         yield "alpha", points, "--alpha", "auto", "-o", out
         yield "offset", points, "-D", "0.1", "-o", out

@@ -187,12 +187,40 @@ static inline void cylinder_on_axis(brio_rng *rng, double *p) {
     p[0] = r * cos(a), p[1] = r * sin(a), p[2] = z;
 }
 
+/* --- the capsule of radius 0.5 about the segment from -1 to 1 of the z axis --- */
+
+static inline void capsule_profile(double t, double *r, double *z) {
+    double s = t * (2 + 0.5 * MEDIAL_PI), a = s / 0.5,
+           b = (s - 2) / 0.5; /* along the lower cap, the side, the upper cap */
+    if (a < MEDIAL_PI / 2)
+        *r = 0.5 * sin(a), *z = -1 - 0.5 * cos(a);
+    else if (b > MEDIAL_PI / 2)
+        *r = 0.5 * sin(b), *z = 1 - 0.5 * cos(b);
+    else
+        *r = 0.5, *z = s - 0.25 * MEDIAL_PI - 1;
+}
+static inline void capsule_cloud(cloud *c, double h) {
+    cloud_revolve(c, h, 2 + 0.5 * MEDIAL_PI, capsule_profile);
+}
+static inline double capsule_off_axis(const double *p) {
+    return hypot(hypot(p[0], p[1]), fmax(fabs(p[2]) - 1, 0));
+}
+static inline double capsule_distance(const double *p) {
+    return capsule_off_axis(p) - 0.5;
+}
+static inline void capsule_on_axis(brio_rng *rng, double *p) {
+    p[0] = p[1] = 0, p[2] = 2 * brio_rng_double(rng) - 1;
+}
+
 static const medial_shape medial_sphere = {"sphere", sphere_cloud, sphere_off_axis, sphere_distance, sphere_on_axis, 1};
 static const medial_shape medial_torus = {"torus", torus_cloud, torus_off_axis, torus_distance, torus_on_axis, 0};
 static const medial_shape medial_ellipsoid = {"ellipsoid", ellipsoid_cloud,   ellipsoid_off_axis,
                                               NULL,        ellipsoid_on_axis, 1};
 static const medial_shape medial_box = {"box", box_cloud, box_off_axis, NULL, box_on_axis, 1};
 static const medial_shape medial_cylinder = {"cylinder", cylinder_cloud, cylinder_off_axis, NULL, cylinder_on_axis, 1};
+
+static const medial_shape medial_capsule = {"capsule",        capsule_cloud,   capsule_off_axis,
+                                            capsule_distance, capsule_on_axis, 1};
 
 static inline cloud medial_sample(const medial_shape *shape, double h, uint64_t seed) {
     cloud c = {.rng = brio_rng_new(seed)};

@@ -5,7 +5,7 @@
 #include "medial_shapes.h"
 #include "points.h"
 #include "surface_calls.h"
-#include "reconstruct/power_crust/ball_cover.h"
+#include "reconstruct/medial/ball_cover.h"
 #include "reconstruct/power_crust/labeled_poles.h"
 #include "mesh/solid.h"
 
@@ -253,6 +253,117 @@ static void simplification_takes_the_noise_of_a_sphere_away(void) {
     brio_mesh_free(all);
     brio_mesh_free(few);
     brio_mesh_free(crust);
+    brio_context_free(ctx);
+    free(c.points);
+}
+
+/* --- the scale axis --- */
+
+static bool in_ball(const double *centre, double square, const double *p, double slack) {
+    double d = distance_between(centre, p);
+    return d * d < square * (1 + slack);
+}
+
+/* Whether points all over the sphere of ball i, and in it, lie in other scaled balls that `of` has: brute force. */
+static bool seems_covered(const double *centre, const double *square, size_t n, size_t i, const uint8_t *of) {
+    for (int k = 0; k < 2000; k++) {
+        double z = (k + 0.5) / 1000 - 1, t = k * 2.399963, r = sqrt(1 - z * z), p[3];
+        double reach = sqrt(square[i]) * (1 - 1e-9);
+        p[0] = centre[3 * i] + reach * r * cos(t), p[1] = centre[3 * i + 1] + reach * r * sin(t);
+        p[2] = centre[3 * i + 2] + reach * z;
+        bool found = false;
+        for (size_t j = 0; j < n && !found; j++)
+            found = j != i && (!of || of[j]) && in_ball(centre + 3 * j, square[j], p, 0);
+        if (!found) return false;
+    }
+    return true;
+}
+
+/* The scale axis leaves out no ball whose sphere sticks out of the others, and keeps few that do not: those that fill
+ * what would be voids. The union stays what it was, at places all over it. */
+static void scale_axis_is_what_a_union_by_brute_force_finds(void) {
+    static double centre[3 * 120], square[120], scaled[120];
+    size_t dropped = 0, kept_covered = 0, single = 0;
+    for (uint64_t seed = 1; seed <= (SHORT_TESTS ? 20 : 100); seed++) {
+        brio_context *ctx = new_context();
+        brio_rng rng = brio_rng_new(seed);
+        size_t n = 20 + seed % 100;
+        uint32_t balls[120];
+        uint8_t keep[120];
+        double s = 1 + 0.5 * brio_rng_double(&rng);
+        uniform_points(seed, n, centre);
+        for (size_t i = 0; i < n; i++) {
+            square[i] = 0.09 * pow(brio_rng_double(&rng), 2) + 1e-3;
+            scaled[i] = square[i] * s * s, balls[i] = (uint32_t)i, keep[i] = 1;
+        }
+        EXPECT(brio_scale_axis(ctx, &(brio_balls){centre, square, balls, n}, s, 1, keep) == BRIO_OK);
+        for (size_t i = 0; i < n; i++) {
+            bool covered = seems_covered(centre, scaled, n, i, NULL);
+            EXPECT(keep[i] || covered, "seed %d, ball %zu", (int)seed, i);
+            EXPECT(keep[i] || seems_covered(centre, scaled, n, i, keep), "seed %d, ball %zu", (int)seed, i);
+            dropped += !keep[i], kept_covered += keep[i] && covered;
+            bool one = false;
+            for (size_t j = 0; j < n; j++)
+                one |= j != i && distance_between(centre + 3 * i, centre + 3 * j) <= sqrt(scaled[j]) - sqrt(scaled[i]);
+            single += one;
+            EXPECT(!one || !keep[i]);
+        }
+        for (int k = 0; k < 2000; k++) { /* no voids */
+            double p[3];
+            bool before = false, after = false;
+            for (int d = 0; d < 3; d++) p[d] = brio_rng_double(&rng);
+            for (size_t i = 0; i < n; i++) {
+                bool in = in_ball(centre + 3 * i, scaled[i], p, 0);
+                before |= in, after |= in && keep[i];
+            }
+            EXPECT(before == after, "seed %d", (int)seed);
+        }
+        brio_context_free(ctx);
+    }
+    EXPECT(dropped > single && single > 0, "%zu %zu", dropped, single);
+    EXPECT(20 * kept_covered < dropped, "%zu of %zu", kept_covered, dropped);
+}
+
+/* A big ball with its sphere covered by small ones that leave its inside open fills what would be a void. */
+static void a_ball_that_fills_a_void_is_kept(void) {
+    static double centre[3 * 301], square[301];
+    uint32_t balls[301];
+    uint8_t keep[301];
+    brio_context *ctx = new_context();
+    for (size_t i = 0; i < 301; i++) {
+        double z = ((double)i + 0.5) / 150 - 1, t = (double)i * 2.399963, r = sqrt(fmax(0, 1 - z * z));
+        centre[3 * i] = r * cos(t), centre[3 * i + 1] = r * sin(t), centre[3 * i + 2] = z;
+        square[i] = 0.04, balls[i] = (uint32_t)i, keep[i] = 1;
+    }
+    centre[900] = centre[901] = centre[902] = 0, square[300] = 1;
+    EXPECT(brio_scale_axis(ctx, &(brio_balls){centre, square, balls, 301}, 1.01, 1, keep) == BRIO_OK);
+    EXPECT(keep[300]);
+    square[300] = 0.5; /* touches nothing: an island in the void, with a boundary */
+    EXPECT(brio_scale_axis(ctx, &(brio_balls){centre, square, balls, 301}, 1.01, 1, keep) == BRIO_OK && keep[300]);
+    brio_context_free(ctx);
+}
+
+/* Noise of a sphere goes with the scale axis, too. */
+static void scale_axis_takes_the_noise_of_a_sphere_away(void) {
+    brio_context *ctx = new_context();
+    cloud c = medial_sample(&medial_sphere, 0.15, 1);
+    brio_power_shape_options o = {.size = sizeof o};
+    brio_power_shape_stats s = {0};
+    brio_mesh *all, *few;
+    for (size_t i = 0; i < c.count; i++) {
+        double r = 1 + 0.02 * (brio_rng_double(&c.rng) - 0.5);
+        for (size_t k = 0; k < 3; k++) c.points[3 * i + k] *= r;
+    }
+    all = shape_of(ctx, c.points, c.count, &o);
+    o.scale_axis = 1.2;
+    EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &few, NULL, &s) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(largest_norm(all) > 0.3 && largest_norm(few) < 0.15, "%g %g", largest_norm(all), largest_norm(few));
+    EXPECT(s.left_out > 0);
+    o.scale_axis = 0.5;
+    brio_mesh *none;
+    EXPECT(brio_power_shape(ctx, c.points, c.count, &o, &none, NULL, NULL) == BRIO_ERR_ARGUMENT);
+    brio_mesh_free(all);
+    brio_mesh_free(few);
     brio_context_free(ctx);
     free(c.points);
 }
@@ -545,6 +656,9 @@ SUITE(test_medial) {
     RUN(crust_of_all_balls_is_the_power_crust);
     RUN(cover_is_what_brute_force_finds);
     RUN(simplification_takes_the_noise_of_a_sphere_away);
+    RUN(scale_axis_is_what_a_union_by_brute_force_finds);
+    RUN(a_ball_that_fills_a_void_is_kept);
+    RUN(scale_axis_takes_the_noise_of_a_sphere_away);
     RUN(poles_of_a_known_box_are_labeled_by_where_they_are);
     RUN(points_within_a_larger_solid_have_closed_crusts);
     RUN(poles_that_are_kept_keep_what_is_theirs);

@@ -377,6 +377,71 @@ static double check_unions(const theory *x) {
     return widest;
 }
 
+static double power_of(const theory *x, uint32_t pole, const double *u) {
+    return square_between(u, x->poles.centre + 3 * (size_t)pole) - x->poles.square[pole];
+}
+
+/* The most that a point at distance d from a sample is away from ball `pole` of the sample, if it is in neither of the
+ * two: with u, v the directions to the centres, at an angle of pi - a, its own direction is at most
+ * pi / 2 + a + arcsin (d / 2 R) from that to the ball's, R being the radius of the other one. */
+static double farthest_from_ball(const theory *x, const double *sample, uint32_t pole, uint32_t other, double d) {
+    double rho = sqrt(x->poles.square[pole]), large = sqrt(x->poles.square[other]), u[3], v[3];
+    difference(sample, x->poles.centre + 3 * (size_t)pole, u);
+    difference(sample, x->poles.centre + 3 * (size_t)other, v);
+    double turn = fmin(PI / 2, PI - angle_of(u, v) + asin(fmin(1, d / (2 * large))));
+    return sqrt(rho * rho + d * d + 2 * rho * d * sin(turn)) - rho;
+}
+
+/* Lemmas 50 and 51 for points u on normals, as far as theorem 43 lets unions end: of points in no ball the distance from
+ * the smaller ball of their sample, and of points in no ball of that ball's side that from the ball of it of least power.
+ * Both are held against what their proofs come to for the angle at which the balls of the sample meet. Returns the largest
+ * distances in r^2 LFS^2 / rho and in r LFS. */
+static void check_nearest_balls(const theory *x, double worst[2]) {
+    double lfs = x->surface->feature_size, reach = 2 * x->r / (1 - x->r) * lfs;
+    size_t n, tried[2] = {0, 0};
+    double *places = x->surface->sample(0.5, 5, &n);
+    worst[0] = worst[1] = 0;
+    for (size_t i = 0; i < 41 * n; i++) {
+        double normal[3], u[3], least[2] = {INFINITY, INFINITY}, nearest = INFINITY;
+        uint32_t best[2] = {0, 0}, of[2];
+        size_t s = 0;
+        const double *place = places + 3 * (i / 41);
+        x->surface->normal(place, normal);
+        for (int k = 0; k < 3; k++) u[k] = place[k] + reach * ((double)(i % 41) / 20 - 1) * normal[k];
+        for (uint32_t p = 0; p < x->poles.count; p++) {
+            int side = x->truth[p] == BRIO_LABEL_INNER;
+            double power = power_of(x, p, u);
+            if (power < least[side]) least[side] = power, best[side] = p;
+        }
+        for (size_t q = 0; q < x->n; q++) {
+            double square = square_between(place, x->points + 3 * q);
+            if (square < nearest) nearest = square, s = q;
+        }
+        double d = sqrt(square_between(u, x->points + 3 * s));
+        for (int k = 0; k < 2; k++)
+            of[x->truth[x->poles.of_sample[2 * s + (size_t)k]] == BRIO_LABEL_INNER] =
+                x->poles.of_sample[2 * s + (size_t)k];
+        if (least[0] > 0 && least[1] > 0) {
+            int small = x->poles.square[of[1]] < x->poles.square[of[0]];
+            double rho = sqrt(x->poles.square[of[small]]), away = sqrt(power_of(x, of[small], u) + rho * rho) - rho;
+            double most = farthest_from_ball(x, x->points + 3 * s, of[small], of[!small], d);
+            EXPECT(away <= most * (1 + 1e-9), "lemma 50: %g, at most %g", away, most);
+            worst[0] = fmax(worst[0], away * rho / (x->r * x->r * lfs * lfs));
+            tried[0]++;
+        }
+        for (int side = 0; side < 2; side++) {
+            if (least[side] <= 0 || x->poles.square[of[side]] > x->poles.square[of[!side]]) continue;
+            double R = sqrt(x->poles.square[best[side]]), away = sqrt(least[side] + R * R) - R;
+            double own = power_of(x, of[side], u);
+            EXPECT(away <= sqrt(own) * (1 + 1e-9), "lemma 51: %g, at most %g", away, sqrt(own));
+            worst[1] = fmax(worst[1], away / (x->r * lfs));
+            tried[1]++;
+        }
+    }
+    EXPECT(tried[0] > 0 && tried[1] > n, "%zu points in no ball, %zu in none of a side", tried[0], tried[1]);
+    free(places);
+}
+
 /* Lemma 53: a normal crosses the crust once. */
 static void check_normals(const theory *x) {
     brio_surface_options o = CRUST_OPTIONS;
@@ -405,13 +470,18 @@ static void check_normals(const theory *x) {
 }
 
 static void lemmas_37_to_53_hold_for_polar_balls(void) {
-    double widest[2] = {0, 0};
+    double widest[2] = {0, 0}, away[2][2];
     for (int i = 0; i < (SHORT_TESTS ? 1 : 2); i++) {
         theory x = theory_new(&known_torus, i ? 0.1 : 0.2);
         check_size_of_balls(&x);
         check_medial_balls(&x);
         widest[i] = check_unions(&x);
         check_normals(&x);
+        check_nearest_balls(&x, away[i]);
+        /* lemmas 50 and 51: at most so many r^2 LFS^2 / rho and r LFS for any r. (The most was 1.2 and 2.6.) */
+        EXPECT(away[i][0] < 12 && away[i][1] < 4, "lemmas 50 and 51 at r = %g: %g, %g", x.r, away[i][0], away[i][1]);
+        if (getenv("BRIO_TEST_VERBOSE"))
+            fprintf(stderr, "r %g: lemma 50 %g, lemma 51 %g\n", x.r, away[i][0], away[i][1]);
         theory_free(&x);
     }
     /* lemma 45, theorem 46 and observation 52: O(sqrt r), and at most pi / 6 */

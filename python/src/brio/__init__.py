@@ -10,7 +10,7 @@ from ._hull import ConvexHull
 from ._interpolate import LinearNDInterpolator, NaturalNeighbourInterpolator, griddata
 from ._mesh import Certificate, Coverage, Distance, Mesh, simplify
 from ._points import outliers, thin
-from ._reconstruct import Surface, medial_axis, offset, oriented_normals, reconstruct
+from ._reconstruct import BallUnion, Surface, ball_union, medial_axis, offset, oriented_normals, reconstruct
 from ._spherical import SphericalVoronoi
 from ._version import __version__
 from ._voronoi import Voronoi
@@ -19,7 +19,7 @@ from .errors import *  # noqa: F403
 __all__ = [
     "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Curve", "Delaunay", "Distance",
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "SphericalVoronoi", "Surface",
-    "Voronoi", "__version__", "alpha_complex", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
+    "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
     "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "spanning_tree", "thin", "write",
     *errors.__all__,
 ]

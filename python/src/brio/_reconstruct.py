@@ -291,21 +291,87 @@ def offset(points: Any, distance: float, *, error: float | None = None, threads:
     return _surface(method, rows, options, far, None, threads, progress)
 
 
-def medial_axis(points: Any, *, sides: str = "inner", spacing: float | None = None, threads: int = 0,
-                progress: bool | Progress | None = None, **options: Any) -> Surface:
-    """Approximates the medial axis of a closed mesh, or of a sampled surface: the power shape of the samples' poles.
+class BallUnion(Surface):
+    """The surface of a union of balls: a Mesh whose faces have the property "ball", and
+
+    Attributes
+    ----------
+    volume, area : float
+        Of the union and of its surface, by formulas; exact up to rounding.
+    areas : ndarray, shape (n,)
+        Of each ball, its area on the surface.
+    components, tunnels, voids : int
+        The Betti numbers of the union.
+    exposed : int
+        Balls that reach the surface.
+    """
+
+    volume: float
+    area: float
+    areas: Floats
+    components: int
+    tunnels: int
+    voids: int
+    exposed: int
+
+
+def ball_union(centres: Any, radii: Any, *, error: float = 0.0, threads: int = 0,
+               progress: bool | Progress | None = None) -> BallUnion:
+    """Computes the union of balls: its volume, its area, and its surface as a closed, manifold mesh.
+
+    Parameters
+    ----------
+    centres : array_like, shape (n, 3)
+    radii : array_like, shape (n,)
+        Where they are 0 there is no ball.
+    error : float
+        No triangle is farther from its ball's sphere; 0: a thousandth of the diagonal of the balls' box.
+
+    Returns
+    -------
+    BallUnion
+
+    Examples
+    --------
+    >>> import brio, math
+    >>> two = brio.ball_union([[0, 0, 0], [1, 0, 0]], [1, 1])
+    >>> bool(abs(two.volume - 27 / 12 * math.pi) < 1e-12), two.components, two.certificate.closed
+    (True, 1, True)
+    """
+    rows = as_rows(centres, "centres")
+    sizes = np.asarray(radii, np.float64)
+    if sizes.shape != (len(rows),):
+        raise ArgumentError(f"radii: {len(rows)} numbers are wanted, one a centre")
+    if not (sizes >= 0).all():
+        raise ArgumentError("radii: numbers of 0 or more are wanted")
+    areas = np.zeros(len(rows))
+    with reporting(progress) as report:
+        handle, found = _native.ball_union(rows, sizes * sizes, areas, as_number(error, "error"), threads, report)
+    surface: BallUnion = BallUnion._of(handle)
+    surface.points, surface.report = rows, found
+    surface.areas = frozen(areas)
+    for name, value in found.items():
+        setattr(surface, name, value)
+    return surface
+
+
+def medial_axis(points: Any, *, method: str = "power-shape", sides: str = "inner", spacing: float | None = None,
+                threads: int = 0, progress: bool | Progress | None = None, **options: Any) -> Surface:
+    """Approximates the medial axis of a closed mesh, or of a sampled surface.
 
     A mesh with faces says itself what is inside, and its faces are sampled.
 
     Parameters
     ----------
     points : Mesh with faces, or array_like, shape (n, 3), or Mesh
+    method : "power-shape" or "voronoi"
+        The power shape of the samples' poles, or facets of the samples' Voronoi diagram.
     sides : "inner", "outer" or "both"
     spacing : float, optional
         Of a mesh with faces: no place of a face is farther from a sample. A hundredth of the diagonal of its box if it is
         not given.
     options
-        `scale` and `redundancy` simplify; `noise`, `labeling`, `sharp`, `sampling_density`, `seed`. With `labeling` a mesh
+        `scale`, `redundancy` and `scale_axis` simplify the power shape; `theta` and `rho` are of "voronoi"; `noise`, `labeling`, `sharp`, `sampling_density`, `seed`. With `labeling` a mesh
         goes by its points.
 
     Returns
@@ -323,7 +389,13 @@ def medial_axis(points: Any, *, sides: str = "inner", spacing: float | None = No
     >>> bool(abs(axis.properties["radius"] - 1).max() < 0.1)
     True
     """
-    options = {**options, "sides": sides}
+    if method not in ("power-shape", "voronoi"):
+        raise ArgumentError(f"method: one of power-shape, voronoi, not {method!r}")
+    others = ("scale", "redundancy", "scale_axis", "sharp", "sampling_density") if method == "voronoi" else ("theta", "rho")
+    for name in others:
+        if name in options:
+            raise ArgumentError(f"{name}: {method} does not have it")
+    options = {**options, "sides": sides, **({"voronoi": 1} if method == "voronoi" else {})}
     if _is_solid(points, options):
         if spacing is None:
             wide = 0.01 * float(np.linalg.norm(np.ptp(points.vertices, axis=0)))

@@ -13,7 +13,7 @@
 #include "base/rng.h"
 #include "base/scale.h"
 #include "base/versioned.h"
-#include "reconstruct/power_crust/ball_cover.h"
+#include "reconstruct/medial/ball_cover.h"
 #include "reconstruct/power_crust/power_crust.h"
 #include "triangulation/ring.h"
 #include <math.h>
@@ -47,8 +47,10 @@ static bool has_cell(const brio_labeled_poles *l, size_t p) {
 
 /* Simplifies the poles of one label. Removes the poles without a cell, because they add nothing to the union of the
  * other balls. */
-static brio_status simplify_side(brio_labeled_poles *l, const brio_cover_rule *rule, uint8_t label, uint8_t *keep) {
+static brio_status simplify_side(brio_labeled_poles *l, const brio_power_shape_options *o, uint8_t label,
+                                 uint8_t *keep) {
     brio_status status = BRIO_OK;
+    const brio_cover_rule rule = {o->scale, o->redundancy};
     uint32_t *balls = NULL;
     size_t count = 0;
     BRIO_TRY(BRIO_ALLOC(l->ctx, balls, l->poles.count));
@@ -59,7 +61,14 @@ static brio_status simplify_side(brio_labeled_poles *l, const brio_cover_rule *r
         else
             keep[p] = 0;
     }
-    BRIO_TRY(brio_cover_balls(l->ctx, &(brio_balls){l->poles.centre, l->poles.square, balls, count}, rule, keep));
+    brio_balls side = {l->poles.centre, l->poles.square, balls, count};
+    if (o->scale_axis > 1) {
+        BRIO_TRY(brio_scale_axis(l->ctx, &side, o->scale_axis, o->seed, keep));
+        for (side.count = 0, count = 0; count < l->poles.count; count++)
+            if (keep[count] && l->label[count] == label && !l->poles.bounding[count])
+                balls[side.count++] = (uint32_t)count;
+    }
+    if (o->scale > 1 || o->redundancy > 0) BRIO_TRY(brio_cover_balls(l->ctx, &side, &rule, keep));
 done:
     brio_release(l->ctx, balls);
     return status;
@@ -68,14 +77,13 @@ done:
 static brio_status simplify(brio_labeled_poles *l, const brio_power_shape_options *o, brio_power_shape_stats *stats) {
     static const uint8_t labels[2] = {BRIO_LABEL_INNER, BRIO_LABEL_OUTER};
     brio_status status = BRIO_OK;
-    const brio_cover_rule rule = {o->scale, o->redundancy};
     uint8_t *keep = NULL;
     double start = brio_seconds();
-    if (!(o->scale > 1) && !(o->redundancy > 0)) return BRIO_OK;
+    if (!(o->scale > 1) && !(o->redundancy > 0) && !(o->scale_axis > 1)) return BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(l->ctx, keep, l->poles.count));
     memset(keep, 1, l->poles.count);
     for (int i = 0; i < 2; i++)
-        if (wants(o, labels[i])) BRIO_TRY(simplify_side(l, &rule, labels[i], keep));
+        if (wants(o, labels[i])) BRIO_TRY(simplify_side(l, o, labels[i], keep));
     for (size_t p = 0; p < l->poles.count; p++) stats->left_out += !keep[p];
     BRIO_TRY(brio_labeled_poles_keep(l, keep));
     stats->simplify_seconds = brio_seconds() - start;
@@ -206,6 +214,8 @@ static brio_status check_options(brio_context *ctx, const brio_power_shape_optio
     BRIO_REQUIRE(ctx, (unsigned)o->sides < BRIO_SIDES_END, BRIO_ERR_ARGUMENT, "no such side: %d", (int)o->sides);
     BRIO_REQUIRE(ctx, o->scale >= 1 && isfinite(o->scale), BRIO_ERR_ARGUMENT,
                  "scale %g, expected a finite number, 1 or more", o->scale);
+    BRIO_REQUIRE(ctx, o->scale_axis >= 1 && isfinite(o->scale_axis), BRIO_ERR_ARGUMENT,
+                 "scale of the scale axis %g, expected a finite number, 1 or more", o->scale_axis);
     BRIO_REQUIRE(ctx, o->redundancy >= 0 && isfinite(o->redundancy), BRIO_ERR_ARGUMENT,
                  "redundancy %g, expected a finite number, 0 or more", o->redundancy);
 done:
@@ -276,6 +286,7 @@ brio_status brio_power_shape(brio_context *ctx, const double *points, size_t num
     BRIO_TRY(BRIO_TAKE(ctx, brio_power_shape_options, options, &o));
     if (!o.seed) o.seed = BRIO_SEED;
     if (o.scale == 0) o.scale = 1;
+    if (o.scale_axis == 0) o.scale_axis = 1;
     BRIO_TRY(brio_mesh_new(ctx, &shape_mesh));
     if (crust) BRIO_TRY(brio_mesh_new(ctx, &crust_mesh));
     brio_progress_part(ctx, bar, 0, POLES_SHARE);

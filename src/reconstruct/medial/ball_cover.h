@@ -1,6 +1,6 @@
 /* Fewer balls for nearly the same union. */
-#ifndef BRIO_RECONSTRUCT_BALL_COVER_H
-#define BRIO_RECONSTRUCT_BALL_COVER_H
+#ifndef BRIO_RECONSTRUCT_MEDIAL_BALL_COVER_H
+#define BRIO_RECONSTRUCT_MEDIAL_BALL_COVER_H
 
 #include "base/context.h"
 
@@ -24,5 +24,11 @@ typedef struct {
  *  Cost: one search in a tree of boxes for each ball.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_cover_balls(brio_context *ctx, const brio_balls *balls, const brio_cover_rule *rule, uint8_t *keep);
+
+/** Scales all balls by `scale`, and drops those that then lie in the union of the others: those whose spheres reach no
+ *  place of its boundary, except what is needed so that the union has no voids without them.
+ *  keep  #P: set to 0 for the selected balls that are dropped; other entries are not written.
+ *  Returns what brio_ball_union returns. */
+brio_status brio_scale_axis(brio_context *ctx, const brio_balls *balls, double scale, uint64_t seed, uint8_t *keep);
 
 #endif

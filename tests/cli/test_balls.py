@@ -1,0 +1,43 @@
+"""brio balls: volumes, what is counted, and the surface of unions of balls."""
+
+import math
+
+from brio_cli import CliTest, main
+
+
+class Balls(CliTest):
+    def test_two_balls_have_the_volume_of_the_formula(self):
+        balls, out = self.file("a.csv", "x,y,z,radius\n0,0,0,1\n1,0,0,1\n"), self.path("out.ply")
+        facts = self.facts("balls", balls, "-o", out, "--error", "0.001")
+        self.assertAlmostEqual(facts["union_volume"], 8 * math.pi / 3 - 5 * math.pi / 12, delta=1e-12)
+        self.assertAlmostEqual(facts["union_area"], 6 * math.pi, delta=1e-12)
+        self.assertEqual((facts["balls"], facts["exposed"], facts["union_components"], facts["tunnels"], facts["voids"]), (2, 2, 1, 0, 0))
+        self.assertEqual((facts["patches"], facts["arcs"], facts["corners"]), (2, 1, 0))
+        self.assertTrue(facts["certificate"]["closed"] and facts["certificate"]["manifold"])
+        self.assertAlmostEqual(facts["certificate"]["volume"], facts["union_volume"], delta=0.02)
+        coarse = self.facts("balls", balls, "-o", out, "--error", "0.05")
+        self.assertLess(coarse["faces"], facts["faces"] / 10)
+
+    def test_weights_are_squares_and_may_be_in_a_file(self):
+        points, weights = self.xyz("a.xyz", [(0, 0, 0), (5, 0, 0)]), self.file("w.txt", "4\n1\n")
+        facts = self.facts("balls", points, "--weights", weights)
+        self.assertAlmostEqual(facts["union_volume"], 4 * math.pi / 3 * 9, delta=1e-11)
+        self.assertNotIn("certificate", facts)
+        self.usage("no radii", "balls", points)
+        self.usage("-o OUT is missing", "balls", points, "--weights", weights, "--error", "0.1")
+        nothing = self.file("n.txt", "0\n-1\n")
+        self.assertIn("no ball", self.expect(3, "balls", points, "--weights", nothing).err)
+
+    def test_balls_of_a_torus_have_its_tunnel(self):
+        """The union of inner polar balls has the surface's topology (lemma 47)."""
+        axis, out = self.path("axis.ply"), self.path("out.ply")
+        self.expect(0, "medial", self.cloud("a.ply", 1500, "torus"), "-o", axis, "--quiet")
+        facts = self.facts("balls", axis, "-o", out)
+        self.assertEqual((facts["union_components"], facts["tunnels"], facts["voids"]), (1, 1, 0))
+        found = facts["certificate"]
+        self.assertEqual((found["closed"], found["manifold"], found["components"], found["genus"]), (True, True, 1, 1))
+        self.assertEqual(self.facts("check", out)["certificate"]["genus"], 1)
+
+
+if __name__ == "__main__":
+    main()
