@@ -109,7 +109,6 @@ static brio_status carry(run *r, const brio_mesh *points, brio_mesh *curve) {
 brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed, brio_mesh **out) {
     brio_curve_options o = {0};
     brio_curve_stats s = {0};
-    brio_status status = BRIO_OK;
     o.open = open;
     o.closed = closed;
     TRY(require(r, points));
@@ -119,8 +118,7 @@ brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed,
     report(r, &s);
     TRY(cli_check_interrupt(r));
     TRY(cli_certify_edges(r, *out, &s.corners, true, NULL));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- power crusts --- */
@@ -178,7 +176,6 @@ static brio_status refuse_options_of_space(run *r, const power_crust_options *o,
 brio_status cli_planar_crust(run *r, const brio_mesh *points, const power_crust_options *options, bool any_labeling,
                              brio_mesh **out) {
     brio_planar_crust_stats s = {0};
-    brio_status status = BRIO_OK;
     TRY(crust_of_curves(r, points, out, NULL, &s));
     TRY(refuse_options_of_space(r, options, any_labeling));
     r->lap = cli_clock();
@@ -186,14 +183,12 @@ brio_status cli_planar_crust(run *r, const brio_mesh *points, const power_crust_
     report_crust(r, &s);
     TRY(cli_check_interrupt(r));
     TRY(cli_certify_edges(r, *out, NULL, true, NULL));
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust, brio_mesh **shape) {
     brio_planar_crust_stats s = {0};
     facts *f = &r->facts;
-    brio_status status = BRIO_OK;
     TRY(crust_of_curves(r, points, crust, shape, &s));
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "shape", s.crust_seconds);
@@ -206,6 +201,5 @@ brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust,
     cli_fact_count(f, "vertices", (*shape)->num_vertices);
     cli_fact_count(f, "edges", (*shape)->num_edges);
     TRY(carry(r, points, *crust));
-done:
-    return status;
+    return BRIO_OK;
 }

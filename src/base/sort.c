@@ -247,7 +247,7 @@ static brio_status count_bytes(brio_context *ctx, const uint64_t *keys, size_t n
     return BRIO_OK;
 }
 
-/* Eight passes count by one byte after the other, from the highest, the keys that share the bytes known so far. */
+/* Counts, in eight passes by one byte each, from the highest, the keys that share the bytes known so far. */
 brio_status brio_key_of_rank(brio_context *ctx, const uint64_t *keys, size_t n, size_t rank, uint64_t *key) {
     assert(rank < n);
     *key = 0;

@@ -217,28 +217,27 @@ static brio_status settle(crust *c, uint32_t t, int side, double strength) {
     return brio_look(c->ctx, 1);
 }
 
-/* Both infinite triangles of a row on the hull stand for its first pole; the list has the last one. All are outer. */
+/* Labels all triangles. Both infinite ones of a row on the hull stand for its first pole; the list has the last one. All of
+ * these are outer. */
 static brio_status label_all(crust *c) {
-    brio_status status = BRIO_OK;
     for (size_t t = 0; t < c->count; t++) c->side[t] = is_finite(c, (uint32_t)t) ? NO_SIDE : 0;
-    for (uint32_t t = (uint32_t)c->num_finite; t < c->count; t++) BRIO_TRY(settle(c, t, 0, 1));
+    for (uint32_t t = (uint32_t)c->num_finite; t < c->count; t++) BRIO_FORWARD(settle(c, t, 0, 1));
     while (c->queued) {
         entry top = c->heap[0], last = c->heap[--c->queued];
         if (c->queued) sink(c->heap, 0, c->queued, last, NULL);
         const double *belief = c->belief[top.triangle];
         if (c->side[top.triangle] != NO_SIDE || priority_of(belief) != top.priority) continue;
         int side = belief[1] > belief[0];
-        BRIO_TRY(settle(c, top.triangle, side, belief[side]));
+        BRIO_FORWARD(settle(c, top.triangle, side, belief[side]));
     }
     for (size_t t = 0; t < c->count; t++)
         if (c->side[t] == NO_SIDE) c->side[t] = 0;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the result --- */
 
-/* Whether the edge opposite to corner i of triangle t is met here first. */
+/* Returns whether the edge opposite to corner i of triangle t is met here first. */
 static bool is_first(const crust *c, uint32_t t, uint32_t i) {
     return 4 * t + i < c->triangle[t].mate[i];
 }
@@ -324,13 +323,10 @@ static void crust_free(crust *c) {
 }
 
 static brio_status label_triangles(crust *c) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, c->side, c->count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, c->belief, c->count));
-    BRIO_TRY(find_poles(c));
-    BRIO_TRY(label_all(c));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->side, c->count));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->belief, c->count));
+    BRIO_FORWARD(find_poles(c));
+    return label_all(c);
 }
 
 /* Returns whether the edge opposite to corner i of triangle t has a short Voronoi edge: half the sum of the cotangents

@@ -105,7 +105,8 @@ bool brio_groups_meet(const brio_face_groups *g, const double low[3], const doub
 brio_status brio_crossing_faces(brio_context *ctx, const brio_mesh *mesh, const uint8_t *only, uint8_t *crosses,
                                 int64_t *pairs);
 
-/** The same of faces whose boxes are found already: for several searches, between which vertices move a little. */
+/** Counts and tells the same of faces whose boxes are found already: for several searches, between which vertices move
+ *  a little. */
 brio_status brio_search_crossings(const brio_face_groups *g, const uint8_t *only, uint8_t *crosses, int64_t *pairs);
 
 #endif

@@ -174,29 +174,24 @@ static void fit_groups(void *user, size_t begin, size_t end, int thread) {
 }
 
 brio_status brio_face_groups_fit(brio_face_groups *g) {
-    brio_status status = BRIO_OK;
     for (int level = 0; level < g->levels; level++) {
         size_t groups = g->first[level + 1] - g->first[level];
         fitting f = {g, level};
-        BRIO_TRY(brio_for(g->ctx, brio_threads(g->ctx, groups, GROUPS_A_THREAD), groups, level ? fit_groups : fit_faces,
-                          level ? (void *)&f : (void *)g));
+        BRIO_FORWARD(brio_for(g->ctx, brio_threads(g->ctx, groups, GROUPS_A_THREAD), groups,
+                              level ? fit_groups : fit_faces, level ? (void *)&f : (void *)g));
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 brio_status brio_face_groups_new(brio_context *ctx, const brio_mesh *mesh, brio_face_groups *out) {
-    brio_status status = BRIO_OK;
     *out = (brio_face_groups){.ctx = ctx, .mesh = mesh};
-    BRIO_TRY(sort_faces(out));
+    BRIO_FORWARD(sort_faces(out));
     for (size_t boxes = out->count; boxes > 1 || (boxes > 0 && out->levels == 0); out->levels++) {
         boxes = (boxes + BRIO_GROUP - 1) / BRIO_GROUP;
         out->first[out->levels + 1] = out->first[out->levels] + boxes;
     }
-    BRIO_TRY(BRIO_ALLOC(ctx, out->group, out->first[out->levels]));
-    BRIO_TRY(brio_face_groups_fit(out));
-done:
-    return status;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->group, out->first[out->levels]));
+    return brio_face_groups_fit(out);
 }
 
 void brio_face_groups_free(brio_face_groups *g) {

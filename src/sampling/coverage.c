@@ -227,11 +227,10 @@ static void ask_face(void *user, size_t begin, size_t end, int thread) {
 
 /* Makes a mesh of triangles from the lowest to the highest corner of the box of each ball. */
 static brio_status draw_boxes(brio_context *ctx, const ball *balls, size_t num_balls, brio_mesh *out) {
-    brio_status status = BRIO_OK;
     *out = (brio_mesh){.context = ctx, .num_vertices = 2 * num_balls, .num_faces = num_balls};
-    BRIO_TRY(BRIO_ALLOC(ctx, out->vertices, 6 * num_balls));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_offsets, num_balls + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_vertices, 3 * num_balls));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->vertices, 6 * num_balls));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_offsets, num_balls + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_vertices, 3 * num_balls));
     for (size_t i = 0; i <= num_balls; i++) out->face_offsets[i] = 3 * i;
     for (size_t i = 0; i < num_balls; i++) {
         for (size_t k = 0; k < 3; k++) {
@@ -240,18 +239,16 @@ static brio_status draw_boxes(brio_context *ctx, const ball *balls, size_t num_b
             out->face_vertices[3 * i + k] = (uint32_t)(2 * i + (k == 1));
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status copy_near(brio_context *ctx, const near_search *s, brio_mesh *out) {
-    brio_status status = BRIO_OK;
     const brio_mesh *m = s->mesh;
     size_t faces = 0, corners = 0;
     for (size_t f = 0; f < m->num_faces; f++)
         if (s->near[f]) faces++, corners += (size_t)(m->face_offsets[f + 1] - m->face_offsets[f]);
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_offsets, faces + 1));
-    BRIO_TRY(BRIO_ALLOC(ctx, out->face_vertices, corners));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_offsets, faces + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_vertices, corners));
     out->face_offsets[0] = 0;
     for (size_t f = 0; f < m->num_faces; f++) {
         if (!s->near[f]) continue;
@@ -260,8 +257,7 @@ static brio_status copy_near(brio_context *ctx, const near_search *s, brio_mesh 
         if (count) memcpy(out->face_vertices + at, m->face_vertices + from, count * sizeof *out->face_vertices);
         out->face_offsets[out->num_faces] = at + count;
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Lists the faces of three corners or more whose boxes meet the box of a ball. Each ball takes the shape of a triangle

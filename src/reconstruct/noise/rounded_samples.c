@@ -111,7 +111,7 @@ static double mean_near(const rounded *r, const double *height, size_t p) {
     return sum / r->count[p];
 }
 
-/* One pass that makes the first differences small: reads `height`, writes `spare`. */
+/* Makes the first differences smaller, in one pass: reads `height`, writes `spare`. */
 static void take_means(void *user, size_t begin, size_t end, int thread) {
     const rounded *r = user;
     (void)thread;
@@ -119,7 +119,7 @@ static void take_means(void *user, size_t begin, size_t end, int thread) {
         r->spare[p] = r->count[p] ? allowed(r, p, mean_near(r, r->height, p)) : r->height[p];
 }
 
-/* The first half of a pass that makes the second differences small: goes on with the momentum, in `spare`. */
+/* Goes on with the momentum, in `spare`: the first half of a pass that makes the second differences small. */
 static void go_on(void *user, size_t begin, size_t end, int thread) {
     const rounded *r = user;
     (void)thread;
