@@ -29,8 +29,8 @@ typedef struct brio_ball_union_stats {
 
 /** Computes the union of balls: its volume, its area, and its boundary as a mesh.
  *  The volume is that of the dual complex, whose simplices are those of the regular triangulation whose power faces
- *  meet the union, and of what lies beyond: cones of patches less the lenses of arcs. No term is larger than the balls, and
- *  only balls on the boundary have terms, so it is right to a few units in the last place times their number.
+ *  meet the union, and of what lies beyond: cones of patches less the lenses of arcs. No term is larger than the balls,
+ *  and only balls on the boundary have terms, so it is right to a few units in the last place times their number.
  *  The mesh is closed, manifold and oriented for any balls; voids have surfaces, too. Its vertices are on the spheres,
  *  and each triangle is within options.error of its ball's sphere. Where spheres meet in one point within rounding, as
  *  polar balls do at each sample, the mesh has triangles and edges of length about 0.

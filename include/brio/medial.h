@@ -94,8 +94,8 @@ typedef struct brio_voronoi_axis_stats {
  *  change: no value has to be chosen for the model.
  *  points   #P by 3.   options  NULL for the defaults.   stats  NULL, or receives what was found.
  *  out      owned by the caller: Voronoi vertices with the properties "radius" (float64: the distance to the samples)
- *           and "side" (int8: -1 inner, 1 outer), and the facets as faces, convex polygons in no common orientation. Facets
- *           with vertices on both sides of the surface, and facets without end, are not part of it.
+ *           and "side" (int8: -1 inner, 1 outer), and the facets as faces, convex polygons in no common orientation.
+ *           Facets with vertices on both sides of the surface, and facets without end, are not part of it.
  *  Cost: without `solid`, the surface of the points with BRIO_SURFACE_LABELED first; a triangulation, and about 600
  *  bytes a sample beside it; one winding number a vertex of the result.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (options out of range), BRIO_ERR_NO_ANSWER (the samples span no solid, no facet

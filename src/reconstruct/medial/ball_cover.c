@@ -10,8 +10,8 @@
  *
  * Based on: Miklos, Giesen, Pauly. Discrete scale axis representations for 3D geometry. SIGGRAPH 2010 (scaling).
  *           Amenta, Choi, Kolluri. The power crust. Solid Modeling 2001 (redundancy: larger balls first).
- * Differs from the papers: one ball has to contain the other one; the scale axis, which asks for the union of all balls,
- *                          is in scale_axis.c. */
+ * Differs from the papers: one ball has to contain the other one; the scale axis, which asks for the union of
+ *                          all balls, is in scale_axis.c. */
 #include "reconstruct/medial/ball_cover.h"
 #include "base/memory.h"
 #include "base/sort.h"
