@@ -111,14 +111,13 @@ brio_status cli_curve(run *r, const brio_mesh *points, double open, bool closed,
     brio_curve_stats s = {0};
     o.open = open;
     o.closed = closed;
-    TRY(require(r, points));
-    TRY(brio_curve(r->ctx, points->vertices, points->num_vertices, &o, out, &s));
+    FORWARD(require(r, points));
+    FORWARD(brio_curve(r->ctx, points->vertices, points->num_vertices, &o, out, &s));
     r->lap = cli_clock();
-    TRY(carry(r, points, *out));
+    FORWARD(carry(r, points, *out));
     report(r, &s);
-    TRY(cli_check_interrupt(r));
-    TRY(cli_certify_edges(r, *out, &s.corners, true, NULL));
-    return BRIO_OK;
+    FORWARD(cli_check_interrupt(r));
+    return cli_certify_edges(r, *out, &s.corners, true, NULL);
 }
 
 /* --- power crusts --- */
@@ -176,20 +175,19 @@ static brio_status refuse_options_of_space(run *r, const power_crust_options *o,
 brio_status cli_planar_crust(run *r, const brio_mesh *points, const power_crust_options *options, bool any_labeling,
                              brio_mesh **out) {
     brio_planar_crust_stats s = {0};
-    TRY(crust_of_curves(r, points, out, NULL, &s));
-    TRY(refuse_options_of_space(r, options, any_labeling));
+    FORWARD(crust_of_curves(r, points, out, NULL, &s));
+    FORWARD(refuse_options_of_space(r, options, any_labeling));
     r->lap = cli_clock();
-    TRY(carry(r, points, *out));
+    FORWARD(carry(r, points, *out));
     report_crust(r, &s);
-    TRY(cli_check_interrupt(r));
-    TRY(cli_certify_edges(r, *out, NULL, true, NULL));
-    return BRIO_OK;
+    FORWARD(cli_check_interrupt(r));
+    return cli_certify_edges(r, *out, NULL, true, NULL);
 }
 
 brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust, brio_mesh **shape) {
     brio_planar_crust_stats s = {0};
     facts *f = &r->facts;
-    TRY(crust_of_curves(r, points, crust, shape, &s));
+    FORWARD(crust_of_curves(r, points, crust, shape, &s));
     cli_stage(r, "delaunay", s.delaunay_seconds);
     cli_stage(r, "shape", s.crust_seconds);
     r->lap = cli_clock();
@@ -200,6 +198,5 @@ brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust,
     cli_fact_text(f, "labeling", "greedy");
     cli_fact_count(f, "vertices", (*shape)->num_vertices);
     cli_fact_count(f, "edges", (*shape)->num_edges);
-    TRY(carry(r, points, *crust));
-    return BRIO_OK;
+    return carry(r, points, *crust);
 }

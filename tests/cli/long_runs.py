@@ -35,6 +35,7 @@ INPUTS = {
     "dense.vtk": "convert {dense.ply} --ascii -o {out}",
     "tets.vtu": "delaunay {few.ply} -o {out}",
     "many.vtu": "delaunay {ball.ply} -o {out}",
+    "axis.ply": "medial {small.ply} -o {out}",
     "ball.map": None,
 }
 
@@ -49,6 +50,7 @@ RUNS = {
                 "surface {small.ply} --simplify --self-intersections --vertex-normals --normals {out2}.ply -o {out}.ply",
                 "surface {scan.ply} --closed --noise smooth -o {out}.obj", "surface {scan.ply} --method cocone --pieces 8 -o {out}.ply"],
     "medial": ["medial {small.ply} -o {out}.ply", "medial {coarse.ply} --simplify -o {out}.ply"],
+    "balls": ["balls {axis.ply} -o {out}.ply"],
     "hull": ["hull {big.ply} -o {out}.ply", "hull {sphere.ply} -o {out}.ply", "hull {sphere.ply} --polygons -o {out}.off"],
     "alpha": ["alpha {ball.ply} --alpha auto -o {out}.ply", "alpha {few.ply} --filtration {out2}.txt --alpha auto -o {out}.ply",
               "alpha {ball.ply} --filtration {out2}.sparse --alpha 0.001 -o {out}.ply"],

@@ -51,6 +51,7 @@ RUNS = {
     "surface {p} --method cocone -o {o}.ply": ("3333333", SOLID),
     "surface {p} --method tight-cocone -o {o}.ply": ("3333333", SOLID),
     "medial {p} -o {o}.ply": ("3333333", SOLID),
+    "balls {p} -o {o}.ply": ("1111111", r"no radii: expected a property radius or weight, or --weights FILE"),
     "offset {p} --distance 0.1 -o {o}.ply": ("3333333", SOLID),
     "check {p}": ("2222222", r"expected faces or tetrahedra to check, found points only"),
     "compare {p} {p}": ("2222222", r"expected a surface at least once, found no faces"),

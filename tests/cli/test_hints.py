@@ -180,6 +180,7 @@ ERRORS = {
     "--%s: unknown name '%s', expected %s; did you mean '%s'?": ("delaunay few.xyz --order hilbrt", 1,
                                                                 ["delaunay few.xyz --order hilbert"]),
     "unknown option '%s'; did you mean '--%s'?": ("delaunay few.xyz --verfy", 1, ["delaunay few.xyz --verify"]),
+    "--error is for the mesh: -o OUT is missing": ("balls axis.ply --error 0.01", 1, ["balls axis.ply --error 0.01 -o out.ply"]),
     "no alpha: --alpha A or --alpha auto is missing": ("alpha few.xyz -o out.ply", 1, ["alpha few.xyz --alpha auto -o out.ply"]),
     "no property: --property NAME is missing": ("interpolate values.csv --at few.xyz -o out.csv", 1,
                                                 ["interpolate values.csv --at few.xyz --property q -o out.csv"]),
@@ -247,6 +248,7 @@ class Hints(CliTest):
         self.cloud("sparse.ply", 60, "torus")
         self.expect(0, "generate", "scan", "-n", "60000", "-o", "many.ply", "--quiet"), self.cloud("dense.ply", 1500, "torus")
         self.xyz("few.xyz", few), self.xyz("few.what", few), self.xyz("few4.xyz", few[:4]), self.xyz("corner.xyz", [(0.236, 0.103, 0.396), (0.155, 0.067, 0.402), (0.918, 0.8, 0.765), (0.222, 0.537, 0.277)])
+        self.expect(0, "medial", "cube.ply", "-o", "axis.ply", "--quiet")
         self.xyz("tiny.xyz", [[x * 1e-200 for x in p] for p in few]), self.xyz("huge.xyz", [[x * 1e200 for x in p] for p in few])
         self.xyz("line.xyz", [(i, 2 * i, 3 * i) for i in range(9)]), self.xyz("one.xyz", [(1, 2, 3)] * 5)
         flat = [(a, b + a * a / 50) for a in range(6) for b in range(6)]
@@ -391,6 +393,9 @@ class Hints(CliTest):
             for command, *options in tries:
                 run = self.run_brio(command, "plane_%s.xyz" % name, *options, "-o", "out.ply")
                 if name == "oblique" and run.code == 0:  # its coordinates are rounded, and so it has a thickness
+                    continue
+                if name == "steep" and run.code == 0:  # six short rows far apart: these are curves, too
+                    self.assertTrue(command == "medial" or "power-crust" in options, options)
                     continue
                 self.assertEqual(run.code, 3, run.err)
                 err = run.err

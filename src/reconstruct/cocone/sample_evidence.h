@@ -32,8 +32,8 @@ brio_status brio_weigh_evidence(brio_context *ctx, const brio_sample_evidence *e
 brio_status brio_orient_by_evidence(brio_context *ctx, const brio_sample_evidence *e, const brio_cocones *c,
                                     uint8_t *turned, float **own, unsigned *used);
 
-/** Writes the place of the scanner that saw sample p, scaled as the samples are. Returns whether it is known; it may not
- *  be finite. */
+/** Writes the place of the scanner that saw sample p, scaled as the samples are. Returns whether it is known; it need
+ *  not be finite. */
 bool brio_scanner_place(const brio_sample_evidence *e, size_t p, double place[3]);
 
 /** Finds the directions from the samples to their scanners.
