@@ -217,8 +217,8 @@ static brio_status settle(crust *c, uint32_t t, int side, double strength) {
     return brio_look(c->ctx, 1);
 }
 
-/* Labels all triangles. Both infinite ones of a row on the hull stand for its first pole; the list has the last one. All
- * of these are outer. */
+/* Labels all triangles. Both infinite ones of a row on the hull stand for its first pole; the list has the last one.
+ * All of these are outer. */
 static brio_status label_all(crust *c) {
     for (size_t t = 0; t < c->count; t++) c->side[t] = is_finite(c, (uint32_t)t) ? NO_SIDE : 0;
     for (uint32_t t = (uint32_t)c->num_finite; t < c->count; t++) BRIO_FORWARD(settle(c, t, 0, 1));
