@@ -25,6 +25,9 @@ static const struct {
              {"a.e57", BRIO_FORMAT_E57, DOUBLES | PROPERTIES},
              {"a.ptx", BRIO_FORMAT_PTX, 0},
              {"a.pcd", BRIO_FORMAT_PCD, DOUBLES},
+             {"a.pts", BRIO_FORMAT_PTS, DOUBLES},
+             {"a.xyzrgb", BRIO_FORMAT_XYZRGB, DOUBLES},
+             {"a.xyzn", BRIO_FORMAT_XYZN, DOUBLES},
              {"a.vtk", BRIO_FORMAT_VTK, 0}};
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
@@ -108,10 +111,11 @@ static brio_mesh *read_again(brio_context *ctx, const char *name) {
     return m;
 }
 
-/* Whether every format can hold the name, and no other name becomes the same. */
+/* Returns whether every format can hold the name, and no other name becomes the same. Names in XML begin with no digit. */
 static bool is_word(const char *name) {
-    bool axis = strchr("xyzXYZ", name[0]) && !name[1];
-    return !axis && strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789") == strlen(name);
+    bool axis = strchr("xyzXYZ", name[0]) && !name[1], digit = name[0] >= '0' && name[0] <= '9';
+    return !axis && !digit &&
+           strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789") == strlen(name);
 }
 
 static void expect_properties(const brio_mesh *a, const brio_mesh *b, bool as_doubles) {
