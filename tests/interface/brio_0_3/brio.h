@@ -97,6 +97,7 @@
 #include "queries.h"       /* location, nearest vertices, interpolation */
 #include "cells.h"         /* Voronoi and power cells */
 #include "shapes.h"        /* convex hulls, alpha shapes, restricted triangulations */
+#include "balls.h"         /* unions of balls */
 #include "offset.h"        /* offsets of closed meshes */
 #include "medial.h"        /* medial axes */
 #include "iso.h"           /* iso-surfaces of maps and atoms */

@@ -71,6 +71,37 @@ typedef struct brio_curve_certificate {
  *  to itself), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_curve_certificate(brio_context *ctx, const brio_mesh *mesh, brio_curve_certificate *out);
 
+typedef struct brio_planar_crust_stats {
+    size_t size;
+    size_t points, samples;     /* the points; their distinct positions */
+    size_t edges;               /* of the crust */
+    size_t poles, inner, outer; /* vertices of the Voronoi diagram; by label */
+    size_t confused;            /* poles that had evidence for both labels when they were labeled */
+    size_t fat;                 /* edges whose Voronoi edge is less than 1.25 times as long: few along curves,
+                                           over a tenth where points lie on an area */
+    double delaunay_seconds, crust_seconds;
+} brio_planar_crust_stats;
+
+/** Finds the power crust of points of a plane: edges that part inside from outside. Every vertex has an even number of
+ *  edges, whatever the points: the curves are closed, though they may touch each other. In the plane all vertices of
+ *  the Voronoi diagram are poles, and the power diagram of their balls is the Delaunay triangulation. So the crust
+ *  consists of Delaunay edges: those between triangles of different labels. The labels are the greedy ones. brio_curve
+ *  is right more often, and has ends.
+ *  points   #P by 3, in a plane as those of brio_curve.
+ *  out      owned by the caller, NULL on error. Its vertices are the distinct positions in the order of the points,
+ *           with the property "sample" (uint32, the index of the point). Going along an edge, the inside is to the left
+ *           as seen from the side to which axis[0] x axis[1] of brio_plane_fit points.
+ *  shape    NULL, or receives the power shape, owned by the caller, NULL on error: the inner poles, with the property
+ *           "radius" (double) of their circles, and edges between those whose triangles share an edge. It is homotopy
+ *           equivalent to the inside.
+ *  stats    NULL, or its `size` set.
+ *  Cost: one triangulation of the plane; then O(n log n). Memory: 250 bytes a point.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER (no points; points off a plane, or on a
+ *  line; nothing is inside), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Choi 2003] figures 3.4 and 3.8, [Amenta Choi Kolluri 2001]. */
+BRIO_API brio_status brio_planar_crust(brio_context *ctx, const double *points, size_t num_points, brio_mesh **out,
+                                       brio_mesh **shape, brio_planar_crust_stats *stats);
+
 typedef struct brio_spanning_tree_stats {
     size_t size;
     size_t points, vertices, edges; /* the points; their distinct positions; one edge fewer */

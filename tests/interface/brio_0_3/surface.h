@@ -271,11 +271,10 @@ struct brio_surface_stats {
     brio_pole_stats poles; /* of OFFSET: of the balls that are left */
     double noise_seconds, delaunay_seconds, poles_seconds, candidates_seconds, labels_seconds, manifold_seconds,
         open_seconds, density_seconds, crust_seconds, simplify_seconds;
-    /* LABELED, unless noise is BRIO_NOISE_KEEP */
-    size_t
-        unrounded; /* points whose depths, from a scanner, were rounded to steps of over a spacing: moved by at most half
-                         a step, so that steps are slopes */
-    double rounding; /* the median of these steps; 0: there are none */
+    /* LABELED, unless noise is BRIO_NOISE_KEEP: depths from a scanner that are rounded to steps of over a spacing
+     * become slopes */
+    size_t unrounded; /* points that were moved for that, by at most half a step */
+    double rounding;  /* the median of these steps; 0: there are none */
 };
 
 /** Finds the oriented unit normals of the points that a surface was made from. A point that is a vertex has the
