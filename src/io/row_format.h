@@ -29,7 +29,8 @@ typedef struct brio_row_format {
     /** Returns whether a reader finds property i by another name. NULL: job->names has the names of the file, each one
      *  word. Otherwise there is no job->names. */
     bool (*renames)(const void *state, size_t i);
-    /** Returns whether the file has no place for property i. NULL: what the table of formats says. */
+    /** Returns whether the file has no place for property i. Asked when all is written. NULL: what the table of formats
+     *  says. */
     bool (*lacks)(const void *state, size_t i);
     /** Returns whether coordinates are rounded. NULL: only as the options say. */
     bool (*rounds)(const void *state);
