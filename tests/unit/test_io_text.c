@@ -4,8 +4,9 @@
 
 static void format_of_names(void) {
     EXPECT(brio_format_of("a/b.c/d.PLY") == BRIO_FORMAT_PLY && brio_format_of(".ply") == BRIO_FORMAT_PLY);
-    EXPECT(brio_format_of("ply") == BRIO_FORMAT_PLY && brio_format_of("a.pts") == BRIO_FORMAT_XYZ);
+    EXPECT(brio_format_of("ply") == BRIO_FORMAT_PLY && brio_format_of("a.pts") == BRIO_FORMAT_PTS);
     EXPECT(brio_format_of("x.txt") == BRIO_FORMAT_XYZ && brio_format_of("x.csv") == BRIO_FORMAT_XYZ);
+    EXPECT(brio_format_of("x.xyzrgb") == BRIO_FORMAT_XYZRGB && brio_format_of("x.xyzn") == BRIO_FORMAT_XYZN);
     EXPECT(brio_format_of("x.obj") == BRIO_FORMAT_OBJ && brio_format_of("x.off") == BRIO_FORMAT_OFF);
     EXPECT(brio_format_of("x.vtu") == BRIO_FORMAT_VTU && brio_format_of("x.node") == BRIO_FORMAT_NODE);
     EXPECT(brio_format_of("x.ele") == BRIO_FORMAT_NODE && brio_format_of("x.ply.gz") == BRIO_FORMAT_AUTO);

@@ -116,7 +116,7 @@ static size_t add_box(int a, int b, int c, const double *at, double *p) {
 
 /* Grids on boxes, stairs, thin plates, rings of a lathe, heights over a grid: planes and levels, and nothing rounded. */
 static void exact_planes_are_not_rounded(void) {
-    static double p[3 * 40000], truth[3 * PIXELS];
+    static double p[3 * 80000], truth[3 * PIXELS];
     static const double O[3] = {0, 0, 0};
     brio_context *ctx = new_context();
     size_t n = add_box(40, 40, 40, O, p);
