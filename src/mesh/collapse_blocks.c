@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { TRIES_A_REPORT = 1 << 16 };
+enum { TRIES_A_REPORT = 1 << 10 }; /* a guarded try takes tens of microseconds */
 
 /* An error and the half-edge that names the edge; as numbers the entries have the order of the errors, ties that of
  * the half-edges. */

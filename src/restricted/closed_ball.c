@@ -29,7 +29,7 @@ brio_status brio_restriction_sort(brio_restriction *r) {
     BRIO_TRY(BRIO_ALLOC(r->ctx, index, r->num_crossings));
     BRIO_TRY(BRIO_ALLOC(r->ctx, sorted, r->num_crossings));
     for (size_t i = 0; i < r->num_crossings; i++) index[i] = (uint32_t)i;
-    brio_sort_indices(index, r->num_crossings, compare_crossings, r->crossing);
+    BRIO_TRY(brio_sort_many_indices(r->ctx, index, r->num_crossings, compare_crossings, r->crossing));
     for (size_t i = 0; i < r->num_crossings; i++) sorted[i] = r->crossing[index[i]];
     for (size_t i = 0; i < r->num_crossings; i++) r->crossing[i] = sorted[i];
 done:
@@ -131,12 +131,13 @@ static brio_status count_facets(const brio_restriction *r, facet_work *w, brio_b
     w->count = list_ends(r, w->end);
     BRIO_FORWARD(BRIO_ALLOC(r->ctx, w->order, w->count));
     for (size_t i = 0; i < w->count; i++) w->order[i] = (uint32_t)i;
-    brio_sort_indices(w->order, w->count, compare_ends, w->end);
+    BRIO_FORWARD(brio_sort_many_indices(r->ctx, w->order, w->count, compare_ends, w->end));
     BRIO_FORWARD(check_segments(r, w));
     for (size_t i = 0, end; i < w->count; i = end) {
         const uint32_t *s = w->end[w->order[i]].sample;
         bool arc = false;
         for (end = i; end < w->count && !memcmp(w->end[w->order[end]].sample, s, sizeof(uint32_t[2]));) end += 2;
+        BRIO_FORWARD(brio_look(r->ctx, end - i));
         BRIO_FORWARD(is_arc(r->ctx, w, i, end, &arc));
         n->facets++;
         n->bad_facets += !arc;
@@ -189,10 +190,12 @@ static brio_status count_parts(const brio_restriction *r, uint32_t *parts) {
     BRIO_TRY(BRIO_ALLOC(ctx, set, r->num_pieces));
     for (size_t i = 0; i < r->num_pieces; i++) set[i] = (uint32_t)i, first[(uint32_t)r->piece[i] + 1]++;
     for (size_t f = 0; f < n; f++) first[f + 1] += first[f];
-    for (size_t e = 0; e < r->num_edges; e++)
+    for (size_t e = 0; e < r->num_edges; e++) {
+        BRIO_TRY(brio_look(ctx, r->first[e + 1] - r->first[e]));
         for (uint64_t i = r->first[e]; i < r->first[e + 1]; i++)
             brio_unite(set, place_of(r, first, r->side[e][0], r->met[i]), place_of(r, first, r->side[e][1], r->met[i]),
                        true);
+    }
     for (size_t i = 0; i < r->num_pieces; i++) parts[r->piece[i] >> 32] += set[i] == i;
 done:
     brio_release(ctx, first);
