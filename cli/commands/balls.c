@@ -19,7 +19,7 @@ static const option options[] = {
     {0},
 };
 
-static const arguments defaults = {.weights.exponent = NO_EXPONENT};
+static const arguments defaults = {.weights = {.exponent = NO_EXPONENT, .balls = true}};
 
 /* Bytes a tetrahedron beside the filtration, and tetrahedra a ball. */
 static const double TETRAHEDRON_BYTES = 100, TETRAHEDRA = 7;

@@ -135,7 +135,7 @@ static void tell_weights(run *r, const weights_options *options, const brio_mesh
     if ((!weight && !radius) || options->unweighted || options->estimate) return;
     if (options->file || options->exponent != NO_EXPONENT)
         cli_warn(r, WARNING_OVERRULED, options->file ? "" : "-mod", weight ? "weight" : "radius");
-    else if (!weight)
+    else if (!weight && !options->balls)
         cli_warn(r, WARNING_RADII);
 }
 

@@ -10,6 +10,7 @@ typedef struct weights_options {
     const char *file;
     int exponent; /* of --weights-mod; NO_EXPONENT without */
     bool unweighted;
+    bool balls;    /* points are balls: that a radius counts is no news */
     bool estimate; /* no words, and properties that are no weights count as none */
 } weights_options;
 

@@ -46,7 +46,7 @@ typedef struct {
     brio_arc *arc;
     uint32_t *patch; /* #patches: the ball of each */
     size_t num_corners, num_arcs, arc_capacity, num_patches;
-    size_t components, voids; /* of the union; of its complement, but for the outside */
+    size_t components, voids; /* of the union; of its complement, the outside not counted */
     int64_t euler;            /* the Euler characteristic of the union */
 } brio_union_boundary;
 

@@ -27,8 +27,8 @@
  * spacing by the distance of the sixth nearest point, the root of pi / 6. */
 static const double LEFT_OUT = 2, SUSPECT = 2.5, FAR = 5, GRID_SHARE = 0.72360125455826767;
 
-/* FEW: where at most 1 / FEW of the points are still open, the faces near them are picked first. Chosen, but for
- * NEIGHBOURS. */
+/* FEW: where at most 1 / FEW of the points are still open, the faces near them are picked first. NEIGHBOURS is the
+ * contract's; all others are chosen. */
 enum { NEIGHBOURS = 6, GRID = 12, BATCH = 1 << 14, ITEMS_A_CHUNK = 64, FEW = 8, HUGE_EXPONENT = 100 };
 
 enum { NOT_LEFT = 0, IS_LEFT = 1, OPEN = 2 };

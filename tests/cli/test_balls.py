@@ -8,6 +8,7 @@ from brio_cli import CliTest, main
 class Balls(CliTest):
     def test_two_balls_have_the_volume_of_the_formula(self):
         balls, out = self.file("a.csv", "x,y,z,radius\n0,0,0,1\n1,0,0,1\n"), self.path("out.ply")
+        self.assertEqual(self.expect(0, "balls", balls).err, "", "radii are what it asks for")
         facts = self.facts("balls", balls, "-o", out, "--error", "0.001")
         self.assertAlmostEqual(facts["union_volume"], 8 * math.pi / 3 - 5 * math.pi / 12, delta=1e-12)
         self.assertAlmostEqual(facts["union_area"], 6 * math.pi, delta=1e-12)

@@ -42,6 +42,21 @@ class Texts(DialectTest):
         self.assertEqual(self.convert("d.pts", "1 2 3 0 -0.5 1\n")[0][3:], ["column4", "column5", "column6"])
         self.assertEqual(self.convert("e.xyz", "1 2 3 0 255 77\n")[0][3:], ["column4", "column5", "column6"])
 
+    def test_fixed_columns_are_written_as_others_read_them(self):
+        """A .pts file had a line of names and no number of points, .xyzrgb and .xyzn had all columns."""
+        rows = "1,2,3,-900,0,255,77,0,0,1\n4.5,5,6,100,20,235,255,0,1,0\n"
+        source = self.file("a.csv", "x,y,z,intensity,red,green,blue,nx,ny,nz\n" + rows)
+        for name, lines, lost in (("pts", ["2", "1 2 3 -900 0 255 77", "4.5 5 6 100 20 235 255"], ["nx", "ny", "nz"]),
+                                  ("xyzrgb", ["1 2 3 0 1 0.3019608", "4.5 5 6 0.078431375 0.92156863 1"],
+                                   ["intensity", "nx", "ny", "nz"]),
+                                  ("xyzn", ["1 2 3 0 0 1", "4.5 5 6 0 1 0"], ["intensity", "red", "green", "blue"])):
+            facts = self.facts("convert", source, self.path("out." + name))
+            with open(self.path("out." + name)) as file:
+                self.assertEqual([line.rstrip() for line in file], lines, name)
+            self.assertEqual(facts["lost"], lost)
+            piped = self.expect(0, "convert", source, "-", "--format", name, "--quiet").out
+            self.assertEqual(piped.decode().split("\n")[:-1], lines, name)
+
     def test_counts_before_every_block(self):
         self.assertEqual(len(self.convert("a.pts", "1\n1 2 3 4\n2\n5 6 7 8\n9 1 2 3\n")[1]), 3)
         self.bad_input("promises 3 points, 2 rows follow", "info", self.file("b.pts", "1\n1 2 3\n2\n4 5 6\n"))

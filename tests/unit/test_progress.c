@@ -2,9 +2,12 @@
  * who wants to stop is heard. Where the callback stops the work, everything is given back. */
 #include "brio/testdata.h"
 #include "points.h"
+#include "mesh/collapse.h"
 #include "triangulation/inserter.h"
 #include "harness.h"
 #include "surface_calls.h"
+#include "surfaces.h"
+#include <float.h>
 
 static brio_context *ctx;
 
@@ -55,6 +58,30 @@ static void few_points_of_much_work_are_reported(void) {
         EXPECT(due > 3 && w.late >= due, "%zu reports of %llu", w.late, (unsigned long long)due);
     }
     free(p);
+}
+
+static brio_status count_report(void *user) {
+    ++*(size_t *)user;
+    return BRIO_OK;
+}
+
+/* Collapses in one block: 65,536 tries had one report, and each can take tens of microseconds. */
+static void collapses_are_reported(void) {
+    size_t reports = 0, collapses = 0;
+    brio_mesh *mesh = flat_grid(ctx, 100, 100);
+    uint32_t n = (uint32_t)mesh->num_vertices, *list = malloc(n * sizeof *list);
+    brio_collapse_options o = {.target_faces = 2, .longest = INFINITY, .tolerance = INFINITY};
+    brio_collapse_mesh m;
+    for (uint32_t v = 0; v < n; v++) list[v] = v;
+    EXPECT(brio_collapse_mesh_new(ctx, mesh, &o, &m) == BRIO_OK, "%s", brio_message(ctx));
+    for (uint32_t h = 0; h < 3 * m.num_faces; h++)
+        if (m.mate[h] >= h) brio_collapse_measure(&m, h);
+    brio_collapse_pass pass = {list, n, n, FLT_MAX, n, n};
+    EXPECT(brio_collapse_blocks(&m, &pass, count_report, &reports, &collapses) == BRIO_OK);
+    EXPECT(collapses > 8000 && reports >= collapses / 2048, "%zu reports of %zu collapses", reports, collapses);
+    brio_collapse_mesh_free(&m);
+    brio_mesh_free(mesh);
+    free(list);
 }
 
 /* The centre of a sphere comes last, and destroys all that is there. It begins a run of 8,192 points, so that one report
@@ -327,6 +354,7 @@ SUITE(test_progress) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return HARNESS_SKIP;
     brio_context_set_threads(ctx, 1);
     RUN(few_points_of_much_work_are_reported);
+    RUN(collapses_are_reported);
     RUN(one_insertion_of_a_huge_star_is_reported);
     RUN(cancelled_at_each_report_everything_is_given_back);
     RUN(progress_never_runs_backwards);

@@ -133,6 +133,9 @@ static void exact_planes_are_not_rounded(void) {
             p[3 * n] = r * cos(a), p[3 * n + 1] = r * sin(a), p[3 * n + 2] = 2 * ring;
         }
     expect_untouched(ctx, "lathe", p, n);
+    for (int x = -30; x <= 30; x++) /* a lid, whose points are half as far apart as the rings: one level has planes */
+        for (int y = -30; y <= 30; y++, n++) p[3 * n] = x, p[3 * n + 1] = y, p[3 * n + 2] = 60;
+    expect_untouched(ctx, "lathe with a lid", p, n);
     n = 0;
     for (int x = 0; x < 100; x++)
         for (int y = 0; y < 100; y++, n++)

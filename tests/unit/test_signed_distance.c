@@ -220,6 +220,9 @@ static void points_left_out_against_brute_force(void) {
                                                      : n % 20 ? 0
                                                               : 6) *
                                                         step * (brio_rng_double(&rng) - 0.5);
+    for (size_t i = 0; i < given; i++) /* dense points over a corner, whose vertices have no nearer ones */
+        for (size_t k = 0; k < 3 && m->vertices[3 * i] < 5 * step && m->vertices[3 * i + 1] < 5 * step; k++)
+            p[3 * i + k] = (k < 2 ? 2 : 1) * step + 0.6 * step * (brio_rng_double(&rng) - 0.5);
     for (; n < given + MORE; n++)
         for (size_t k = 0; k < 3; k++) p[3 * n + k] = high * (1.5 * brio_rng_double(&rng) - 0.25);
     m->num_faces -= UNUSED; /* their vertices are on no face any more */
