@@ -1,9 +1,8 @@
 /* The boundary of a union of balls as a mesh: corners and points of arcs first, then patch after patch.
  *
- * An arc has points where it meets the planes of a grid, one at least. The grid is so fine that chords are near the arc.
- * Both patches of an arc have the same points. Two arcs that run side by side meet the same planes, so that their chords
- * do not cross.
- * So the mesh is closed and manifold because the patches are (union_boundary.h, I1).
+ * An arc has points where it meets the planes of a grid, one at least. The grid is so fine that chords are near the
+ * arc. Both patches of an arc have the same points. Two arcs that run side by side meet the same planes, so that their
+ * chords do not cross. So the mesh is closed and manifold because the patches are (union_boundary.h, I1).
  *
  * Two arcs that are nearer to each other than their chords to them may have chords that cross. These arcs get twice as
  * many points, until nothing crosses or they have very many.

@@ -159,8 +159,8 @@ static bool spread_about(const double *p, const brio_point_boxes *boxes, const b
     return fitted;
 }
 
-/* Splits the points near p in layers, and copies FLAT of the layer that p is in. Writes the share of points near the planes of
- * more. Returns the standard deviation of both layers together; 0 if there is one. */
+/* Splits the points near p in layers, and copies FLAT of the layer that p is in. Writes the share of points near the
+ * planes of more. Returns the standard deviation of both layers together; 0 if there is one. */
 static double split_layers(const double *p, const brio_point_boxes *boxes, const brio_near_point *near, double spacing,
                            float *central, brio_neighbourhood *own) {
     brio_neighbourhood n;
