@@ -56,7 +56,7 @@ def output_of(command):
 def rival_command(name, options):
     """The command of a rival and its version, or None where it is not installed."""
     if name.startswith('CGAL'):
-        command = [os.path.join(options.peers, 'bench', 'peers', 'cgal_advancing_front')]
+        command = [os.path.join(options.peers, 'cgal_advancing_front')]
         version = output_of([*command, '--version'])
         return ([*command, 'IN', 'OUT'], version) if version else None
     way = 'poisson' if 'Poisson' in name else 'pivoting'
