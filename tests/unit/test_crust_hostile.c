@@ -6,7 +6,7 @@
 #include "points.h"
 #include "surface_calls.h"
 
-enum { MOST = 300, FEW = 400, KINDS = 4 };
+enum { MOST = 300, FEW = BRIEF_TESTS ? 200 : 400, KINDS = 4 };
 
 static uint64_t num_inputs = FEW;
 

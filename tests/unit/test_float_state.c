@@ -79,7 +79,7 @@ static void triangulations_do_not_depend_on_the_state(void) {
         make_set(s);
         uint64_t usual = checksum_in(&HOST[0], 1);
         for (int h = 0; h < HOSTS; h++)
-            for (int threads = 1; threads <= 2; threads++)
+            for (int threads = BRIEF_TESTS ? 1 + (s + h) % 2 : 1; threads <= 2; threads += BRIEF_TESTS ? 2 : 1)
                 EXPECT(checksum_in(&HOST[h], threads) == usual, "set %d, %s, %d threads", s, HOST[h].name, threads);
     }
 }

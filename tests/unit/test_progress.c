@@ -142,7 +142,7 @@ static brio_status list_edges(const double *p, size_t n) {
 
 static void expect_cancelled_at_each_report(work_fn work, const double *p, size_t n, int threads) {
     brio_context_set_threads(ctx, threads);
-    for (size_t allowed = 0;; allowed += SHORT_TESTS ? 1 + allowed / 6 : 1) {
+    for (size_t allowed = 0;; allowed += BRIEF_TESTS ? 1 + allowed / 3 : SHORT_TESTS ? 1 + allowed / 6 : 1) {
         watch w = {.allowed = allowed, .from = 2};
         brio_context_set_progress(ctx, look, &w);
         brio_status status = work(p, n);

@@ -41,7 +41,7 @@ static void expect_same(const input *in, int threads, size_t limit) {
 }
 
 static void uniform_points_give_the_same_arrays(void) {
-    enum { N = 60000 };
+    enum { N = BRIEF_TESTS ? 30000 : 60000 };
     double *p = malloc(3 * N * sizeof *p);
     uniform_points(3, N, p);
     for (int threads = 1; threads <= 2; threads++) expect_same(&(input){p, NULL, N, BRIO_ORDER_BRIO}, threads, 0);
