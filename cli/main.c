@@ -9,8 +9,8 @@
 #include "cli/steps/hints.h"
 #include "cli/run/interrupt.h"
 #include "cli/report/plain.h"
+#include "platform/program.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -183,15 +183,8 @@ static bool is_one_of(const char *word, const char *a, const char *b) {
     return !strcmp(word, a) || !strcmp(word, b);
 }
 
-/* Gives standard streams that the caller closed descriptors that refuse every call: a file opened later would get their
- * numbers, and messages would be written into it. */
-static void fill_closed_streams(void) {
-    for (int stream = 0; stream < 3; stream++)
-        if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", stream ? O_RDONLY : O_WRONLY) != stream) return;
-}
-
 int main(int argc, char **argv) {
-    fill_closed_streams();
+    brio_program_begin(&argc, &argv);
     cli_interrupt_install();
     buffer_output();
     if (argc < 2) {

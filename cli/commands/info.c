@@ -8,11 +8,11 @@
 #include "cli/run/commands.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/weights.h"
+#include "platform/file.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #define MOST_IN_MEMORY UINT64_C(100000000) /* chosen: 2.4 GB of coordinates */
 
@@ -147,13 +147,13 @@ static void free_survey(survey *v) {
 static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
     const char *path = r->operands[0];
     brio_read_options how = cli_read_options(r);
-    struct stat kind;
+    brio_place_facts there;
     brio_status status = BRIO_ERR_FORMAT;
     how.left_out = on_left_out;
     how.left_out_user = v;
     bool named = strcmp(path, "-") != 0;
-    if (named && stat(path, &kind) != 0) return cli_fail(r, BRIO_ERR_OPEN, "%s: %s", path, strerror(errno));
-    if (named && S_ISREG(kind.st_mode)) status = brio_read_blocks(r->ctx, path, &how, take_block, v, &v->file);
+    if (named && !brio_find_facts(path, &there)) return cli_fail(r, BRIO_ERR_OPEN, "%s: %s", path, strerror(errno));
+    if (named && there.kind == BRIO_IS_FILE) status = brio_read_blocks(r->ctx, path, &how, take_block, v, &v->file);
     if (v->failed) return BRIO_ERR_NO_MEMORY;
     bool known = status == BRIO_OK;
     if (known && v->points > MOST_IN_MEMORY) {

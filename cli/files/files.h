@@ -8,10 +8,6 @@
  *  file itself is protected, or it is a folder. */
 brio_status cli_check_target(run *r, const char *path);
 
-/** Returns the open descriptor that a path leads to, such as 7 for /dev/fd/7 and /proc/self/fd/7; -1 for other paths,
- *  and for "-". */
-int cli_open_descriptor(const char *path);
-
 /** Returns whether a path names one stream, beside which there are no other files: "-", an open descriptor, a
  *  device. */
 bool cli_is_single(const char *path);

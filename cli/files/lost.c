@@ -8,10 +8,10 @@
 #include "cli/files/cloud.h"
 #include "cli/files/lost.h"
 #include "cli/run/run.h"
+#include "platform/file.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* --- what the format cannot hold --- */
 
@@ -178,8 +178,8 @@ static brio_status cli_single_loss(run *r, const brio_mesh *mesh, single_loss *l
 }
 
 static bool can_be_read_twice(const char *path) {
-    struct stat info;
-    return strcmp(path, "-") != 0 && stat(path, &info) == 0 && S_ISREG(info.st_mode);
+    brio_place_facts found;
+    return strcmp(path, "-") != 0 && brio_find_facts(path, &found) && found.kind == BRIO_IS_FILE;
 }
 
 /* Finds the loss of the points that a conversion of a file takes. Reads the file once, in blocks: points that merge are

@@ -5,13 +5,11 @@
 #define BRIO_CLI_NEW_FILE_H
 
 #include "cli/run/run.h"
-#include <stdio.h>
+#include "platform/target.h"
 
 typedef struct {
-    FILE *file;      /* NULL if there is none */
-    char *target;    /* the file to be: where symbolic links lead */
-    char *temporary; /* a name beside the target */
-    bool is_named;   /* whether the file has the temporary name */
+    FILE *file; /* NULL if there is none */
+    brio_target target;
 } new_file;
 
 /** Opens a file for writing. Call cli_new_file_close even if this fails. */

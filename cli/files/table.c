@@ -6,24 +6,21 @@
 #include "cli/files/files.h"
 #include "cli/files/lost.h"
 #include "cli/files/new_file.h"
+#include "platform/target.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { ALIGNMENT = 64, PREAMBLE = 10, ROWS_A_CHECK = 1 << 14 };
 
 static const char *extension_of(const run *r) {
-    const char *path = r->common.output, *dot, *slash;
+    const char *path = r->common.output;
     if (r->common.format) return r->common.format + (r->common.format[0] == '.');
     if (!path) return "";
-    dot = strrchr(path, '.');
-    slash = strrchr(path, '/');
-    return dot && (!slash || dot > slash) ? dot + 1 : "";
+    const char *dot = strrchr(path + brio_folder_length(path), '.');
+    return dot ? dot + 1 : "";
 }
 
 bool cli_is_table(const run *r, const char *extension) {
@@ -106,9 +103,9 @@ done:
 
 /* Pipes, devices and open descriptors are written in place. A descriptor that is open keeps its place. */
 static brio_status write_in_place(run *r, const char *path, int descriptor, const table *t) {
-    int own = descriptor >= 0 ? fcntl(descriptor, F_DUPFD_CLOEXEC, 0) : -1;
-    FILE *file = own >= 0 ? fdopen(own, "w") : descriptor < 0 ? fopen(path, "w") : NULL;
-    if (!file && own >= 0) close(own);
+    int own = descriptor >= 0 ? brio_copy_descriptor(descriptor) : -1;
+    FILE *file = own >= 0 ? brio_stream_of(own) : descriptor < 0 ? brio_open_stream(path, "w") : NULL;
+    if (!file && own >= 0) brio_close(own);
     if (!file) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
     brio_status status = write_rows(r, file, t);
     if (fclose(file) != 0 && status == BRIO_OK) status = cli_fail(r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
@@ -117,15 +114,15 @@ static brio_status write_in_place(run *r, const char *path, int descriptor, cons
 
 brio_status cli_write_table(run *r, const table *t) {
     const char *path = r->common.output;
-    struct stat info;
+    brio_place_facts found;
     brio_status status = BRIO_OK;
     if (!path) return BRIO_OK;
     cli_tell_idle(r, path, cli_is_table(r, "csv"), false);
     TRY(cli_check_interrupt(r));
-    int descriptor = cli_open_descriptor(path);
+    int descriptor = brio_path_descriptor(path);
     if (!strcmp(path, "-"))
         status = write_rows(r, stdout, t);
-    else if (descriptor >= 0 || (stat(path, &info) == 0 && !S_ISREG(info.st_mode)))
+    else if (descriptor >= 0 || (brio_find_facts(path, &found) && found.kind != BRIO_IS_FILE))
         status = write_in_place(r, path, descriptor, t);
     else
         status = write_file(r, path, t);

@@ -2,8 +2,8 @@
 #include "cli/help/help.h"
 #include "cli/run/commands.h"
 #include "cli/report/glossary.h"
+#include "platform/program.h"
 #include <string.h>
-#include <sys/ioctl.h>
 
 const manual_entry cli_exit_codes[] = {
     {"0", "done"},
@@ -42,9 +42,8 @@ const char *const cli_group_titles[] = {"meshes and files", "surfaces", "triangu
 enum { USUAL = 80, MOST = 100, FEWEST = 30, COLUMN = 28, NARROW = 60 };
 
 int cli_columns(FILE *out) {
-    struct winsize size;
-    if (ioctl(fileno(out), TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return USUAL;
-    return size.ws_col > MOST ? MOST : size.ws_col < FEWEST ? FEWEST : size.ws_col;
+    int columns = brio_terminal_columns(out);
+    return columns == 0 ? USUAL : columns > MOST ? MOST : columns < FEWEST ? FEWEST : columns;
 }
 
 void cli_print_wrapped(FILE *out, const char *text, int at, int indent, int columns) {

@@ -6,13 +6,6 @@
 #include "cli/report/progress.h"
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
-
-double cli_clock(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void format_time(char text[32], double seconds) {
     long s = seconds < 1e6 ? (long)(seconds + 0.5) : 999999;

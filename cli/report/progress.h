@@ -2,6 +2,7 @@
 #ifndef BRIO_CLI_PROGRESS_H
 #define BRIO_CLI_PROGRESS_H
 
+#include "platform/thread.h"
 #include <stdbool.h>
 
 /** Zeroed to begin with, but for the first two. */
@@ -23,6 +24,8 @@ void cli_progress_show(progress *bar, const char *stage, double fraction);
 void cli_progress_end(progress *bar);
 
 /** Seconds of a monotonic clock. */
-double cli_clock(void);
+static inline double cli_clock(void) {
+    return brio_seconds();
+}
 
 #endif

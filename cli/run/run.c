@@ -2,11 +2,12 @@
 #include "cli/run/run.h"
 #include "cli/report/plain.h"
 #include "cli/run/interrupt.h"
+#include "platform/file.h"
+#include "platform/pages.h"
+#include "platform/program.h"
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 /* --- warnings and hints --- */
 
@@ -172,7 +173,7 @@ brio_status cli_begin(run *r) {
         cli_interrupt_scratch(c->scratch, c->json);
         FORWARD(brio_context_set_scratch(r->ctx, c->scratch));
     }
-    r->bar.terminal = isatty(STDERR_FILENO);
+    r->bar.terminal = brio_is_terminal(BRIO_MESSAGES);
     r->bar.shown = c->progress || (r->bar.terminal && !c->quiet);
     return BRIO_OK;
 }
@@ -217,19 +218,6 @@ brio_status cli_require_memory(run *r, double bytes) {
                     bytes / 0x1p20, (double)c->max_memory / 0x1p20);
 }
 
-/* Returns the kernel's high-water mark of this program's own memory. getrusage stands in where /proc is missing: it
- * also counts what the process held before it became this program. */
-static uint64_t peak_bytes(void) {
-    unsigned long long kib = 0;
-    char line[256];
-    FILE *file = fopen("/proc/self/status", "r");
-    while (file && !kib && fgets(line, sizeof line, file)) sscanf(line, "VmHWM: %llu", &kib);
-    if (file) fclose(file);
-    struct rusage usage;
-    if (!kib && getrusage(RUSAGE_SELF, &usage) == 0) kib = (unsigned long long)usage.ru_maxrss;
-    return kib * 1024;
-}
-
 /* --- the frame of a report --- */
 
 void cli_opening_facts(run *r) {
@@ -253,5 +241,5 @@ void cli_closing_facts(run *r) {
     for (int i = 0; i < r->num_stages; i++) cli_fact_seconds(f, r->stages[i].stage, r->stages[i].seconds);
     cli_fact_seconds(f, "total", cli_clock() - r->started);
     cli_fact_close(f);
-    cli_fact_bytes(f, "peak_bytes", peak_bytes());
+    cli_fact_bytes(f, "peak_bytes", brio_process_peak());
 }

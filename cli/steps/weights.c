@@ -4,6 +4,7 @@
  * weights, too: its squares. */
 #include "cli/steps/weights.h"
 #include "cli/steps/properties.h"
+#include "platform/file.h"
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -77,7 +78,7 @@ static brio_status read_lines(run *r, const char *name, FILE *file, double *weig
 
 static brio_status read_weights(run *r, const char *name, double *weights, size_t count) {
     bool standard_input = !strcmp(name, "-");
-    FILE *file = standard_input ? stdin : fopen(name, "r");
+    FILE *file = standard_input ? stdin : brio_open_stream(name, "r");
     if (!file) return cli_fail(r, unread(), "%s: %s", name, strerror(errno));
     brio_status status = read_lines(r, name, file, weights, count);
     if (!standard_input) fclose(file);

@@ -4,7 +4,6 @@
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <time.h>
 
 const char *brio_message(const brio_context *ctx) {
     return ctx->message;
@@ -14,9 +13,9 @@ brio_status brio_fail(brio_context *ctx, brio_status status, const char *format,
     assert(status != BRIO_OK); /* BRIO_TRY would go on */
     va_list arguments;
     va_start(arguments, format);
-    pthread_mutex_lock(&ctx->lock); /* several threads may fail at a time */
+    brio_mutex_lock(&ctx->lock); /* several threads may fail at a time */
     vsnprintf(ctx->message, sizeof ctx->message, format, arguments);
-    pthread_mutex_unlock(&ctx->lock);
+    brio_mutex_unlock(&ctx->lock);
     va_end(arguments);
     return status;
 }
@@ -43,10 +42,4 @@ brio_status brio_ask(brio_context *ctx) {
     if (!ctx->progress || !ctx->progress(stage, ctx->share, ctx->progress_user)) return BRIO_OK;
     ctx->stopped = true;
     return brio_fail(ctx, BRIO_ERR_CANCELLED, "cancelled during %s", stage);
-}
-
-double brio_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }

@@ -7,7 +7,7 @@
 #define BRIO_BASE_CONTEXT_H
 
 #include "brio/brio.h"
-#include <pthread.h>
+#include "platform/thread.h"
 #include <stdbool.h>
 
 /* BRIO_PAGE: sizes of mappings are multiples of this. Both chosen. */
@@ -29,7 +29,7 @@ struct brio_context {
     int threads, most_threads;         /* as set (0: all processors), and the most that can be set */
     int processors;                    /* processors that the process could run on when the context was made */
     struct brio_team *team;            /* the threads (team.h); lies behind the context in its block */
-    pthread_mutex_t lock;              /* protects the kept mappings and the message */
+    brio_mutex lock;                   /* protects the kept mappings and the message */
     size_t caller_limit;               /* bytes, 0 for none */
     size_t machine_limit;              /* bytes: the lesser of the machine's memory and the memory cgroup's limit */
     size_t live, peak;                 /* bytes of blocks outside scratch files, now and at most; atomic */
@@ -77,9 +77,6 @@ static inline brio_bar brio_progress_bar(const brio_context *ctx) {
 
 /** Gives the stage that follows the fractions `from` to `to` of the caller's bar. */
 void brio_progress_part(brio_context *ctx, brio_bar bar, double from, double to);
-
-/** Returns the seconds of a monotonic clock. */
-double brio_seconds(void);
 
 /* --- in functions that have nothing to free --- */
 

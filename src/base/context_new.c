@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/scratch_file.h"
 #include "base/team.h"
+#include "platform/pages.h"
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,12 +40,12 @@ brio_status brio_context_new(const brio_allocator *allocator, brio_context **out
     memset(ctx, 0, sizeof *ctx);
     ctx->allocator = *a;
     ctx->custom = allocator != NULL;
-    ctx->machine_limit = brio_machine_memory();
+    ctx->machine_limit = brio_system_memory();
     ctx->bar = (brio_bar){0, 1};
     ctx->processors = processors;
     ctx->most_threads = most;
     ctx->team = brio_team_begin(ctx + 1, most, processors);
-    pthread_mutex_init(&ctx->lock, NULL);
+    brio_mutex_new(&ctx->lock);
     return BRIO_OK;
 }
 
@@ -53,7 +54,7 @@ void brio_context_free(brio_context *ctx) {
     brio_release(ctx, ctx->scratch);
     brio_kept_free(ctx);
     brio_team_end(ctx->team);
-    pthread_mutex_destroy(&ctx->lock);
+    brio_mutex_free(&ctx->lock);
     brio_allocator a = ctx->allocator;
     a.free(ctx, a.user);
 }

@@ -4,15 +4,15 @@
  *     more memory than the work needed without. */
 #include "base/kept.h"
 #include "base/poison.h"
+#include "platform/pages.h"
 #include <assert.h>
-#include <sys/mman.h>
 
 /* Most bytes kept outside brio_keep_begin and brio_keep_end. Chosen. */
 static const size_t BETWEEN_CALLS = (size_t)64 << 20;
 
 void brio_unmap(void *base, size_t size) {
     brio_poison_show(base, size);
-    munmap(base, size);
+    brio_pages_unmap(base, size);
 }
 
 /* Unmaps the last bytes of kept mapping i. */
@@ -56,7 +56,7 @@ static int smallest(const brio_context *ctx, size_t least) {
 void *brio_kept_take(brio_context *ctx, size_t size) {
     void *base = NULL;
     assert(size > 0 && size % BRIO_PAGE == 0);
-    pthread_mutex_lock(&ctx->lock);
+    brio_mutex_lock(&ctx->lock);
     int i = smallest(ctx, size);
     if (i >= 0) {
         brio_mapping *m = &ctx->kept[i];
@@ -67,7 +67,7 @@ void *brio_kept_take(brio_context *ctx, size_t size) {
         __atomic_sub_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
         if (!m->size) *m = ctx->kept[--ctx->num_kept];
     }
-    pthread_mutex_unlock(&ctx->lock);
+    brio_mutex_unlock(&ctx->lock);
     if (base) brio_poison_fill(base, size);
     return base;
 }
@@ -75,23 +75,23 @@ void *brio_kept_take(brio_context *ctx, size_t size) {
 void brio_kept_give(brio_context *ctx, void *base, size_t size) {
     assert(size > 0 && size % BRIO_PAGE == 0);
     brio_poison_hide(base, size);
-    pthread_mutex_lock(&ctx->lock);
+    brio_mutex_lock(&ctx->lock);
     assert(0 <= ctx->num_kept && ctx->num_kept <= BRIO_MOST_KEPT);
-    bool full = ctx->num_kept == BRIO_MOST_KEPT;
+    bool full = ctx->num_kept == BRIO_MOST_KEPT || !brio_pages_divide();
     if (!full) {
         ctx->kept[ctx->num_kept++] = (brio_mapping){base, size};
         __atomic_add_fetch(&ctx->kept_bytes, size, __ATOMIC_RELAXED);
         trim(ctx, most_kept(ctx));
     }
-    pthread_mutex_unlock(&ctx->lock);
+    brio_mutex_unlock(&ctx->lock);
     if (full) brio_unmap(base, size);
 }
 
 void brio_kept_make_room(brio_context *ctx) {
     if (__atomic_load_n(&ctx->kept_bytes, __ATOMIC_RELAXED) <= most_kept(ctx)) return;
-    pthread_mutex_lock(&ctx->lock);
+    brio_mutex_lock(&ctx->lock);
     trim(ctx, most_kept(ctx));
-    pthread_mutex_unlock(&ctx->lock);
+    brio_mutex_unlock(&ctx->lock);
 }
 
 void brio_kept_free(brio_context *ctx) {

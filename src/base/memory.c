@@ -7,17 +7,14 @@
  * A page fault on a scratch file reads one page, unless the block is read in sequence. By default the system would read
  * as much as its device is set to, up to megabytes. Where memory is short, such reads displace pages in use. Code that
  * knows what it needs next asks for that (read_ahead.h). */
-#define _GNU_SOURCE
 #include "base/memory.h"
 #include "base/kept.h"
 #include "base/poison.h"
 #include "base/scratch_file.h"
+#include "platform/pages.h"
 #include <assert.h>
 #include <errno.h>
-#include <stdio.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 /* Bytes from which blocks are mappings; chosen. Tests set less, so that small inputs have mappings. */
 #ifndef BRIO_MAP_FROM
@@ -87,51 +84,6 @@ size_t brio_context_memory_peak(const brio_context *ctx) {
     return __atomic_load_n(&ctx->peak, __ATOMIC_RELAXED);
 }
 
-static size_t number_in_file(const char *path) {
-    FILE *f = fopen(path, "r");
-    unsigned long long bytes = 0;
-    if (!f) return SIZE_MAX;
-    int read = fscanf(f, "%llu", &bytes);
-    fclose(f);
-    return read == 1 && bytes ? (size_t)bytes : SIZE_MAX;
-}
-
-/* Returns the least limit of the process' memory cgroup and its ancestors, or SIZE_MAX. */
-static size_t cgroup_memory(void) {
-    size_t least = SIZE_MAX;
-    char line[512];
-    FILE *f = fopen("/proc/self/cgroup", "r");
-    if (!f) return least;
-    while (fgets(line, sizeof line, f)) {
-        char *controllers = strchr(line, ':');
-        char *path = controllers ? strchr(controllers + 1, ':') : NULL;
-        if (!path) continue;
-        *path++ = 0;
-        path[strcspn(path, "\n")] = 0;
-        bool v2 = controllers[1] == 0;
-        if (!v2 && strcmp(controllers + 1, "memory")) continue;
-        for (;;) {
-            char name[1024];
-            snprintf(name, sizeof name,
-                     v2 ? "/sys/fs/cgroup%s/memory.max" : "/sys/fs/cgroup/memory%s/memory.limit_in_bytes", path);
-            size_t limit = number_in_file(name);
-            if (limit < least) least = limit;
-            char *slash = strrchr(path, '/');
-            if (!slash || path[0] == 0) break;
-            *slash = 0;
-        }
-    }
-    fclose(f);
-    return least;
-}
-
-size_t brio_machine_memory(void) {
-    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-    size_t machine = pages > 0 && page > 0 ? (size_t)pages * (size_t)page : SIZE_MAX;
-    size_t group = cgroup_memory();
-    return group < machine ? group : machine;
-}
-
 /* --- mapped blocks --- */
 
 static size_t round_up(size_t size, size_t unit) {
@@ -145,19 +97,12 @@ static size_t mapped_size(size_t size) {
     return round_up(size - HEADER + FRONT, BRIO_PAGE);
 }
 
-/* Uses pages of the usual size: clearing a huge page at its first touch displaces everything else from the caches.
- * Measured: this cost the triangulation of four million points a fifth of its time (docs/measured/performance.md). */
-static void *map_anonymous(size_t size) {
-    void *base = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    return base == MAP_FAILED ? NULL : base;
-}
-
 static void *map_file(brio_context *ctx, size_t size, brio_scratch_file *file, brio_status *status) {
     *status = brio_scratch_open(ctx, size, file);
     if (*status != BRIO_OK) return NULL;
-    void *base = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, file->cached, 0);
-    if (base != MAP_FAILED) {
-        madvise(base, size, MADV_RANDOM);
+    void *base = brio_pages_map_file(file->cached, size);
+    if (base) {
+        brio_pages_advise(base, size, BRIO_PAGES_RANDOM);
         return base;
     }
     *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file of %zu bytes cannot be mapped: %s", ctx->scratch,
@@ -171,7 +116,7 @@ static void *map_memory(brio_context *ctx, size_t size, bool *cleared) {
     void *base = brio_kept_take(ctx, size);
     *cleared = !base && !BRIO_POISON;
     if (account_add(ctx, size)) {
-        if (!base) base = map_anonymous(size);
+        if (!base) base = brio_pages_map(size);
         if (!base) account_sub(ctx, size);
         return base;
     }
@@ -230,6 +175,11 @@ static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_stat
     return block;
 }
 
+static void unmap_file(void *base, size_t size) {
+    brio_poison_show(base, size);
+    brio_pages_unmap_file(base, size);
+}
+
 void brio_release(brio_context *ctx, void *block) {
     if (!block) return;
     block_header h = *header_of(block);
@@ -242,7 +192,7 @@ void brio_release(brio_context *ctx, void *block) {
     else if (h.kind == KIND_MAPPED)
         brio_kept_give(ctx, base_of(block), h.size);
     else
-        brio_unmap(base_of(block), h.size);
+        unmap_file(base_of(block), h.size);
     if (h.kind == KIND_FILE) brio_scratch_close(&h.file);
 }
 
@@ -254,12 +204,12 @@ static brio_status lost(brio_context *ctx) {
 
 void brio_expect_random(const void *block) {
     const block_header *h = header_of(block);
-    if (h->kind == KIND_FILE) madvise(base_of(block), h->size, MADV_RANDOM);
+    if (h->kind == KIND_FILE) brio_pages_advise(base_of(block), h->size, BRIO_PAGES_RANDOM);
 }
 
 void brio_expect_sequence(const void *block) {
     const block_header *h = header_of(block);
-    if (h->kind == KIND_FILE) madvise(base_of(block), h->size, MADV_NORMAL);
+    if (h->kind == KIND_FILE) brio_pages_advise(base_of(block), h->size, BRIO_PAGES_SEQUENCE);
 }
 
 void brio_block_direct(void *block, bool direct) {
@@ -294,30 +244,31 @@ brio_status brio_block_write(brio_context *ctx, void *block, size_t offset, cons
 
 /* --- blocks that grow --- */
 
-/* Grows a mapping, or shrinks the mapping of a file, without copying. */
+/* Grows a mapping, or shrinks that of a file or of a system whose mappings do not divide. */
 static void *block_remap(brio_context *ctx, void *block, size_t target, brio_status *status) {
     block_header h = *header_of(block);
     bool grows = target > h.size, file = h.kind == KIND_FILE;
     assert(h.kind != KIND_HEAP && target % BRIO_PAGE == 0);
-    assert(grows || file);
+    assert(grows || file || !brio_pages_divide());
     if (file && grows) {
         *status = brio_scratch_grow(ctx, &h.file, target);
         if (*status != BRIO_OK) return NULL;
     }
-    if (!file && !account_add(ctx, target - h.size)) {
+    if (!file && grows && !account_add(ctx, target - h.size)) {
         *status = refuse(ctx, target - h.size);
         return NULL;
     }
     brio_poison_show(base_of(block), h.size); /* the pages may move away from these addresses */
-    char *base = mremap(base_of(block), h.size, target, MREMAP_MAYMOVE);
-    if (base == MAP_FAILED) {
-        if (!file) account_sub(ctx, target - h.size);
+    char *base = brio_pages_remap(base_of(block), h.size, target, file ? h.file.cached : -1);
+    if (!base) {
+        if (!file && grows) account_sub(ctx, target - h.size);
         if (file && grows) brio_scratch_shrink(ctx, &h.file, h.size);
         header_of(block)->file = h.file;
         *status = refuse(ctx, target);
         return NULL;
     }
     assert((uintptr_t)base % FRONT == 0); /* I2 */
+    if (!file && !grows) account_sub(ctx, h.size - target);
     header_of(base + FRONT)->size = target;
     brio_status shrunk = file && !grows ? brio_scratch_shrink(ctx, &h.file, target) : BRIO_OK;
     header_of(base + FRONT)->file = h.file;
@@ -343,7 +294,8 @@ static void *block_resize_mapped(brio_context *ctx, void *block, size_t size, br
     size_t target = mapped_size(size);
     assert(h->kind != KIND_HEAP);
     if (target == h->size) return block;
-    if (target > h->size || h->kind == KIND_FILE) return block_remap(ctx, block, target, status);
+    if (target > h->size || h->kind == KIND_FILE || !brio_pages_divide())
+        return block_remap(ctx, block, target, status);
     assert(h->kind == KIND_MAPPED && target < h->size);
     account_sub(ctx, h->size - target);
     brio_kept_give(ctx, base_of(block) + target, h->size - target);

@@ -7,11 +7,9 @@
 #define BRIO_BASE_READ_AHEAD_H
 
 #include "base/context.h"
+#include "platform/pages.h"
 #include <stdint.h>
 #include <string.h>
-#ifndef _WIN32
-#include <sys/mman.h>
-#endif
 
 /* All chosen. */
 enum { BRIO_STRETCH_BITS = 15, BRIO_STRETCHES = 2048, BRIO_STRETCH_KEEPS = 1 << 14 };
@@ -38,9 +36,7 @@ static inline void brio_expect(brio_read_ahead *r, const void *address) {
     if (r->asked[i] == stretch && r->now - r->when[i] < BRIO_STRETCH_KEEPS) return;
     r->asked[i] = stretch;
     r->when[i] = r->now;
-#ifndef _WIN32
-    madvise((void *)(stretch << BRIO_STRETCH_BITS), (size_t)1 << BRIO_STRETCH_BITS, MADV_WILLNEED);
-#endif
+    brio_pages_advise((void *)(stretch << BRIO_STRETCH_BITS), (size_t)1 << BRIO_STRETCH_BITS, BRIO_PAGES_SOON);
 }
 
 #endif

@@ -8,10 +8,9 @@
 
 #ifdef BRIO_STRESS
 
-#include <sched.h>
+#include "platform/thread.h"
 #include <stdint.h>
 #include <stdlib.h>
-#include <time.h>
 
 static inline bool brio_is_stressed(void) {
     static _Thread_local int stressed; /* 1: no, 2: yes, once it is known */
@@ -27,8 +26,8 @@ static inline void brio_stress(void) {
     random ^= random << 13;
     random ^= random >> 7;
     random ^= random << 17;
-    if (random % 8 == 0) sched_yield();
-    if (random % 256 == 1) nanosleep(&(struct timespec){0, (long)(random >> 48)}, NULL);
+    if (random % 8 == 0) brio_yield();
+    if (random % 256 == 1) brio_sleep(1e-9 * (double)(random >> 48));
 }
 
 #else

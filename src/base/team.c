@@ -8,17 +8,12 @@
  *     after. The barrier at the end of a run orders these reads before the writes of the next run.
  * I2  After a fork, the child has a copy of the team without its threads. The child forgets them and creates new
  * ones. */
-#define _GNU_SOURCE
 #include "base/team.h"
 #include "base/float_state.h"
 #include "base/sanitizers.h"
 #include "base/stress.h"
 #include <assert.h>
-#include <pthread.h>
-#include <sched.h>
-#include <signal.h>
 #include <string.h>
-#include <unistd.h>
 
 /* LOOKS: reads of a gate before sleeping, about 5 us together, which is less than waking a thread takes. LINE: bytes of
  * a cache line. */
@@ -34,21 +29,21 @@ static const size_t STACK = (size_t)512 << 10;
 typedef struct {
     unsigned value;
     int sleepers;
-    pthread_mutex_t lock;
-    pthread_cond_t changed;
+    brio_mutex lock;
+    brio_condition changed;
     char apart[LINE]; /* keeps what other threads write on another cache line */
 } gate;
 
 typedef struct {
     brio_team *team;
-    pthread_t handle;
+    brio_thread handle;
     brio_member member;
     gate start;
 } thread;
 
 struct brio_team {
     int size;       /* number of threads, the caller's included */
-    pid_t process;  /* the process of the threads */
+    long process;   /* the process of the threads */
     bool busy;      /* whether a run is going on */
     int processors; /* waiting threads read a gate before they sleep only if a run has at most as many members */
     brio_work_fn work;
@@ -63,13 +58,13 @@ struct brio_team {
 static void gate_new(gate *g) {
     g->value = 0;
     g->sleepers = 0;
-    pthread_mutex_init(&g->lock, NULL);
-    pthread_cond_init(&g->changed, NULL);
+    brio_mutex_new(&g->lock);
+    brio_condition_new(&g->changed);
 }
 
 static void gate_free(gate *g) {
-    pthread_cond_destroy(&g->changed);
-    pthread_mutex_destroy(&g->lock);
+    brio_condition_free(&g->changed);
+    brio_mutex_free(&g->lock);
 }
 
 /* Changes a gate and wakes who sleeps there. The stores and loads of `value` and `sleepers` here and in gate_sleep are
@@ -79,17 +74,17 @@ static void gate_change(gate *g) {
     brio_stress();
     __atomic_add_fetch(&g->value, 1, __ATOMIC_SEQ_CST);
     if (!__atomic_load_n(&g->sleepers, __ATOMIC_SEQ_CST)) return;
-    pthread_mutex_lock(&g->lock);
-    pthread_cond_broadcast(&g->changed);
-    pthread_mutex_unlock(&g->lock);
+    brio_mutex_lock(&g->lock);
+    brio_condition_wake_all(&g->changed);
+    brio_mutex_unlock(&g->lock);
 }
 
 static void gate_sleep(gate *g, unsigned old) {
-    pthread_mutex_lock(&g->lock);
+    brio_mutex_lock(&g->lock);
     __atomic_add_fetch(&g->sleepers, 1, __ATOMIC_SEQ_CST);
-    while (__atomic_load_n(&g->value, __ATOMIC_SEQ_CST) == old) pthread_cond_wait(&g->changed, &g->lock);
+    while (__atomic_load_n(&g->value, __ATOMIC_SEQ_CST) == old) brio_condition_wait(&g->changed, &g->lock);
     __atomic_sub_fetch(&g->sleepers, 1, __ATOMIC_SEQ_CST);
-    pthread_mutex_unlock(&g->lock);
+    brio_mutex_unlock(&g->lock);
 }
 
 static inline void pause_briefly(void) {
@@ -128,7 +123,7 @@ void brio_barrier(const brio_member *member) {
 }
 
 /* Does the work of each run until a run has none: the function of a thread. */
-static void *live(void *argument) {
+static void live(void *argument) {
     thread *self = argument;
     brio_team *team = self->team;
     brio_float_state state = brio_float_enter();
@@ -143,28 +138,15 @@ static void *live(void *argument) {
         brio_barrier(&self->member);
     }
     brio_float_leave(&state);
-    return NULL;
 }
 
-/* Creates one more thread. The thread takes no signals, so the host's handlers run in the host's threads, except those
- * that its own work can raise: a thread that blocks such a signal ends the process when it raises one, whatever handler
- * the host has. Returns whether the system created it. */
+/* Creates one more thread. Returns whether the system created it. */
 static bool grow(brio_team *team) {
-    static const int OWN[] = {SIGBUS, SIGSEGV, SIGFPE, SIGILL, SIGTRAP};
     thread *t = &team->thread[team->size];
-    pthread_attr_t attributes;
-    sigset_t all, old;
-    if (pthread_attr_init(&attributes)) return false;
-    assert(team->process == getpid()); /* I2 */
+    assert(team->process == brio_process_number()); /* I2 */
     t->team = team;
     gate_new(&t->start);
-    sigfillset(&all);
-    for (size_t i = 0; i < sizeof OWN / sizeof *OWN; i++) sigdelset(&all, OWN[i]);
-    pthread_attr_setstacksize(&attributes, STACK);
-    pthread_sigmask(SIG_SETMASK, &all, &old);
-    bool created = pthread_create(&t->handle, &attributes, live, t) == 0;
-    pthread_sigmask(SIG_SETMASK, &old, NULL);
-    pthread_attr_destroy(&attributes);
+    bool created = brio_thread_start(&t->handle, live, t, STACK);
     if (created)
         team->size++;
     else
@@ -174,7 +156,7 @@ static bool grow(brio_team *team) {
 
 /* Resets the team in a child process, which has none of its parent's threads. */
 static void forget_other_process(brio_team *team) {
-    pid_t process = getpid();
+    long process = brio_process_number();
     if (process == team->process) return;
     team->process = process;
     team->size = 1;
@@ -192,7 +174,7 @@ brio_team *brio_team_begin(void *memory, int most, int processors) {
     brio_team *team = memory;
     memset(team, 0, brio_team_bytes(most));
     team->size = 1;
-    team->process = getpid();
+    team->process = brio_process_number();
     team->processors = processors;
     gate_new(&team->barrier);
     return team;
@@ -204,17 +186,10 @@ void brio_team_end(brio_team *team) {
     team->work = NULL;
     for (int i = 1; i < team->size; i++) gate_change(&team->thread[i].start);
     for (int i = 1; i < team->size; i++) {
-        pthread_join(team->thread[i].handle, NULL);
+        brio_thread_join(&team->thread[i].handle);
         gate_free(&team->thread[i].start);
     }
     gate_free(&team->barrier);
-}
-
-int brio_processors(void) {
-    cpu_set_t set;
-    long online = sysconf(_SC_NPROCESSORS_ONLN);
-    if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
-    return online > 0 && online < 1 << 16 ? (int)online : 1;
 }
 
 /* --- runs --- */

@@ -32,9 +32,6 @@ brio_team *brio_team_begin(void *memory, int most, int processors);
 /** Ends the threads of a team. Does not free its memory. */
 void brio_team_end(brio_team *team);
 
-/** Returns the number of processors that this process may run on, at least 1. */
-int brio_processors(void);
-
 /** Returns the number of threads for n items if `least` items are worth a thread: at least 1, at most the context's
  *  setting. Creates the threads that are missing. The caller sizes its workspace for each thread by this number, and
  *  passes the same number to the functions below. */

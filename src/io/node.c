@@ -11,10 +11,10 @@
 #include "io/scalar.h"
 #include "io/textrow.h"
 #include "mesh/tetrahedra_adjacency.h"
+#include "platform/file.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 static const char marker_name[] = "boundary_marker";
 
@@ -272,7 +272,7 @@ static brio_status choose_files(brio_context *ctx, const char *path, const brio_
     }
     files[POINTS].wanted = true;
     /* an old .ele belongs to the points that are replaced */
-    files[TETRAHEDRA].wanted = job->mesh->num_tetrahedra || access(files[TETRAHEDRA].path, F_OK) == 0;
+    files[TETRAHEDRA].wanted = job->mesh->num_tetrahedra || brio_is_there(files[TETRAHEDRA].path);
     files[NEIGHBOURS].wanted = job->options->neighbours;
     files[FACES].wanted = job->options->faces;
     files[EDGES].wanted = job->options->edges;

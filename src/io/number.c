@@ -9,10 +9,9 @@
  * read back as the same number.
  *
  * Based on: Clinger. How to read floating point numbers accurately. PLDI 1990. */
-#define _GNU_SOURCE
 #include "io/number.h"
 #include "base/wide.h"
-#include <locale.h>
+#include "platform/number.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -141,15 +140,6 @@ static bool copy_with_e(const char *text, const char *end, char copy[LONGEST_D])
     return true;
 }
 
-/* Reads a number with strtod in the C locale. This locale is a constant of the C library: newlocale allocates
- * nothing. */
-static double parse_far(const char *text) {
-    locale_t c = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    double value = c ? strtod_l(text, NULL, c) : strtod(text, NULL);
-    if (c) freelocale(c);
-    return value;
-}
-
 bool brio_parse_number(const char **text, double *value) {
     const char *p = *text;
     bool negative = *p == '-';
@@ -163,7 +153,7 @@ bool brio_parse_number(const char **text, double *value) {
         char copy[LONGEST_D];
         bool fortran = memchr(p, 'd', (size_t)(end - p)) || memchr(p, 'D', (size_t)(end - p));
         if (fortran && !copy_with_e(p, end, copy)) return false;
-        *value = parse_far(fortran ? copy : p);
+        *value = brio_number_of_text(fortran ? copy : p);
     }
     if (negative) *value = -*value;
     *text = end;
@@ -279,7 +269,7 @@ static bool reads_back(uint64_t digits, int power, double x, bool single) {
     if (!compose(digits, power, &back)) {
         char text[64];
         snprintf(text, sizeof text, "%llue%d", (unsigned long long)digits, power);
-        back = parse_far(text);
+        back = brio_number_of_text(text);
     }
     return single ? (float)back == (float)x : back == x;
 }

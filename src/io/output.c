@@ -1,22 +1,17 @@
 /* Buffered output to a file that appears only when it is complete.
  *
- * target.c finds the file. A target that is no regular file, or is open already, is written in place. The reader of a
+ * platform/target.h finds the file. A target that is no regular file, or is open already, is written in place. The reader of a
  * pipe may never be ready: such an output waits in wait.h, where the caller can cancel. */
-#define _GNU_SOURCE
 #include "io/output.h"
 #include "base/memory.h"
-#include "base/quiet_signals.h"
 #include "io/blocks.h"
 #include "io/number.h"
 #include "io/wait.h"
+#include "platform/disk.h"
 #include <errno.h>
-#include <fcntl.h>
-#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { BLOCK = BRIO_IO_BLOCK };
 
@@ -26,19 +21,17 @@ static brio_status fail(brio_output *out) {
 
 /* Takes a descriptor that is open. Its flags and its place stay as they are, because other processes share them. */
 static brio_status take_descriptor(brio_output *out, int descriptor) {
-    struct stat facts;
-    int flags = fcntl(descriptor, F_GETFL);
-    if (flags >= 0 && (flags & O_ACCMODE) == O_RDONLY) errno = EBADF;
-    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) return fail(out);
+    brio_place_facts facts;
+    if (!brio_is_writable(descriptor)) return fail(out);
     out->file = descriptor;
-    out->waits = fstat(descriptor, &facts) == 0 && !S_ISREG(facts.st_mode);
+    out->waits = brio_find_facts_open(descriptor, &facts) && facts.kind != BRIO_IS_FILE;
     return BRIO_OK;
 }
 
 /* Opens a FIFO, and waits here for a reader. The system's own wait could only be ended by a signal. */
 static brio_status open_fifo(brio_output *out, const char *path) {
     for (;;) {
-        out->file = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+        out->file = brio_open_device(path);
         if (out->file >= 0) break;
         if (errno != ENXIO && errno != EINTR) return fail(out);
         BRIO_FORWARD(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, 0));
@@ -48,20 +41,19 @@ static brio_status open_fifo(brio_output *out, const char *path) {
 }
 
 /* Opens a pipe, a terminal or a device, which is written in place. */
-static brio_status open_special(brio_output *out, const char *path, const struct stat *facts) {
+static brio_status open_special(brio_output *out, const char *path, const brio_place_facts *facts) {
     out->waits = true;
-    if (S_ISFIFO(facts->st_mode)) return open_fifo(out, path);
-    out->file = open(path, O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    if (facts->kind == BRIO_IS_PIPE) return open_fifo(out, path);
+    out->file = brio_open_device(path);
     out->owned = out->file >= 0;
     return out->owned ? BRIO_OK : fail(out);
 }
 
 /* Looks at the file that a path too long for one call leads to: only a file can be replaced. */
 static brio_status check_far(brio_output *out) {
-    const brio_target *t = &out->target;
-    struct stat old;
-    if (fstatat(t->folder, t->name, &old, 0) != 0) return errno == ENOENT ? BRIO_OK : fail(out);
-    if (S_ISREG(old.st_mode)) return faccessat(t->folder, t->name, W_OK, 0) == 0 ? BRIO_OK : fail(out);
+    brio_place_facts old;
+    if (!brio_target_facts(&out->target, &old)) return errno == ENOENT ? BRIO_OK : fail(out);
+    if (old.kind == BRIO_IS_FILE) return brio_target_may_write(&out->target) ? BRIO_OK : fail(out);
     errno = ENAMETOOLONG;
     return fail(out);
 }
@@ -71,21 +63,21 @@ static brio_status check_far(brio_output *out) {
  * has open is written at its end. */
 static brio_status open_file(brio_output *out, const char *path) {
     brio_status status = BRIO_OK;
-    struct stat old;
-    bool exists = stat(path, &old) == 0, far = !exists && errno == ENAMETOOLONG;
+    brio_place_facts old;
+    bool exists = brio_find_facts(path, &old), far = !exists && errno == ENAMETOOLONG;
     if (!exists && errno != ENOENT && !far) return fail(out);
-    BRIO_TRY(brio_target_find(&out->target, out->ctx, path, out->name));
+    if (!brio_target_find(&out->target, path)) return fail(out);
     int descriptor = brio_target_descriptor(&out->target);
     if (descriptor >= 0) return take_descriptor(out, descriptor);
-    if (exists && !S_ISREG(old.st_mode)) return open_special(out, path, &old);
+    if (exists && old.kind != BRIO_IS_FILE) return open_special(out, path, &old);
     /* a rename does not check whether the old file may be written */
-    if (exists && access(path, W_OK) != 0) return fail(out);
+    if (exists && !brio_may_write(path)) return fail(out);
     if (far) BRIO_TRY(check_far(out));
     if (brio_target_is_open_file(&out->target)) {
-        out->file = open(path, O_WRONLY | O_CLOEXEC | O_APPEND);
+        out->file = brio_open_end(path);
         if (out->file < 0) return fail(out);
-    } else {
-        BRIO_TRY(brio_target_create(&out->target, out->ctx, out->name, &out->file));
+    } else if (!brio_target_create(&out->target, &out->file)) {
+        status = fail(out);
     }
 done:
     out->owned = out->file >= 0;
@@ -97,13 +89,17 @@ brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *pa
     *out = (brio_output){
         .ctx = ctx, .name = standard ? "standard output" : path, .target.folder = -1, .file = -1, .expected = expected};
     BRIO_FORWARD(BRIO_ALLOC(ctx, out->buffer, BLOCK));
-    return standard ? take_descriptor(out, STDOUT_FILENO) : open_file(out, path);
+    return standard ? take_descriptor(out, BRIO_OUTPUT) : open_file(out, path);
 }
 
-bool brio_output_is_single(brio_context *ctx, const char *path) {
-    struct stat facts;
-    if (brio_open_descriptor(ctx, path) >= 0) return true;
-    return stat(path, &facts) == 0 && (S_ISCHR(facts.st_mode) || S_ISBLK(facts.st_mode));
+int brio_open_descriptor(const char *path) {
+    return strcmp(path, "-") ? brio_path_descriptor(path) : BRIO_OUTPUT;
+}
+
+bool brio_output_is_single(const char *path) {
+    brio_place_facts facts;
+    if (brio_open_descriptor(path) >= 0) return true;
+    return brio_find_facts(path, &facts) && (facts.kind == BRIO_IS_CHARACTERS || facts.kind == BRIO_IS_BLOCKS);
 }
 
 static double share_written(const brio_output *out) {
@@ -112,19 +108,16 @@ static double share_written(const brio_output *out) {
     return share < 1 ? share : 1;
 }
 
-/* Makes one system call. A target that may block gets at most PIPE_BUF bytes, which fit whenever poll reports room. */
-static ssize_t write_some(const brio_output *out, const char *bytes, size_t size) {
-    brio_quiet_signals quiet;
-    brio_signals_block(&quiet);
-    ssize_t done = write(out->file, bytes, out->waits && size > PIPE_BUF ? PIPE_BUF : size);
-    brio_signals_restore(&quiet);
-    return done;
+/* Makes one system call. A target that may block gets what fits whenever it takes anything. */
+static int64_t write_some(const brio_output *out, const char *bytes, size_t size) {
+    size_t room = brio_pipe_room();
+    return brio_write_bytes(out->file, bytes, out->waits && size > room ? room : size);
 }
 
 static brio_status write_all(brio_output *out, const char *bytes, size_t size) {
     while (size) {
         if (out->waits) BRIO_FORWARD(brio_wait_for(out->ctx, out->file, BRIO_WAIT_WRITE, share_written(out)));
-        ssize_t done = write_some(out, bytes, size);
+        int64_t done = write_some(out, bytes, size);
         if (done < 0 && (errno == EINTR || errno == EAGAIN)) {
             BRIO_FORWARD(brio_wait_a_moment(out->ctx, BRIO_WAIT_WRITE, share_written(out)));
             continue;
@@ -138,23 +131,14 @@ static brio_status write_all(brio_output *out, const char *bytes, size_t size) {
     return BRIO_OK;
 }
 
-/* Makes the disk take bytes and, if `waits`, waits until it has them. A failure must not be lost: the system tells of
- * it once only, here or at the flush. Returns whether there was none. */
-static bool give(const brio_output *out, uint64_t from, uint64_t to, bool waits) {
-    unsigned flags = SYNC_FILE_RANGE_WRITE;
-    if (waits) flags |= SYNC_FILE_RANGE_WAIT_BEFORE | SYNC_FILE_RANGE_WAIT_AFTER;
-    return sync_file_range(out->file, (off_t)from, (off_t)(to - from), flags) == 0 || errno == ESPIPE ||
-           errno == EINVAL || errno == ENOSYS;
-}
-
 /* Makes the disk take what was written, STRETCH bytes (chosen) at a time: one flush of a big file at its end could not
- * be cancelled. */
+ * be cancelled. The system tells of a failure once only, here or at the flush. */
 static brio_status write_back(brio_output *out) {
     enum { STRETCH = 1 << 25 };
     uint64_t size = out->written - out->given;
     if (!out->target.is_new || size < STRETCH) return BRIO_OK;
-    if (out->given > out->taken && !give(out, out->taken, out->given, true)) return fail(out);
-    if (!give(out, out->given, out->written, false)) return fail(out);
+    if (out->given > out->taken && !brio_wait_written(out->file, out->taken, out->given - out->taken)) return fail(out);
+    if (!brio_start_writing(out->file, out->given, size)) return fail(out);
     out->taken = out->given;
     out->given = out->written;
     return BRIO_OK;
@@ -173,18 +157,11 @@ static brio_status flush(brio_output *out) {
     return report(out);
 }
 
-/* Flushes a file. A signal may end fsync early. */
-static bool is_on_disk(int file) {
-    while (fsync(file) != 0)
-        if (errno != EINTR) return false;
-    return true;
-}
-
 brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *bytes, size_t size) {
     const char *p = bytes;
     BRIO_FORWARD(flush(out));
     while (size) {
-        ssize_t done = pwrite(out->file, p, size, (off_t)offset);
+        int64_t done = brio_write_bytes_at(out->file, p, size, offset);
         if (done < 0 && errno == EINTR) continue;
         if (done == 0) errno = EIO;
         if (done <= 0) return fail(out);
@@ -196,37 +173,29 @@ brio_status brio_output_patch(brio_output *out, uint64_t offset, const void *byt
 }
 
 brio_status brio_output_finish(brio_output *out) {
-    brio_quiet_signals quiet;
     BRIO_FORWARD(flush(out));
     if (!out->owned) return BRIO_OK;
-    if (out->target.is_new && !is_on_disk(out->file)) return fail(out);
+    if (out->target.is_new && !brio_flush_to_disk(out->file)) return fail(out);
     if (brio_target_is_nameless(&out->target)) return BRIO_OK; /* needed open to be named; all of it is on the disk */
-    brio_signals_block(&quiet);
-    int closed = close(out->file);
-    brio_signals_restore(&quiet);
     out->owned = false;
-    if (closed != 0 && errno != EINTR) return fail(out);
-    return BRIO_OK;
+    return brio_close(out->file) ? BRIO_OK : fail(out);
 }
 
 brio_status brio_output_publish(brio_output *out) {
-    return brio_target_publish(&out->target, out->ctx, out->name, out->file);
+    return brio_target_publish(&out->target, out->file) ? BRIO_OK : fail(out);
 }
 
 brio_status brio_output_publish_all(brio_output *const *outs, int count) {
     brio_status status = BRIO_OK;
     for (int i = 0; i < count && status == BRIO_OK; i++)
-        status = brio_target_exchange(&outs[i]->target, outs[i]->ctx, outs[i]->name, outs[i]->file);
+        status = brio_target_exchange(&outs[i]->target, outs[i]->file) ? BRIO_OK : fail(outs[i]);
     for (int i = count - 1; i >= 0 && status != BRIO_OK; i--) brio_target_undo(&outs[i]->target);
     return status;
 }
 
 void brio_output_close(brio_output *out) {
-    brio_quiet_signals quiet;
-    brio_signals_block(&quiet);
-    if (out->owned) close(out->file);
-    brio_signals_restore(&quiet);
-    brio_target_close(&out->target, out->ctx);
+    if (out->owned) brio_close(out->file);
+    brio_target_close(&out->target);
     brio_release(out->ctx, out->buffer);
     *out = (brio_output){.ctx = out->ctx, .target.folder = -1, .file = -1};
 }

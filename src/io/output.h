@@ -1,5 +1,5 @@
 /* Buffered output to a file that appears only when it is complete. The output is written to a file without a name in
- * the target's folder, flushed to the disk and named (target.h). A target that is no regular file (standard output, a
+ * the target's folder, flushed to the disk and named (platform/target.h). A target that is no regular file (standard output, a
  * device, a pipe) is written directly, and so is a descriptor that is open (/dev/stdout, /dev/fd/7) whatever it leads
  * to.
  *
@@ -7,7 +7,8 @@
 #ifndef BRIO_IO_OUTPUT_H
 #define BRIO_IO_OUTPUT_H
 
-#include "io/target.h"
+#include "base/context.h"
+#include "platform/target.h"
 
 typedef struct brio_output {
     brio_context *ctx;
@@ -32,7 +33,11 @@ typedef struct brio_output {
 brio_status brio_output_open(brio_output *out, brio_context *ctx, const char *path, uint64_t expected);
 
 /** Returns whether a path names one open descriptor or device: there are no files beside it. */
-bool brio_output_is_single(brio_context *ctx, const char *path);
+bool brio_output_is_single(const char *path);
+
+/** Returns the open descriptor that a path of an output leads to: that of standard output for "-", that of
+ *  brio_path_descriptor otherwise, or -1. */
+int brio_open_descriptor(const char *path);
 
 /** Returns the number of bytes that were given to the output. */
 static inline uint64_t brio_output_offset(const brio_output *out) {

@@ -5,16 +5,16 @@
 #include "io/blocks.h"
 #include "io/read_job.h"
 #include "io/unpack.h"
+#include "platform/file.h"
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 /* Bytes of a file in which its content may show the format. */
 enum { START = BRIO_IO_BLOCK < 4096 ? BRIO_IO_BLOCK : 4096 };
 
 /* Returns the part of a name behind its last dot, or the whole name if there is none. */
 static const char *extension_of(const char *path) {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    const char *name = path + brio_folder_length(path), *dot = strrchr(name, '.');
     return dot ? dot + 1 : name;
 }
 
@@ -53,7 +53,8 @@ brio_status brio_sibling(brio_context *ctx, const char *path, const char *extens
     const char *packed = path[stem] ? path + brio_unpacked_length(path) : "";
     BRIO_FORWARD(BRIO_ALLOC(ctx, *out, stem + strlen(extension) + strlen(packed) + 1));
     memcpy(*out, path, stem);
-    strcpy(stpcpy(*out + stem, extension), packed);
+    strcpy(*out + stem, extension);
+    strcat(*out + stem, packed);
     return BRIO_OK;
 }
 
@@ -94,7 +95,7 @@ static brio_status read_tetrahedra(brio_builder *b, const char *path, bool asked
     brio_stream s = {.ctx = b->ctx, .file = -1};
     char *ele = NULL;
     BRIO_TRY(brio_sibling(b->ctx, path, ".ele", &ele));
-    if (asked_for || access(ele, F_OK) == 0) {
+    if (asked_for || brio_is_there(ele)) {
         BRIO_TRY(brio_stream_open(&s, b->ctx, ele));
         BRIO_TRY(brio_ele_read(&s, b));
     }

@@ -9,23 +9,14 @@
 #include "io/crc32.h"
 #include "io/unpack.h"
 #include "io/wait.h"
+#include "platform/file.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #define BYTE_ORDER_MARK "\xef\xbb\xbf" /* of UTF-8: some editors begin texts with it */
 
 enum { BLOCK = BRIO_IO_BLOCK, MAX_LINE = 1 << 28 /* chosen */ };
-
-/* Opens a file. A FIFO is opened at once, without a writer: the wait for its first bytes can be cancelled. */
-static int open_input(const char *path) {
-    struct stat facts;
-    bool special = stat(path, &facts) == 0 && !S_ISREG(facts.st_mode);
-    return open(path, O_RDONLY | O_CLOEXEC | (special ? O_NONBLOCK : 0));
-}
 
 /* Makes the buffer and looks at the first bytes. */
 static brio_status start(brio_stream *s) {
@@ -38,15 +29,15 @@ static brio_status start(brio_stream *s) {
 brio_status brio_stream_open(brio_stream *s, brio_context *ctx, const char *path) {
     bool standard = !strcmp(path, "-");
     *s = (brio_stream){.ctx = ctx, .name = standard ? "standard input" : path, .file = -1, .size = BRIO_SIZE_UNKNOWN};
-    s->file = standard ? STDIN_FILENO : open_input(path);
+    s->file = standard ? BRIO_INPUT : brio_open_input(path);
     s->owned = !standard && s->file >= 0;
     BRIO_EXPECT(ctx, s->file >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
-    struct stat facts;
-    bool regular = fstat(s->file, &facts) == 0 && S_ISREG(facts.st_mode);
-    off_t at = regular ? lseek(s->file, 0, SEEK_CUR) : -1;
+    brio_place_facts facts;
+    bool regular = brio_find_facts_open(s->file, &facts) && facts.kind == BRIO_IS_FILE;
+    int64_t at = regular ? brio_place_in(s->file) : -1;
     s->waits = !regular;
     /* special file systems report a size of 0 for files with content */
-    if (at >= 0 && facts.st_size > at) s->size = (uint64_t)(facts.st_size - at);
+    if (at >= 0 && facts.size > (uint64_t)at) s->size = facts.size - (uint64_t)at;
     return start(s);
 }
 
@@ -65,7 +56,7 @@ brio_status brio_stream_open_again(brio_stream *s, brio_stream *other) {
 
 void brio_stream_close(brio_stream *s) {
     brio_unpack_end(s);
-    if (s->owned) close(s->file);
+    if (s->owned) brio_close(s->file);
     s->owned = false;
     brio_release(s->ctx, s->buffer);
     s->buffer = NULL;
@@ -114,7 +105,7 @@ brio_status brio_stream_read_raw(brio_stream *s, char *to, size_t room, size_t *
     if (s->outer || s->memory) return read_part(s, to, room, got);
     for (;;) {
         if (s->waits) BRIO_FORWARD(brio_wait_for(s->ctx, s->file, BRIO_WAIT_READ, 0));
-        ssize_t count = read(s->file, to, room);
+        int64_t count = brio_read_bytes(s->file, to, room);
         if (count < 0 && (errno == EINTR || errno == EAGAIN)) { /* a signal: the caller may want to cancel */
             BRIO_FORWARD(brio_wait_a_moment(s->ctx, BRIO_WAIT_READ, 0));
             continue;
@@ -172,12 +163,12 @@ brio_status brio_stream_peek(brio_stream *s, uint64_t offset, void *bytes, size_
         return BRIO_OK;
     }
     if (s->outer) return brio_stream_peek(s->outer, s->part_at - s->base - s->end + offset, bytes, size);
-    off_t here = lseek(s->file, 0, SEEK_CUR);
+    int64_t here = brio_place_in(s->file);
     BRIO_EXPECT(s->ctx, here >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
     uint64_t start = (uint64_t)here - s->base - s->end;
     char *to = bytes;
     while (size) {
-        ssize_t got = pread(s->file, to, size, (off_t)(start + offset));
+        int64_t got = brio_read_bytes_at(s->file, to, size, start + offset);
         if (got < 0 && errno == EINTR) continue;
         BRIO_EXPECT(s->ctx, got >= 0, BRIO_ERR_OPEN, "%s: %s", s->name, strerror(errno));
         BRIO_EXPECT(s->ctx, got > 0, BRIO_ERR_FORMAT, "%s: ends at byte %" PRIu64, s->name, offset);

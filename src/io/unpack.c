@@ -39,7 +39,8 @@ brio_status brio_unpack_start(brio_stream *s) {
     s->unpacker = u;
     BRIO_FORWARD(brio_decoder_new(s->ctx, s->name, packing, &u->decoder));
     BRIO_FORWARD(BRIO_ALLOC(s->ctx, u->name, strlen(s->name) + sizeof suffix));
-    strcpy(stpcpy(u->name, s->name), suffix);
+    strcpy(u->name, s->name);
+    strcat(u->name, suffix);
     u->size = s->size;
     u->taken = s->base + s->end;
     /* what the stream has read becomes the first block */

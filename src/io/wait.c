@@ -1,8 +1,7 @@
 /* Waiting with progress. A signal also ends the wait at once, because the progress callback may depend on its
  * handler. */
 #include "io/wait.h"
-#include <errno.h>
-#include <poll.h>
+#include "platform/file.h"
 
 enum { TURN = 100, MOMENT = 20 /* milliseconds; chosen: too short to notice after Ctrl-C */ };
 
@@ -12,15 +11,13 @@ static brio_status report(brio_context *ctx, brio_wait what, double fraction) {
 
 brio_status brio_wait_for(brio_context *ctx, int file, brio_wait what, double fraction) {
     for (;;) {
-        struct pollfd one = {.fd = file, .events = what == BRIO_WAIT_READ ? POLLIN : POLLOUT};
-        int ready = poll(&one, 1, TURN);
-        if (ready > 0 || (ready < 0 && errno != EINTR)) return BRIO_OK;
+        if (brio_wait_ready(file, what == BRIO_WAIT_WRITE, TURN)) return BRIO_OK;
         BRIO_FORWARD(report(ctx, what, fraction));
     }
     return BRIO_OK;
 }
 
 brio_status brio_wait_a_moment(brio_context *ctx, brio_wait what, double fraction) {
-    poll(NULL, 0, MOMENT);
+    brio_wait_milliseconds(MOMENT);
     return report(ctx, what, fraction);
 }

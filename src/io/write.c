@@ -54,7 +54,7 @@ static brio_status check_holds(brio_context *ctx, const char *path, const brio_m
     bool beside = options->neighbours || options->faces || options->edges;
     BRIO_EXPECT(ctx, !beside || format == BRIO_FORMAT_NODE, BRIO_ERR_ARGUMENT,
                 "%s: neighbours, faces and edges are written beside .node only", path);
-    BRIO_EXPECT(ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || !brio_output_is_single(ctx, path),
+    BRIO_EXPECT(ctx, (!m->num_tetrahedra && !beside) || format != BRIO_FORMAT_NODE || !brio_output_is_single(path),
                 BRIO_ERR_ARGUMENT, "%s cannot hold the two files .node and .ele",
                 strcmp(path, "-") ? path : "standard output");
     BRIO_FORWARD(brio_check_compress(ctx, path, format, options));
@@ -141,7 +141,7 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     if (o.moved && brio_is_single(format, &o)) *o.moved = brio_moved_by_singles(mesh);
     if (brio_row_format_of(format))
         BRIO_FORWARD(write_rows(ctx, path, &job, format));
-    else if (format == BRIO_FORMAT_NODE && !brio_output_is_single(ctx, path))
+    else if (format == BRIO_FORMAT_NODE && !brio_output_is_single(path))
         BRIO_FORWARD(brio_node_write_files(ctx, path, &job, job.expected));
     else
         BRIO_FORWARD(write_one(ctx, path, &job, format));

@@ -27,7 +27,6 @@
 #include <assert.h>
 #include <math.h>
 #include <string.h>
-#include <time.h>
 
 enum {
     LEAST = 512, /* points to insert that are worth a thread */
@@ -125,7 +124,7 @@ static brio_status wait_for_others(worker *w) {
     double start = brio_seconds(), told = start, now = start;
     while (__atomic_load_n(&w->pass->running, __ATOMIC_ACQUIRE) > 0) {
         double sleep = fmin(fmax(SHARE * (now - start), LEAST_SLEEP), MOST_SLEEP);
-        nanosleep(&(struct timespec){0, (long)(1e9 * sleep)}, NULL);
+        brio_sleep(sleep);
         now = brio_seconds();
         if (now - told < BETWEEN) continue;
         told = now;

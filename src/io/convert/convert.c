@@ -8,11 +8,10 @@
 #include "base/versioned.h"
 #include "io/convert/source.h"
 #include "io/row_format.h"
+#include "platform/file.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 typedef struct {
     brio_context *ctx;
@@ -199,15 +198,15 @@ static brio_status write_block(void *user, const brio_mesh *block) {
 }
 
 /* Returns whether the output is a new file, of which the beginning can be written last. */
-static bool can_patch(brio_context *ctx, const char *path) {
-    struct stat facts;
-    return brio_open_descriptor(ctx, path) < 0 && (stat(path, &facts) != 0 || S_ISREG(facts.st_mode));
+static bool can_patch(const char *path) {
+    brio_place_facts facts;
+    return brio_open_descriptor(path) < 0 && (!brio_find_facts(path, &facts) || facts.kind == BRIO_IS_FILE);
 }
 
 /* Returns whether a pass comes first because the output begins with the number of points, and its beginning cannot be
  * written last. */
 static bool must_count(const conversion *c) {
-    return !can_patch(c->ctx, c->to) && c->writer.format->counts;
+    return !can_patch(c->to) && c->writer.format->counts;
 }
 
 /* Goes through the points. A pass that ends at its first block because the depth of colours is open is followed by one
@@ -301,11 +300,12 @@ done:
 /* Returns whether input and output are one file, or one FIFO, from which the conversion would wait for what it
  * writes. */
 static bool is_one_file(const conversion *c) {
-    struct stat a, b;
-    int from = strcmp(c->source.path, "-") ? stat(c->source.path, &a) : fstat(STDIN_FILENO, &a);
-    int to = strcmp(c->to, "-") ? stat(c->to, &b) : fstat(STDOUT_FILENO, &b);
-    if (from != 0 || to != 0 || a.st_dev != b.st_dev || a.st_ino != b.st_ino) return false;
-    return S_ISFIFO(a.st_mode) || (S_ISREG(a.st_mode) && strcmp(c->source.path, "-") != 0);
+    brio_place_facts a, b;
+    bool standard = !strcmp(c->source.path, "-");
+    bool from = standard ? brio_find_facts_open(BRIO_INPUT, &a) : brio_find_facts(c->source.path, &a);
+    bool to = strcmp(c->to, "-") ? brio_find_facts(c->to, &b) : brio_find_facts_open(BRIO_OUTPUT, &b);
+    if (!from || !to || !brio_is_same_file(&a, &b)) return false;
+    return a.kind == BRIO_IS_PIPE || (a.kind == BRIO_IS_FILE && !standard);
 }
 
 static brio_status check(conversion *c) {
@@ -343,7 +343,7 @@ static brio_status run(conversion *c) {
     const brio_bar bar = brio_progress_bar(c->ctx);
     bool choose = c->options->drop_outliers || c->options->thin > 0;
     const brio_row_format *format = brio_row_format_of(c->format);
-    bool once = !choose && !(format && format->survey) && (can_patch(c->ctx, c->to) || (format && !format->counts));
+    bool once = !choose && !(format && format->survey) && (can_patch(c->to) || (format && !format->counts));
     c->source.whole = !format || c->options->merge || (!brio_source_rereadable(c->source.path) && !once);
     double started = brio_seconds();
     brio_progress_part(c->ctx, bar, 0, 0.6);

@@ -8,7 +8,6 @@
 #include "io/filter.h"
 #include <inttypes.h>
 #include <string.h>
-#include <sys/stat.h>
 
 typedef struct {
     brio_source *source;
@@ -19,8 +18,8 @@ typedef struct {
 } pass;
 
 bool brio_source_rereadable(const char *path) {
-    struct stat facts;
-    return strcmp(path, "-") != 0 && stat(path, &facts) == 0 && S_ISREG(facts.st_mode);
+    brio_place_facts facts;
+    return strcmp(path, "-") != 0 && brio_find_facts(path, &facts) && facts.kind == BRIO_IS_FILE;
 }
 
 brio_status brio_source_changed(const brio_source *s) {
@@ -30,11 +29,12 @@ brio_status brio_source_changed(const brio_source *s) {
 /* Returns whether the file is the one that the first pass found: another one may have other properties and more
  * points. */
 static bool is_unchanged(brio_source *s) {
-    struct stat facts, *first = &s->facts;
-    if (!brio_source_rereadable(s->path) || stat(s->path, &facts) != 0) return true; /* reading it tells */
-    if (!first->st_mode) *first = facts;
-    return facts.st_dev == first->st_dev && facts.st_ino == first->st_ino && facts.st_size == first->st_size &&
-           facts.st_mtim.tv_sec == first->st_mtim.tv_sec && facts.st_mtim.tv_nsec == first->st_mtim.tv_nsec;
+    brio_place_facts facts, *first = &s->facts;
+    if (!brio_source_rereadable(s->path) || !brio_find_facts(s->path, &facts)) return true; /* reading it tells */
+    if (!s->has_facts) *first = facts;
+    s->has_facts = true;
+    return brio_is_same_file(&facts, first) && facts.size == first->size && facts.seconds == first->seconds &&
+           facts.nanoseconds == first->nanoseconds;
 }
 
 /* Finds which points of a block stay. */

@@ -3,7 +3,7 @@
 #define BRIO_IO_CONVERT_SOURCE_H
 
 #include "io/read_job.h"
-#include <sys/stat.h>
+#include "platform/file.h"
 
 typedef struct brio_source {
     brio_context *ctx;
@@ -17,7 +17,8 @@ typedef struct brio_source {
     uint64_t num_boxed;   /* points in the box, if `chosen` was made */
     uint64_t outliers, thinned;
     int passes;
-    struct stat facts; /* of a file that can be read again, as the first pass found it */
+    brio_place_facts facts; /* of a file that can be read again, as the first pass found it, if has_facts */
+    bool has_facts;
 } brio_source;
 
 /** Returns whether a path names a file that can be read again. */

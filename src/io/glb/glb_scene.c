@@ -5,12 +5,10 @@
 #include "base/memory.h"
 #include "io/glb/glb.h"
 #include "io/textrow.h"
+#include "platform/file.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* --- buffers in other files --- */
 
@@ -58,8 +56,7 @@ static bool stays(const char *name) {
 
 /* Makes the path of the file.   out  owned by the caller (brio_release), on failure too. */
 static brio_status make_path(brio_context *ctx, const char *path, const char *uri, size_t number, char **out) {
-    const char *slash = strrchr(path, '/');
-    size_t folder = slash ? (size_t)(slash + 1 - path) : 0, length = strlen(uri);
+    size_t folder = brio_folder_length(path), length = strlen(uri);
     bool scheme = memchr(uri, ':', strcspn(uri, "/%")) != NULL;
     BRIO_FORWARD(BRIO_ALLOC(ctx, *out, folder + length + 1));
     memcpy(*out, path, folder);
@@ -76,7 +73,7 @@ static brio_status read_all(brio_context *ctx, int file, const char *name, char 
     for (uint64_t at = 0; at < size;) {
         size_t want = size - at < PART ? (size_t)(size - at) : PART;
         BRIO_FORWARD(brio_progress(ctx, "read", 0));
-        ssize_t got = read(file, bytes + at, want);
+        int64_t got = brio_read_bytes(file, bytes + at, want);
         if (got < 0 && errno == EINTR) continue;
         BRIO_EXPECT(ctx, got > 0, BRIO_ERR_OPEN, "%s: %s", name, got ? strerror(errno) : "ends while it is read");
         at += (uint64_t)got;
@@ -96,24 +93,24 @@ static brio_status glb_load(brio_context *ctx, const char *path, bool on_disk, c
     brio_status status = BRIO_OK;
     char *name = NULL;
     int file = -1;
-    struct stat facts;
+    brio_place_facts facts;
     BRIO_REQUIRE(ctx, on_disk, BRIO_ERR_FORMAT,
                  "%s: buffers[%zu] is in another file, %s, which is only found beside a file: expected a .glb, which "
                  "holds its data, or data in the JSON",
                  path, number, brio_excerpt_of(uri).text);
     BRIO_TRY(make_path(ctx, path, uri, number, &name));
-    file = open(name, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    BRIO_REQUIRE(ctx, file >= 0 && !fstat(file, &facts), BRIO_ERR_OPEN, "%s: buffers[%zu] is in %s: %s", path, number,
-                 name, strerror(errno));
-    BRIO_REQUIRE(ctx, S_ISREG(facts.st_mode), BRIO_ERR_FORMAT, "%s: buffers[%zu] is in %s, which is no regular file",
-                 path, number, name);
-    BRIO_REQUIRE(ctx, (uint64_t)facts.st_size >= buffer->size, BRIO_ERR_FORMAT,
+    file = brio_open_input(name);
+    BRIO_REQUIRE(ctx, file >= 0 && brio_find_facts_open(file, &facts), BRIO_ERR_OPEN, "%s: buffers[%zu] is in %s: %s",
+                 path, number, name, strerror(errno));
+    BRIO_REQUIRE(ctx, facts.kind == BRIO_IS_FILE, BRIO_ERR_FORMAT,
+                 "%s: buffers[%zu] is in %s, which is no regular file", path, number, name);
+    BRIO_REQUIRE(ctx, facts.size >= buffer->size, BRIO_ERR_FORMAT,
                  "%s: buffers[%zu] has %" PRIu64 " bytes, the file %s has %" PRIu64, path, number, buffer->size, name,
-                 (uint64_t)facts.st_size);
+                 facts.size);
     BRIO_TRY(BRIO_ALLOC(ctx, buffer->bytes, buffer->size));
     BRIO_TRY(read_all(ctx, file, name, buffer->bytes, buffer->size));
 done:
-    if (file >= 0) close(file);
+    if (file >= 0) brio_close(file);
     brio_release(ctx, name);
     return status;
 }

@@ -4,7 +4,6 @@
  * offsets. Points become vertices at once. Point data and the arrays of the cells are kept until all have been read.
  *
  * Based on: Schroeder, Martin, Lorensen. The Visualization Toolkit. 4th edition, Kitware 2006; VTK file formats. */
-#define _GNU_SOURCE
 #include "io/vtk/vtk.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -215,10 +214,20 @@ typedef struct {
     char *rows;      /* of points */
 } vtk_reader;
 
+/* Returns the first place of a word in bytes, or NULL. */
+static const char *find_word(const char *bytes, size_t size, const char *word) {
+    size_t length = strlen(word);
+    for (const char *end = bytes + size; bytes && (size_t)(end - bytes) >= length; bytes++) {
+        bytes = memchr(bytes, word[0], (size_t)(end - bytes) - length + 1);
+        if (!bytes || !memcmp(bytes, word, length)) return bytes;
+    }
+    return NULL;
+}
+
 /* Returns the tag VTKFile of a file that begins with it, or with the line that all XML may begin with; or NULL. */
 static const char *root_of(const char *bytes, size_t size) {
     static const char xml[] = "<?xml", file[] = "<VTKFile";
-    if (size >= strlen(xml) && !memcmp(bytes, xml, strlen(xml))) return memmem(bytes, size, file, strlen(file));
+    if (size >= strlen(xml) && !memcmp(bytes, xml, strlen(xml))) return find_word(bytes, size, file);
     return size >= strlen(file) && !memcmp(bytes, file, strlen(file)) ? bytes : NULL;
 }
 
@@ -230,7 +239,7 @@ static bool vtp_starts(const char *bytes, size_t size) {
     static const char kind[] = "PolyData";
     const char *root = root_of(bytes, size);
     const char *end = root ? memchr(root, '>', size - (size_t)(root - bytes)) : NULL;
-    return end && memmem(root, (size_t)(end - root), kind, strlen(kind));
+    return end && find_word(root, (size_t)(end - root), kind);
 }
 
 /* --- points --- */

@@ -19,8 +19,8 @@ enum { CHUNK = 4096 };
 
 typedef struct {
     brio_context *ctx;
-    pthread_mutex_t stack_lock; /* held while a thread pushes */
-    brio_status status;         /* the first failure that a thread reported */
+    brio_mutex stack_lock; /* held while a thread pushes */
+    brio_status status;    /* the first failure that a thread reported */
     const brio_tet_labels *labels;
     const brio_cocones *cocones;
     const brio_tetrahedra *t;
@@ -146,22 +146,22 @@ static void find_sharp(void *user, size_t begin, size_t end, int thread) {
         for (unsigned left = x->cocones->candidates[tet]; left; left &= left - 1) {
             uint32_t facet = brio_facet_of((uint32_t)tet, __builtin_ctz(left));
             if (*brio_mate(x->t, facet) < facet || is_surface(x, facet) || !has_sharp_edge(x, facet)) continue;
-            pthread_mutex_lock(&x->stack_lock);
+            brio_mutex_lock(&x->stack_lock);
             brio_status own = push(x, facet);
-            pthread_mutex_unlock(&x->stack_lock);
+            brio_mutex_unlock(&x->stack_lock);
             brio_report(&x->status, own);
         }
 }
 
 brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *labels, size_t *dropped) {
     brio_status status = BRIO_OK;
-    pruning x = {.stack_lock = PTHREAD_MUTEX_INITIALIZER,
-                 .ctx = ctx,
+    pruning x = {.ctx = ctx,
                  .labels = labels,
                  .cocones = labels->cocones,
                  .t = &labels->dual->t,
                  .points = labels->dual->points};
     *dropped = 0;
+    brio_mutex_new(&x.stack_lock);
     BRIO_TRY(brio_for_chunks(ctx, brio_threads(ctx, x.t->count, CHUNK), x.t->count, CHUNK, find_sharp, &x));
     BRIO_TRY(x.status);
     if (x.size > 0) brio_sort_indices(x.stack, x.size, compare_facets, NULL);
@@ -172,6 +172,7 @@ brio_status brio_cocone_prune(brio_context *ctx, const brio_tet_labels *labels, 
         ++*dropped;
     }
 done:
+    brio_mutex_free(&x.stack_lock);
     brio_release(ctx, x.stack);
     return status;
 }

@@ -1,6 +1,6 @@
 /* Writes that cannot end the process: SIGPIPE and SIGXFSZ are blocked during a call and removed after it. */
 #define _GNU_SOURCE
-#include "base/quiet_signals.h"
+#include "platform/quiet_signals.h"
 #include <errno.h>
 #include <stddef.h>
 #include <time.h>
@@ -18,13 +18,18 @@ void brio_signals_block(brio_quiet_signals *quiet) {
 }
 
 /* Removes one pending signal. Does not wait, because another thread may have received a signal that was sent to the
- * process. */
+ * process. macOS has sigwait alone, which waits: the signal is pending for this thread, so that it returns at once. */
 static void take_back(int signal) {
-    const struct timespec no_time = {0, 0};
     sigset_t one;
     sigemptyset(&one);
     sigaddset(&one, signal);
+#ifdef __APPLE__
+    int taken;
+    sigwait(&one, &taken);
+#else
+    const struct timespec no_time = {0, 0};
     while (sigtimedwait(&one, NULL, &no_time) < 0 && errno == EINTR) {}
+#endif
 }
 
 void brio_signals_restore(const brio_quiet_signals *quiet) {

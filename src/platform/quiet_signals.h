@@ -10,8 +10,18 @@
  *     brio_signals_block(&quiet);
  *     ssize_t n = write(...);
  *     brio_signals_restore(&quiet); */
-#ifndef BRIO_BASE_QUIET_SIGNALS_H
-#define BRIO_BASE_QUIET_SIGNALS_H
+#ifndef BRIO_PLATFORM_QUIET_SIGNALS_H
+#define BRIO_PLATFORM_QUIET_SIGNALS_H
+
+#ifdef __wasi__ /* no signals */
+typedef int brio_quiet_signals;
+static inline void brio_signals_block(brio_quiet_signals *quiet) {
+    *quiet = 0;
+}
+static inline void brio_signals_restore(const brio_quiet_signals *quiet) {
+    (void)quiet;
+}
+#else
 
 #include <signal.h>
 
@@ -26,4 +36,5 @@ void brio_signals_block(brio_quiet_signals *quiet);
 /** Removes the two signals if the call made them pending, and restores the mask. Keeps errno. */
 void brio_signals_restore(const brio_quiet_signals *quiet);
 
+#endif
 #endif
