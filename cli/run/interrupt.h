@@ -12,8 +12,8 @@
 void cli_interrupt_install(void);
 
 /** Says where scratch files are, from now on. They are mapped: when somebody cuts one, or its disk fails, the next
- *  touch is a fault of the process, in any thread and in the midst of anything. The run ends there with exit code 4 and a
- *  message. Neither scratch files nor unfinished outputs have names, so that nothing is left behind.
+ *  touch is a fault of the process, in any thread and in the midst of anything. The run ends there with exit code 4
+ *  and a message. Neither scratch files nor unfinished outputs have names, so that nothing is left behind.
  *  json  whether standard output carries JSON. */
 void cli_interrupt_scratch(const char *folder, bool json);
 

@@ -12,7 +12,8 @@ void brio_unmap(void *base, size_t size);
  *  is none. The bytes have the values that they had. */
 void *brio_kept_take(brio_context *ctx, size_t size);
 
-/** Keeps a mapping, or unmaps it if there is no room, or if mappings do not divide here. The caller has already subtracted it from the live bytes. */
+/** Keeps a mapping, or unmaps it if there is no room, or if mappings do not divide here. The caller has already
+ *  subtracted it from the live bytes. */
 void brio_kept_give(brio_context *ctx, void *base, size_t size);
 
 /** Unmaps what is kept beyond the limit, after more bytes have become live. */

@@ -1,9 +1,9 @@
 /* All memory of the library comes from here and is counted against the context's limit.
  *
  * Small blocks come from the context's allocator. With the system's allocator, blocks from 1 MiB on are mappings,
- * anonymous or of unlinked files in the scratch folder. Mappings grow by brio_pages_remap, which on Linux moves pages and copies nothing.
- * Anonymous mappings that are released are kept for later blocks (kept.h). Before each block is a header of 64 bytes,
- * so blocks are aligned to a cache line. Mapped blocks start at a page. */
+ * anonymous or of unlinked files in the scratch folder. Mappings grow by brio_pages_remap, which on Linux moves pages
+ * and copies nothing. Anonymous mappings that are released are kept for later blocks (kept.h). Before each block is a
+ * header of 64 bytes, so blocks are aligned to a cache line. Mapped blocks start at a page. */
 #ifndef BRIO_BASE_MEMORY_H
 #define BRIO_BASE_MEMORY_H
 
@@ -16,7 +16,8 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
 /** Frees a block; NULL is accepted. */
 void brio_release(brio_context *ctx, void *block);
 
-/** Returns the lesser of the machine's memory (brio_system_memory, when the context was made) and the caller's limit. */
+/** Returns the lesser of the machine's memory (brio_system_memory, when the context was made) and the caller's
+ *  limit. */
 size_t brio_memory_limit(const brio_context *ctx);
 
 /** Announces that the block will be read from its beginning to its end: a page fault on its scratch file then reads

@@ -1,7 +1,7 @@
 /* Buffered output to a file that appears only when it is complete.
  *
- * platform/target.h finds the file. A target that is no regular file, or is open already, is written in place. The reader of a
- * pipe may never be ready: such an output waits in wait.h, where the caller can cancel. */
+ * platform/target.h finds the file. A target that is no regular file, or is open already, is written in place. The
+ * reader of a pipe may never be ready: such an output waits in wait.h, where the caller can cancel. */
 #include "io/output.h"
 #include "base/memory.h"
 #include "io/blocks.h"

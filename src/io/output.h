@@ -1,7 +1,7 @@
 /* Buffered output to a file that appears only when it is complete. The output is written to a file without a name in
- * the target's folder, flushed to the disk and named (platform/target.h). A target that is no regular file (standard output, a
- * device, a pipe) is written directly, and so is a descriptor that is open (/dev/stdout, /dev/fd/7) whatever it leads
- * to.
+ * the target's folder, flushed to the disk and named (platform/target.h). A target that is no regular file (standard
+ * output, a device, a pipe) is written directly, and so is a descriptor that is open (/dev/stdout, /dev/fd/7)
+ * whatever it leads to.
  *
  * All functions that return a status return BRIO_OK, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED. */
 #ifndef BRIO_IO_OUTPUT_H

@@ -1,5 +1,5 @@
-/* Files of Windows. A descriptor is one of its C library, so that streams of C and of this room mix; the bytes are moved
- * by calls of the system. */
+/* Files of Windows. A descriptor is one of its C library, so that streams of C and of this room mix; the bytes are
+ * moved by calls of the system. */
 #include "platform/file.h"
 #include "platform/wide_names.h"
 #include <errno.h>

@@ -13,8 +13,8 @@ void *brio_pages_map(size_t size);
 /** Maps the first `size` bytes of a file, to read and to write. Returns NULL if the system cannot. */
 void *brio_pages_map_file(int file, size_t size);
 
-/** Changes the size of a mapping and keeps what it holds; it may move. New bytes are zero, those of a file what the file
- *  holds.   file  that of brio_pages_map_file, which has `target` bytes; -1 for memory.
+/** Changes the size of a mapping and keeps what it holds; it may move. New bytes are zero, those of a file what the
+ *  file holds.   file  that of brio_pages_map_file, which has `target` bytes; -1 for memory.
  *  Returns the mapping, or NULL, and then the old one is as it was. */
 void *brio_pages_remap(void *base, size_t size, size_t target, int file);
 

@@ -14,10 +14,11 @@
  *  argc, argv  those of main; replaced where the system has others. */
 void brio_program_begin(int *argc, char ***argv);
 
-/** Calls `stop` when the user asks the program to stop: Ctrl-C, the end of the session, and on POSIX SIGINT, SIGTERM and
- *  SIGHUP, each unless the caller had it ignored. A signal ends a call of the system that waits, of a pipe for example.
- *  One that comes just before such a call would be missed by the call: after the first signal an alarm each second ends
- *  what waits. A reader that went away and a limit on the size of files are errors of writing from now on. */
+/** Calls `stop` when the user asks the program to stop: Ctrl-C, the end of the session, and on POSIX SIGINT, SIGTERM
+ *  and SIGHUP, each unless the caller had it ignored. A signal ends a call of the system that waits, of a pipe for
+ *  example. One that comes just before such a call would be missed by the call: after the first signal an alarm each
+ *  second ends what waits. A reader that went away and a limit on the size of files are errors of writing from now
+ *  on. */
 void brio_program_on_stop(void (*stop)(void));
 
 /** Calls `lost` when a page of a mapped file cannot be read: somebody cut the file, or its disk failed. */

@@ -1,8 +1,8 @@
 /* Targets of outputs of Windows: a temporary name, renamed over the old file when it is complete.
  *
- * The folder is a descriptor, as elsewhere: what it has open tells its path when a name in it is needed, so that a change
- * of the working folder does not matter. Links of files are followed by the system when they are found, and replaced by
- * the new file: Windows has few. */
+ * The folder is a descriptor, as elsewhere: what it has open tells its path when a name in it is needed, so that a
+ * change of the working folder does not matter. Links of files are followed by the system when they are found, and
+ * replaced by the new file: Windows has few. */
 #include "platform/target.h"
 #include "platform/wide_names.h"
 #include <errno.h>

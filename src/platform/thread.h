@@ -3,9 +3,10 @@
  * A system without threads (WebAssembly) starts none: brio_thread_start returns false there, and the caller works on
  * alone. Locks are then no work.
  *
- * The room platform/ holds all that depends on the operating system: a header for each subject, the manual; and beside
- * it files of the same functions, _posix.c (Linux, macOS, musl, and what WASI has of POSIX), _windows.c and _wasi.c. No
- * other room asks which system it is. A function that fails returns what its comment says, and errno gives the reason. */
+ * The room platform/ holds all that depends on the operating system: a header for each subject, the manual; and
+ * beside it files of the same functions, _posix.c (Linux, macOS, musl, and what WASI has of POSIX), _windows.c and
+ * _wasi.c. No other room asks which system it is. A function that fails returns what its comment says, and errno
+ * gives the reason. */
 #ifndef BRIO_PLATFORM_THREAD_H
 #define BRIO_PLATFORM_THREAD_H
 
