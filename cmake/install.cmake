@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 install(TARGETS brio EXPORT brioTargets)
 install(TARGETS brio-cli)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/brio DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN testdata.h EXCLUDE) # of a library that is not installed
+        PATTERN testdata.h EXCLUDE PATTERN laboratory.h EXCLUDE) # of libraries that are not installed
 install(FILES docs/which-method.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}) # errors refer to the first by name
 
 # CMake: find_package(brio), then link with brio::brio.

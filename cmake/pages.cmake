@@ -9,7 +9,7 @@ endif()
 file(GLOB BRIO_PAGES_SOURCES CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cli/pages/*.c)
 add_executable(brio-pages ${BRIO_PAGES_SOURCES} $<TARGET_OBJECTS:brio-cli-objects>)
 target_include_directories(brio-pages PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
-target_link_libraries(brio-pages PRIVATE brio-testdata brio m)
+target_link_libraries(brio-pages PRIVATE brio-laboratory brio-testdata brio m)
 
 string(TIMESTAMP BRIO_PAGES_DATE "%Y-%m-%d" UTC) # that of SOURCE_DATE_EPOCH where it is set
 add_custom_command(OUTPUT ${BRIO_PAGES}/written

@@ -131,7 +131,7 @@ static const option options[] = {
 static const arguments defaults = {
     .weights.exponent = NO_EXPONENT, .order = NO_ORDER_OPTIONS, .subgraph = SUBGRAPH_FITTING, .plane = NO_PLANE};
 
-static brio_order insertion_order(const arguments *a) {
+static int insertion_order(const arguments *a) {
     bool random = a->order.order == FITTING_ORDER && a->locate == (int)BRIO_LOCATION_TRACE;
     return random ? BRIO_ORDER_RANDOM : cli_order_of(&a->order);
 }
@@ -188,19 +188,24 @@ done:
     return status;
 }
 
-static brio_delaunay_options library_options(const run *r, const arguments *a, const brio_edges *edges) {
+/* Begins the experiment that the options ask for, along edges where the location wants them. */
+static brio_status begin_experiment(run *r, const arguments *a, const brio_edges *edges) {
+    brio_laboratory_options lab = {.locate = (brio_location)a->locate,
+                                   .first_conflict = a->first_conflict,
+                                   .all_conflicts = a->all_conflicts,
+                                   .page_bytes = a->page_size,
+                                   .cache_bytes = a->cache_size,
+                                   .edges = edges->ends,
+                                   .num_edges = edges->count,
+                                   .record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every};
+    cli_order_experiment(&a->order, &lab);
+    return cli_experiment(r, &lab);
+}
+
+static brio_delaunay_options library_options(const run *r, const arguments *a) {
     brio_delaunay_options o = {0};
-    o.order = insertion_order(a);
-    o.locate = (brio_location)a->locate;
-    o.first_conflict = a->first_conflict;
-    o.all_conflicts = a->all_conflicts;
-    o.page_bytes = a->page_size;
-    o.cache_bytes = a->cache_size;
-    o.edges = edges->ends;
-    o.num_edges = edges->count;
+    o.order = cli_library_order(insertion_order(a));
     o.seed = r->common.seed;
-    o.block_size = (size_t)a->order.block_size;
-    o.record_every = a->rounds ? BRIO_RECORD_ROUNDS : a->record_every;
     o.leave_hidden = !r->common.output && !a->verify; /* a report counts them, but names none */
     if (!isnan(a->order.round_ratio)) o.round_ratio = a->order.round_ratio;
     return o;
@@ -208,9 +213,11 @@ static brio_delaunay_options library_options(const run *r, const arguments *a, c
 
 static brio_status require_memory(run *r, const arguments *a, const brio_mesh *mesh, const double *weights) {
     brio_edges expected = {.count = mesh->num_faces ? (size_t)mesh->face_offsets[mesh->num_faces] / 2 : 0};
-    brio_delaunay_options o = library_options(r, a, &expected);
+    brio_delaunay_options o = library_options(r, a);
     double bytes;
+    FORWARD(begin_experiment(r, a, &expected));
     brio_status status = cli_delaunay_bytes(r, mesh, weights, &o, &bytes);
+    brio_laboratory_end(r->lab);
     return status == BRIO_OK ? cli_require_memory(r, bytes) : status;
 }
 
@@ -222,7 +229,8 @@ static brio_status triangulate(run *r, const arguments *a, brio_mesh *mesh, cons
     if (needs_edges((brio_location)a->locate))
         TRY(cli_mesh_edges(r, mesh, (brio_location)a->locate, a->subgraph, &edges));
     TRY(cli_drop_connectivity(r, mesh));
-    brio_delaunay_options o = library_options(r, a, &edges);
+    brio_delaunay_options o = library_options(r, a);
+    TRY(begin_experiment(r, a, &edges));
     TRY(brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out));
     const brio_delaunay_stats *s = brio_triangulation_stats(*out);
     cli_stage(r, "order", s->order_seconds);
@@ -230,12 +238,14 @@ static brio_status triangulate(run *r, const arguments *a, brio_mesh *mesh, cons
     r->lap = cli_clock();
     TRY(cli_check_interrupt(r));
 done:
+    brio_laboratory_end(r->lab);
     brio_edges_free(&edges);
     return status;
 }
 
 static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triangulation *t, bool weighted) {
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    const brio_laboratory_stats *lab = brio_laboratory_results(r->lab);
     facts *f = &r->facts;
     uint64_t checksum;
     char text[20];
@@ -259,17 +269,17 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     cli_fact_count(f, "exact_calls", s->exact_calls);
     cli_fact_count(f, "deferred", s->deferred);
     cli_fact_count(f, "serial", s->serial);
-    cli_fact_count(f, "history", s->history);
-    cli_fact_count(f, "history_tests", s->history_tests);
-    cli_fact_count(f, "history_conflicts", s->history_conflicts);
-    cli_fact_count(f, "trace_intersections", s->trace_intersections);
+    cli_fact_count(f, "history", lab->history);
+    cli_fact_count(f, "history_tests", lab->history_tests);
+    cli_fact_count(f, "history_conflicts", lab->history_conflicts);
+    cli_fact_count(f, "trace_intersections", lab->trace_intersections);
     return BRIO_OK;
 }
 
-static void report_pages(facts *f, const brio_triangulation *t) {
+static void report_pages(facts *f, brio_laboratory *lab) {
     size_t count;
-    const brio_delaunay_stats *s = brio_triangulation_stats(t);
-    const uint64_t *faults = brio_triangulation_cache_faults(t, &count);
+    const brio_laboratory_stats *s = brio_laboratory_results(lab);
+    const uint64_t *faults = brio_laboratory_cache_faults(lab, &count);
     if (!faults) return;
     cli_fact_count(f, "pages", s->pages);
     cli_fact_count(f, "page_touches", s->page_touches);
@@ -284,9 +294,9 @@ static void report_pages(facts *f, const brio_triangulation *t) {
     cli_fact_close(f);
 }
 
-static void report_rounds(facts *f, const brio_triangulation *t, bool pages) {
+static void report_rounds(facts *f, const brio_laboratory *lab, bool pages) {
     size_t count;
-    const brio_round *round = brio_triangulation_rounds(t, &count);
+    const brio_round *round = brio_laboratory_rounds(lab, &count);
     if (!round) return;
     cli_fact_open(f, "rounds", FACT_LIST);
     for (size_t i = 0; i < count; i++) {
@@ -348,8 +358,8 @@ static brio_status delaunay(run *r) {
     cli_lap(r, "read");
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));
-    report_pages(&r->facts, t);
-    report_rounds(&r->facts, t, a->page_size > 0);
+    report_pages(&r->facts, r->lab);
+    report_rounds(&r->facts, r->lab, a->page_size > 0);
     if (a->verify) TRY(verify(r, mesh, weights, t));
     if (r->common.output) TRY(write_output(r, mesh, weights, &t));
 done:

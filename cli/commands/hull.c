@@ -46,6 +46,7 @@ static brio_status hull(run *r) {
     const arguments *a = r->arguments;
     brio_convex_hull_options o = {.size = sizeof o};
     brio_convex_hull_stats s = {.size = sizeof s};
+    brio_laboratory_options lab = {0};
     brio_mesh *input = NULL, *surface = NULL;
     uint32_t *samples = NULL;
     brio_status status = BRIO_OK;
@@ -54,14 +55,16 @@ static brio_status hull(run *r) {
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_require_memory(r, cli_hull_bytes(input)));
     o.polygons = a->polygons;
-    o.order = cli_order_of(&a->order);
+    o.order = cli_library_order(cli_order_of(&a->order));
     o.seed = r->common.seed;
-    o.block_size = (size_t)a->order.block_size;
     if (!isnan(a->order.round_ratio)) o.round_ratio = a->order.round_ratio;
     o.samples = samples = malloc((input->num_vertices + 1) * sizeof *samples);
     if (!samples) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu indices", input->num_vertices);
+    cli_order_experiment(&a->order, &lab);
+    TRY(cli_experiment(r, &lab));
     TRY(brio_convex_hull(r->ctx, input->vertices, input->num_vertices, &o, &surface, &s));
     if (s.dimension < 0) FAIL(r, BRIO_ERR_NO_ANSWER, "no points, so no convex hull");
+    brio_laboratory_end(r->lab);
     report(r, surface, &s);
     TRY(cli_carry_properties(r, input, samples, surface));
     TRY(cli_check_interrupt(r));

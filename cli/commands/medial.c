@@ -93,7 +93,7 @@ static brio_power_shape_options medial_options(const run *r, int labeling, const
     const arguments *a = r->arguments;
     brio_power_shape_options o = {0};
     o.seed = r->common.seed;
-    o.poles.labeling = (brio_labeling)labeling;
+    o.poles.labeling = cli_library_labeling(labeling);
     o.noise = (brio_noise)a->noise;
     o.poles.solid = solid;
     o.sides = (brio_sides)a->sides;
@@ -128,7 +128,8 @@ static brio_status sample_faces(run *r, const brio_mesh *mesh, brio_mesh **sampl
     return BRIO_OK;
 }
 
-static void report(run *r, const brio_power_shape_options *o, const brio_power_shape_stats *s, const brio_mesh *shape) {
+static void report(run *r, const brio_power_shape_options *o, int labeling, const brio_power_shape_stats *s,
+                   const brio_mesh *shape) {
     facts *f = &r->facts;
     cli_stage(r, "noise", s->noise_seconds);
     cli_stage(r, "delaunay", s->delaunay_seconds);
@@ -145,7 +146,7 @@ static void report(run *r, const brio_power_shape_options *o, const brio_power_s
     cli_fact_count(f, "inner", s->poles.inner);
     cli_fact_count(f, "outer", s->poles.outer);
     cli_fact_count(f, "unlabelled", s->unlabeled);
-    cli_fact_text(f, "labeling", o->poles.solid ? "mesh" : cli_labelings[o->poles.labeling].name);
+    cli_fact_text(f, "labeling", o->poles.solid ? "mesh" : cli_labelings[labeling].name);
     if (o->scale > 1 || o->redundancy > 0 || o->scale_axis > 1) {
         cli_stage(r, "simplify", s->simplify_seconds);
         cli_fact_count(f, "left_out", s->left_out);
@@ -255,9 +256,11 @@ static brio_status make_power_shape(run *r, const brio_mesh *points, const brio_
     FORWARD(cli_usual_points(r, points, NULL, false, &usual));
     brio_status status = brio_estimate_power_shape(r->ctx, usual, &o, &work);
     FORWARD(cli_require_work(r, status, points, work));
+    FORWARD(cli_experiment(r, &(brio_laboratory_options){.labeling = cli_label_experiment(labeling)}));
     status = brio_power_shape(r->ctx, points->vertices, points->num_vertices, &o, shape, a->crust ? crust : NULL, &s);
     cli_suggest_labeling(r, status, points, solid != NULL);
-    if (status == BRIO_OK) report(r, &o, &s, *shape);
+    brio_laboratory_end(r->lab);
+    if (status == BRIO_OK) report(r, &o, labeling, &s, *shape);
     return status;
 }
 

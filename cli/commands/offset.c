@@ -61,7 +61,9 @@ static brio_status offset_points(run *r, const power_crust_options *crust, const
     TRY(cli_usual_points(r, points, NULL, false, &usual));
     status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
+    TRY(cli_experiment(r, &(brio_laboratory_options){.labeling = cli_label_experiment(crust->labeling)}));
     status = brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s);
+    brio_laboratory_end(r->lab);
     cli_suggest_labeling(r, status, points, false);
     TRY(status);
     brio_mesh_remove_property(*surface, "sample"); /* which no vertex is */

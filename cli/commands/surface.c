@@ -327,8 +327,7 @@ static brio_surface_options library_options(run *r, int method) {
                               .theta = a->theta,
                               .boundaries = has(method, "boundaries") ? ways_with_boundaries(a) : 0,
                               .density = has(method, "density") && estimates_density(r),
-                              .pieces = a->pieces,
-                              .extraction = (brio_extraction)a->extraction};
+                              .pieces = a->pieces};
     double spacings = NAN;
     (void)cli_read_open(r, &a->crust, &spacings); /* check_arguments has read it before */
     if (!isnan(spacings)) o.holes = BRIO_HOLES_CLOSED;
@@ -359,7 +358,10 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     bool sided = has(method, "evidence");
     if (sided) TRY(cli_find_evidence(r, &a->evidence, points, &e));
     if (sided && a->pieces <= 1) o.evidence = &e.taken;
+    TRY(cli_experiment(r, &(brio_laboratory_options){.labeling = cli_label_experiment(a->crust.labeling),
+                                                     .extraction = (brio_extraction)a->extraction}));
     TRY(brio_surface(r->ctx, points->vertices, points->num_vertices, &o, surface, &s));
+    brio_laboratory_end(r->lab);
     if (reports[method].stages)
         reports[method].stages(r, &s);
     else
@@ -404,7 +406,7 @@ static brio_status check_method(run *r, int method) {
         {"boundaries", a->boundaries, "boundaries", false},
         {"density", a->density, "density", false},
         {"pieces", a->pieces > 0, "pieces", false},
-        {"extraction", a->extraction != BRIO_EXTRACTION_LABELS, "extraction", false},
+        {"extraction", a->extraction != BRIO_EXTRACTION_LABELS, "pieces", false}, /* an experiment on the co-cone */
         {"polygons", a->polygons, "polygons", false},
         {"labeling", a->crust.labeling != NO_LABELING, "poles.labeling", false},
         {"sampling-density", a->crust.sampling_density != 0, "poles.sampling_density", false},

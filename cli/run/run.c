@@ -178,8 +178,15 @@ brio_status cli_begin(run *r) {
     return BRIO_OK;
 }
 
+brio_status cli_experiment(run *r, const brio_laboratory_options *options) {
+    brio_laboratory_free(r->lab);
+    r->lab = NULL;
+    return brio_laboratory_new(r->ctx, options, &r->lab);
+}
+
 void cli_end(run *r) {
     cli_facts_free(&r->facts);
+    brio_laboratory_free(r->lab);
     brio_context_free(r->ctx);
 }
 

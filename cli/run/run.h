@@ -4,6 +4,7 @@
 #define BRIO_CLI_RUN_H
 
 #include "brio/brio.h"
+#include "brio/laboratory.h"
 #include "cli/report/facts.h"
 #include "cli/report/progress.h"
 #include "cli/run/options.h"
@@ -87,6 +88,7 @@ typedef struct run {
     char **operands;
     int num_operands;
     brio_context *ctx;
+    brio_laboratory *lab; /* the experiment of an option, or NULL */
     facts facts;
     bool over_map;             /* texts of points may have no z, which then is 0 */
     bool has_properties;       /* an input's points or faces have */
@@ -138,6 +140,10 @@ void cli_list_outputs(const command *c, char *text);
 
 /** Prepares context, progress and signals' callback from the common options. */
 brio_status cli_begin(run *r);
+
+/** Begins the experiment of the options, in place of the run's last one: what the command calls now does as they say,
+ *  until brio_laboratory_end. Its records stay until the run ends. */
+brio_status cli_experiment(run *r, const brio_laboratory_options *options);
 void cli_end(run *r);
 
 /** Stores the sentence for a status and returns the status. */

@@ -5,13 +5,13 @@
 #include "cli/run/run.h"
 
 typedef struct order_options {
-    int order;           /* a brio_order, or FITTING_ORDER */
+    int order;           /* a brio_order, ORDER_IN_BLOCKS + a brio_laboratory_order, or FITTING_ORDER */
     double round_ratio;  /* NaN: not given */
     uint64_t block_size; /* 0: not given */
 } order_options;
 
-/* Stands for the command's own choice. */
-enum { FITTING_ORDER = BRIO_ORDER_END };
+/* FITTING_ORDER stands for the command's own choice. */
+enum { ORDER_IN_BLOCKS = BRIO_ORDER_END, FITTING_ORDER = ORDER_IN_BLOCKS + BRIO_BLOCKS_END };
 
 extern const option_choice cli_orders[];
 
@@ -37,9 +37,15 @@ extern const option_choice cli_orders[];
     { .order = FITTING_ORDER, .round_ratio = NAN }
 
 /** Refuses options that the order does not have.   order  what FITTING_ORDER stands for is known. */
-brio_status cli_check_order(run *r, const order_options *o, brio_order order);
+brio_status cli_check_order(run *r, const order_options *o, int order);
 
 /** Returns the order; BRIO where none was given. */
-brio_order cli_order_of(const order_options *o);
+int cli_order_of(const order_options *o);
+
+/** Returns what the library's options have for an order: BRIO for an order by blocks, which an experiment makes. */
+brio_order cli_library_order(int order);
+
+/** Writes the order by blocks, where one was given, into the options of an experiment. */
+void cli_order_experiment(const order_options *o, brio_laboratory_options *lab);
 
 #endif

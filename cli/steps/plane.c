@@ -73,10 +73,13 @@ static brio_status triangulate(run *r, const double *points, const double *weigh
                                const order_options *order, brio_triangulation2 **t) {
     brio_delaunay2_options o = {.size = sizeof o};
     o.seed = r->common.seed;
-    o.order = cli_order_of(order);
-    o.block_size = (size_t)order->block_size;
+    o.order = cli_library_order(cli_order_of(order));
     if (!isnan(order->round_ratio)) o.round_ratio = order->round_ratio;
+    brio_laboratory_options lab = {0};
+    cli_order_experiment(order, &lab);
+    FORWARD(cli_experiment(r, &lab));
     brio_status status = brio_delaunay2(r->ctx, points, weights, n, &o, t);
+    brio_laboratory_end(r->lab);
     if (status != BRIO_OK) return status;
     cli_stage(r, "order", brio_triangulation2_stats(*t)->order_seconds);
     cli_stage(r, "insert", brio_triangulation2_stats(*t)->insert_seconds);

@@ -10,16 +10,16 @@
 
 const option_choice cli_labelings[] = {{"global", BRIO_LABELING_GLOBAL},
                                        {"greedy", BRIO_LABELING_GREEDY},
-                                       {"naive", BRIO_LABELING_NAIVE},
-                                       {"theoretical", BRIO_LABELING_THEORETICAL},
+                                       {"naive", LABELS_NAIVE},
+                                       {"theoretical", LABELS_THEORETICAL},
                                        {NULL, 0}};
 
 const option_choice cli_noise[] = {
     {"auto", BRIO_NOISE_AUTO}, {"keep", BRIO_NOISE_KEEP}, {"smooth", BRIO_NOISE_SMOOTH}, {NULL, 0}};
 
 const option_choice cli_labelings_or_mesh[] = {
-    {"mesh", LABELS_OF_MESH},       {"global", BRIO_LABELING_GLOBAL},           {"greedy", BRIO_LABELING_GREEDY},
-    {"naive", BRIO_LABELING_NAIVE}, {"theoretical", BRIO_LABELING_THEORETICAL}, {NULL, 0}};
+    {"mesh", LABELS_OF_MESH}, {"global", BRIO_LABELING_GLOBAL},    {"greedy", BRIO_LABELING_GREEDY},
+    {"naive", LABELS_NAIVE},  {"theoretical", LABELS_THEORETICAL}, {NULL, 0}};
 
 brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, bool *by_mesh) {
     if (*labeling == LABELS_OF_MESH && !input->num_faces)
@@ -64,9 +64,19 @@ void cli_report_power_crust_stages(run *r, const power_crust_options *a, const b
     r->lap = cli_clock();
 }
 
+brio_labeling cli_library_labeling(int labeling) {
+    return labeling < LABELS_NAIVE ? (brio_labeling)labeling : BRIO_LABELING_GLOBAL;
+}
+
+brio_laboratory_labeling cli_label_experiment(int labeling) {
+    return labeling == LABELS_NAIVE         ? BRIO_LABELS_NAIVE
+           : labeling == LABELS_THEORETICAL ? BRIO_LABELS_THEORETICAL
+                                            : BRIO_LABELS_NONE;
+}
+
 brio_pole_options cli_pole_options(const power_crust_options *a) {
     return (brio_pole_options){
-        .labeling = (brio_labeling)a->labeling, .sampling_density = a->sampling_density, .sharp = a->sharp};
+        .labeling = cli_library_labeling(a->labeling), .sampling_density = a->sampling_density, .sharp = a->sharp};
 }
 
 brio_status cli_read_open(run *r, const power_crust_options *a, double *spacings) {
@@ -102,8 +112,8 @@ void cli_report_power_crust(run *r, const power_crust_options *a, const brio_sur
     cli_fact_text(f, "labeling", cli_labelings[a->labeling].name);
     cli_fact_count(f, "confused", s->poles.confused);
     cli_fact_real(f, "energy", s->poles.energy);
-    if (a->labeling == BRIO_LABELING_NAIVE || a->labeling == BRIO_LABELING_THEORETICAL)
-        cli_fact_count(f, "unreached", s->poles.unreached);
+    if (a->labeling == LABELS_NAIVE || a->labeling == LABELS_THEORETICAL)
+        cli_fact_count(f, "unreached", brio_laboratory_results(r->lab)->unreached);
     if (a->labeling == BRIO_LABELING_GLOBAL) {
         cli_fact_real(f, "energy_greedy", s->poles.energy_greedy);
         cli_fact_count(f, "undecided", s->poles.undecided);

@@ -14,8 +14,9 @@ typedef struct power_crust_options {
 
 extern const option_choice cli_labelings[], cli_noise[];
 
-/** Of commands that take the faces of a closed mesh for labels where there are any, and the default of theirs. */
-enum { LABELS_OF_INPUT = -2, LABELS_OF_MESH = BRIO_LABELING_END };
+/** Labelings beside those of brio_labeling: of experiments; of the faces of a closed mesh, for commands that take them
+ *  where there are any; and the default of these commands. */
+enum { LABELS_OF_INPUT = -2, LABELS_NAIVE = BRIO_LABELING_END, LABELS_THEORETICAL, LABELS_OF_MESH };
 extern const option_choice cli_labelings_or_mesh[];
 
 /** Replaces LABELS_OF_INPUT by what it comes to, and tells whether that is the mesh; BRIO_ERR_ARGUMENT when faces are
@@ -56,6 +57,12 @@ void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bo
 /** Sets *spacings to the number of --open: NaN for auto, or where nothing was given; 0 for --closed.
  *  Returns BRIO_OK, or BRIO_ERR_ARGUMENT. */
 brio_status cli_read_open(run *r, const power_crust_options *options, double *spacings);
+
+/** Returns what the library's options have for a labeling: the default for one that an experiment makes. */
+brio_labeling cli_library_labeling(int labeling);
+
+/** Returns what the options of an experiment have for a labeling. */
+brio_laboratory_labeling cli_label_experiment(int labeling);
 
 /** Returns the options of the poles as the library has them, without a solid. */
 brio_pole_options cli_pole_options(const power_crust_options *options);

@@ -105,6 +105,5 @@
 #include "curve.h"         /* curves of points in a plane */
 #include "predicates.h"    /* exact signs */
 #include "estimate.h"      /* memory that a call will take */
-#include "laboratory.h"    /* counters for experiments */
 
 #endif

@@ -60,10 +60,9 @@ typedef enum brio_surface_method {
      * Cost: two triangulations, of the points and of about twice as many poles; 1,300 to 1,700 bytes a point at the
      * peak. Based on: [Amenta Choi Kolluri 2001], [Choi 2003] sections 3.3 and 5. */
     BRIO_SURFACE_POWER_CRUST = 1,
-    /* The co-cone: Delaunay triangles that lie along the surface at all their corners. Manifold and oriented, unless
-     * `extraction` says otherwise; with `boundaries` open where the points end. The vertices are all points, in their
-     * order. On an r-sample with r <= 0.08, BRIO_EXTRACTION_WALK is proven to have the surface's topology, and
-     * BRIO_EXTRACTION_LABELS tested to.
+    /* The co-cone: Delaunay triangles that lie along the surface at all their corners. Manifold and oriented; with
+     * `boundaries` open where the points end. The vertices are all points, in their order. On an r-sample with r <= 0.08
+     * the surface's topology is that of the sampled one: proven for the walk of laboratory.h, tested for this method.
      * Cost: one triangulation, and about 50 bytes a tetrahedron; with `pieces` the memory of one piece, and 60 bytes a
      * point. Based on: [Amenta Choi Dey Leekha 2000], [Choi 2003] section 3.2 and appendix A, [Dey Giesen 2001],
      *           [Dey Giesen Hudson 2001]. */
@@ -136,10 +135,8 @@ enum { BRIO_EVIDENCE_NORMALS = 1, BRIO_EVIDENCE_ORIGINS = 2 };
 
 /** Ways to label poles as inner or outer. */
 typedef enum brio_labeling {
-    BRIO_LABELING_GLOBAL = 0,      /* seeks labels of least energy by roof duality [Boros Hammer 2002] */
-    BRIO_LABELING_GREEDY = 1,      /* labels the most certain pole first [Choi 2003, figure 3.8] */
-    BRIO_LABELING_NAIVE = 2,       /* breadth first from outside [Choi 2003, section 3.3.3] */
-    BRIO_LABELING_THEORETICAL = 3, /* breadth first from one sample [Choi 2003, appendix B.3] */
+    BRIO_LABELING_GLOBAL = 0, /* seeks labels of least energy by roof duality [Boros Hammer 2002] */
+    BRIO_LABELING_GREEDY = 1, /* labels the most certain pole first [Choi 2003, figure 3.8] */
     BRIO_LABELING_END
 } brio_labeling;
 
@@ -165,7 +162,6 @@ typedef struct brio_pole_stats {
     size_t bad_cells;    /* points with badly shaped cells, whose poles were discarded */
     size_t inner, outer; /* poles by label */
     size_t confused;     /* poles that had evidence for both labels when they were labeled */
-    size_t unreached;    /* NAIVE, THEORETICAL: poles that were left to the greedy labeling */
     size_t undecided;    /* GLOBAL: poles that the last roof duality did not decide */
     size_t toggled;      /* GLOBAL: poles whose label differs from the greedy one */
     double energy;       /* sum of the weights of the pairs of poles whose labels contradict the evidence. GLOBAL weighs
@@ -175,16 +171,6 @@ typedef struct brio_pole_stats {
     double power_seconds, label_seconds;
     uint64_t reserved[4];
 } brio_pole_stats;
-
-/** How the co-cone makes a surface of its candidate triangles. */
-typedef enum brio_extraction {
-    BRIO_EXTRACTION_LABELS = 0, /* the candidates between tetrahedra labeled outer and inner, and small gaps filled */
-    BRIO_EXTRACTION_CANDIDATES = 1, /* all candidates, as [Choi 2003] has implemented it; not oriented, no manifold */
-    BRIO_EXTRACTION_PRUNED = 2,     /* those left when triangles at sharp edges are removed, recursively; likewise */
-    BRIO_EXTRACTION_WALK = 3,       /* of these, each component's outside, by a walk from edge to edge
-                                       [Amenta Choi Dey Leekha 2000]: a manifold on dense samples */
-    BRIO_EXTRACTION_END
-} brio_extraction;
 
 enum { BRIO_BOUNDARIES_AUTO = 2 }; /* for brio_surface_options.boundaries */
 
@@ -221,10 +207,8 @@ struct brio_surface_options {
     int boundaries;
     int density; /* COCONE, TIGHT_COCONE, 1: estimates the sampling density, and adds it as properties of the vertices */
     /* COCONE: N > 1 is the super co-cone. It triangulates the points in about N pieces, one after the other, and
-     * matches the surfaces at the seams; on dense points the triangles are the same. Not with `extraction`. */
+     * matches the surfaces at the seams; on dense points the triangles are the same. */
     size_t pieces;
-    brio_extraction extraction; /* COCONE */
-    int reserved_int;
 };
 
 /** What brio_surface found. A number that the method does not count is 0. */

@@ -19,59 +19,26 @@ typedef struct {
 
 /** Insertion orders. All give the same tetrahedra. BRIO_ORDER_RANDOM and BRIO_ORDER_INPUT follow no path through space
  *  and insert with one thread; the others insert with several. Workspace in bytes a point, freed before the insertion
- *  begins: BRIO, HILBERT and RANDOM 16, BRIO_OCTREE 6, BRIO_KDTREE 20, OCTREE 6, INPUT 0. */
+ *  begins: 16, of INPUT 0. */
 typedef enum brio_order {
     BRIO_ORDER_BRIO = 0,    /* random rounds, a Hilbert curve inside each round: the tuned one [Amenta Choi Rote 2003];
-                            with weights and walks, heavier neighbours on the curve are inserted in earlier rounds */
+                            with weights, heavier neighbours on the curve are inserted in earlier rounds */
     BRIO_ORDER_HILBERT = 1, /* one round along a Hilbert curve */
     BRIO_ORDER_RANDOM = 2,
     BRIO_ORDER_INPUT = 3,
-    BRIO_ORDER_BRIO_OCTREE = 4, /* random rounds, octree blocks inside a round, shuffled inside a block [Choi 2003] */
-    BRIO_ORDER_BRIO_KDTREE = 5, /* the same with the blocks of a k-d tree */
-    BRIO_ORDER_OCTREE = 6,      /* one round of octree blocks, shuffled inside a block */
     BRIO_ORDER_END
 } brio_order;
-
-/** Strategies of point location: how the insertion finds the tetrahedron that holds a point. All give the same
- *  tetrahedra. Only the walk works with several threads. TRACE locates a point that no edge reaches as HISTORY does,
- *  and NEIGHBOUR as WALK does. Memory in bytes beyond the walk's: JUMP 4 a point; HIERARCHY about 17 a point; NEIGHBOUR
- *  8 a point and 8 an edge; TRACE 16 a point and 8 an edge; HISTORY and TRACE also 20 for each tetrahedron ever created
- *  and 4 for each tetrahedron of the result. */
-typedef enum brio_location {
-    BRIO_LOCATION_WALK = 0,      /* from the point inserted last [Devillers Pion Teillaud 2002] */
-    BRIO_LOCATION_JUMP = 1,      /* from the nearest of i^(1/4) vertices and the last one [Muecke Saias Zhu 1999] */
-    BRIO_LOCATION_HIERARCHY = 2, /* through triangulations of ever larger samples [Devillers 2002] */
-    BRIO_LOCATION_HISTORY = 3,   /* in the history DAG [Guibas Knuth Sharir 1992, Clarkson Mehlhorn Seidel 1993] */
-    BRIO_LOCATION_TRACE =
-        4, /* traces the given edges now and then and uses the history DAG between; in BRIO_ORDER_RANDOM
-                                O(n log* n) when the edges are Delaunay edges that span the points [Choi 2003, ch. 4] */
-    BRIO_LOCATION_NEIGHBOUR =
-        5, /* from the nearest of the point's neighbours along the given edges and the last point */
-    BRIO_LOCATION_END
-} brio_location;
 
 typedef struct brio_delaunay_options {
     size_t size;
     brio_order order;
-    brio_location locate;
-    double round_ratio;      /* share of the points that is left for the rounds before the last one, below 1; 0:
-                                the order's own ratio, 1/8 for BRIO and 1/2 for BRIO_OCTREE and BRIO_KDTREE */
-    uint64_t seed;           /* every random choice follows from it */
-    uint32_t max_tetrahedra; /* most tetrahedra at any time, infinite ones included; 0: 2^30, which is the most */
-    int all_conflicts;       /* HISTORY and TRACE: 1 follows all conflicts, 0 one search path */
-    size_t block_size;       /* most points in a block of an octree or a k-d tree; 0: 2,000 */
-    uint64_t record_every;   /* insertions between two entries of brio_triangulation_rounds, or BRIO_RECORD_ROUNDS;
-                                0: no entries */
-    const uint32_t *edges;   /* TRACE and NEIGHBOUR: num_edges pairs of indices of points */
-    size_t num_edges;
     int leave_hidden;   /* 1 leaves hidden points without a representative: BRIO_INFINITE stands in the array. Where
                          weights hide most points, this saves up to two fifths of the time, and takes 6 to 12 bytes a
                          point when the insertion is over. Default 0 */
-    int first_conflict; /* HISTORY and TRACE: 1 searches depth first through conflicts, up to the first one that is alive,
-                           as the program hull of Clarkson does. Not with all_conflicts */
-    uint64_t page_bytes;  /* counts page touches of so large pages, a power of two from 64 on, with one thread; 0:
-                             none are counted */
-    uint64_t cache_bytes; /* of the cache for page_faults; 0: of one page */
+    double round_ratio; /* share of the points that is left for the rounds before the last one, below 1; 0: 1/8 */
+    uint64_t seed;      /* every random choice follows from it */
+    uint32_t max_tetrahedra; /* most tetrahedra at any time, infinite ones included; 0: 2^30, which is the most */
+    int reserved_int;
 } brio_delaunay_options;
 
 /** Facts of a triangulation. Counters are totals over the construction and include infinite tetrahedra. */
@@ -82,19 +49,10 @@ typedef struct brio_delaunay_stats {
     size_t tetrahedra;  /* finite ones of the result */
     size_t hull_facets; /* = infinite tetrahedra of the result */
     uint64_t created, destroyed, walk_steps, insphere_calls;
-    uint64_t exact_calls;         /* calls of predicates that the floating-point filter did not settle */
-    uint64_t deferred, serial;    /* several threads: insertions put off to a later pass; done by one thread */
-    uint64_t history;             /* nodes of the history DAG, with HISTORY or TRACE */
-    uint64_t history_tests;       /* nodes that searches compared with a point */
-    uint64_t trace_intersections; /* tetrahedra entered while edges were traced */
-    double locate_seconds;        /* of the insertion: point location, extrapolated from every 64th one; 1 thread */
+    uint64_t exact_calls;      /* calls of predicates that the floating-point filter did not settle */
+    uint64_t deferred, serial; /* several threads: insertions put off to a later pass; done by one thread */
+    double locate_seconds;     /* of the insertion: point location, extrapolated from every 64th one; 1 thread */
     double order_seconds, insert_seconds; /* insert_seconds includes the canonical sort of the result */
-    uint64_t history_conflicts; /* of the history_tests with first_conflict or all_conflicts: nodes in conflict */
-    /* With page_bytes: pages of the records, of the tetrahedra and of the history; how often one was touched; and how
-     * often the cache, which drops the page that was least recently used, did not have it. An insertion touches what
-     * its location comes to, what it tests in conflict, what lies behind that, and what it writes. These depend on the
-     * sequence of insertions alone, not on the machine. */
-    uint64_t pages, page_touches, page_faults;
 } brio_delaunay_stats;
 
 typedef struct brio_triangulation brio_triangulation;

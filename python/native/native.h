@@ -11,6 +11,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <brio/brio.h>
+#include <brio/laboratory.h>
 
 /* --- contexts --- */
 

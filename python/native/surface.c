@@ -93,10 +93,27 @@ static void close_surface_call(surface_call *s) {
 
 /* --- methods --- */
 
+/* What the options ask for beside those of the library. */
+typedef struct {
+    int labeling; /* a brio_labeling; from its end on those of experiments */
+    int extraction;
+} experiment;
+
+/* Begins the experiment that the options ask for, to be freed; sets the labeling of the library.   poles  NULL: none. */
+static brio_status begin_experiment(brio_context *ctx, const experiment *e, brio_pole_options *poles,
+                                    brio_laboratory **lab) {
+    brio_laboratory_options o = {.extraction = (brio_extraction)e->extraction};
+    if (e->labeling >= BRIO_LABELING_END)
+        o.labeling = (brio_laboratory_labeling)(e->labeling - BRIO_LABELING_END + BRIO_LABELS_NAIVE);
+    else
+        poles->labeling = (brio_labeling)e->labeling;
+    return brio_laboratory_new(ctx, &o, lab);
+}
+
 /* Fields that every method with poles has. */
 #define POLE_OPTIONS(o)                                                                                                \
-    {"seed", SEED, &(o).seed}, {"labeling", INT, &(o).poles.labeling}, {"noise", INT, &(o).noise},                     \
-        {"sampling_density", DOUBLE, &(o).poles.sampling_density}, {                                                   \
+    {"seed", SEED, &(o).seed}, {"noise", INT, &(o).noise}, {"sampling_density", DOUBLE, &(o).poles.sampling_density},  \
+    {                                                                                                                  \
         "sharp", INT, &(o).poles.sharp                                                                                 \
     }
 
@@ -144,9 +161,12 @@ static void close_evidence(evidence_input *e) {
 }
 
 /* Makes the surface. Its property "sample" goes to an array, where one is given, and not to the interpreter. */
-static brio_status make_surface(brio_context *ctx, const surface_call *s, const brio_surface_options *o,
+static brio_status make_surface(brio_context *ctx, const surface_call *s, brio_surface_options *o, const experiment *e,
                                 uint32_t *samples, brio_mesh **mesh, brio_surface_stats *stats) {
-    brio_status status = brio_surface(ctx, s->p.data, s->p.rows, o, mesh, stats);
+    brio_laboratory *lab;
+    brio_status status = begin_experiment(ctx, e, &o->poles, &lab);
+    if (status == BRIO_OK) status = brio_surface(ctx, s->p.data, s->p.rows, o, mesh, stats);
+    brio_laboratory_free(lab);
     if (status != BRIO_OK) return status;
     const brio_property *property = brio_mesh_property(*mesh, "sample");
     for (size_t v = 0; samples && v < (*mesh)->num_vertices; v++)
@@ -219,6 +239,7 @@ static PyObject *surface(PyObject *module, PyObject *args) {
     PyObject *result = NULL;
     int triangulate = 0;
     brio_surface_options o = {0};
+    experiment tried = {0, 0};
     const surface_option all[] = {{{"seed", SEED, &o.seed}, NULL},
                                   {{"noise", INT, &o.noise}, "noise"},
                                   {{"open", DOUBLE, &o.open}, "open"},
@@ -226,14 +247,14 @@ static PyObject *surface(PyObject *module, PyObject *args) {
                                   {{"simplify", INT, &o.simplify}, "simplify"},
                                   {{"confidence", INT, &o.confidence}, "confidence"},
                                   {{"triangulate", INT, &triangulate}, "polygons"},
-                                  {{"labeling", INT, &o.poles.labeling}, "poles.labeling"},
+                                  {{"labeling", INT, &tried.labeling}, "poles.labeling"},
                                   {{"sampling_density", DOUBLE, &o.poles.sampling_density}, "poles.sampling_density"},
                                   {{"sharp", INT, &o.poles.sharp}, "poles.sharp"},
                                   {{"theta", DOUBLE, &o.theta}, "theta"},
                                   {{"boundaries", INT, &o.boundaries}, "boundaries"},
                                   {{"density", INT, &o.density}, "density"},
                                   {{"pieces", SIZE, &o.pieces}, "pieces"},
-                                  {{"extraction", INT, &o.extraction}, "extraction"},
+                                  {{"extraction", INT, &tried.extraction}, "pieces"},
                                   {{NULL, INT, NULL}, NULL}};
     option table[sizeof all / sizeof *all];
     PyObject *options = PyTuple_Size(args) > 1 ? PyTuple_GetItem(args, 1) : NULL;
@@ -250,7 +271,7 @@ static PyObject *surface(PyObject *module, PyObject *args) {
         o.normals = own ? s.out.data : NULL;
         if (e.taken.normals || e.taken.origins) o.evidence = &e.taken;
         RUN_SURFACE(table, (o.polygons = brio_surface_method_has(o.method, "polygons") && !triangulate && !o.simplify,
-                            make_surface(c.ctx, &s, &o, own ? NULL : s.out.data, &mesh, &stats)));
+                            make_surface(c.ctx, &s, &o, &tried, own ? NULL : s.out.data, &mesh, &stats)));
     }
     close_evidence(&e);
     close_surface_call(&s);
@@ -274,18 +295,26 @@ static PyObject *list_surface_methods(PyObject *module, PyObject *args) {
 typedef struct {
     brio_power_shape_options shape;
     brio_voronoi_axis_options axis;
+    experiment tried;
     int voronoi;
 } axis_options;
 
 #define AXIS_OPTIONS(o)                                                                                                \
-    POLE_OPTIONS((o).shape), {"sides", INT, &(o).shape.sides}, {"scale", DOUBLE, &(o).shape.scale},                    \
-        {"redundancy", DOUBLE, &(o).shape.redundancy}, {"scale_axis", DOUBLE, &(o).shape.scale_axis},                  \
-        {"theta", DOUBLE, &(o).axis.theta}, {"rho", DOUBLE, &(o).axis.rho}, {                                          \
+    POLE_OPTIONS((o).shape), {"labeling", INT, &(o).tried.labeling}, {"sides", INT, &(o).shape.sides},                 \
+        {"scale", DOUBLE, &(o).shape.scale}, {"redundancy", DOUBLE, &(o).shape.redundancy},                            \
+        {"scale_axis", DOUBLE, &(o).shape.scale_axis}, {"theta", DOUBLE, &(o).axis.theta},                             \
+        {"rho", DOUBLE, &(o).axis.rho}, {                                                                              \
         "voronoi", INT, &(o).voronoi                                                                                   \
     }
 
 static brio_status make_axis(brio_context *ctx, const double *points, size_t n, axis_options *o, brio_mesh **out) {
-    if (!o->voronoi) return brio_power_shape(ctx, points, n, &o->shape, out, NULL, NULL);
+    if (!o->voronoi) {
+        brio_laboratory *lab;
+        brio_status status = begin_experiment(ctx, &o->tried, &o->shape.poles, &lab);
+        if (status == BRIO_OK) status = brio_power_shape(ctx, points, n, &o->shape, out, NULL, NULL);
+        brio_laboratory_free(lab);
+        return status;
+    }
     o->axis.noise = o->shape.noise;
     o->axis.sides = o->shape.sides;
     o->axis.seed = o->shape.seed;

@@ -42,8 +42,9 @@ struct brio_context {
     brio_bar bar;      /* the part that the running stage owns */
     const char *stage; /* what the callback was told last, NULL for nothing */
     double share;
-    size_t unlooked; /* items of work since the callback was asked last */
-    bool stopped;    /* the callback asked to stop, in the loop (team.h) that runs */
+    size_t unlooked;                          /* items of work since the callback was asked last */
+    bool stopped;                             /* the callback asked to stop, in the loop (team.h) that runs */
+    const struct brio_experiment *experiment; /* experiment.h; NULL: none */
     char message[512];
 };
 

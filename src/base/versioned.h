@@ -29,7 +29,7 @@
 #define BRIO_FIRST_brio_curve_options         reserved_int
 #define BRIO_FIRST_brio_curve_stats           curve_seconds
 #define BRIO_FIRST_brio_delaunay2_options     seed
-#define BRIO_FIRST_brio_delaunay_options      cache_bytes
+#define BRIO_FIRST_brio_delaunay_options      reserved_int
 #define BRIO_FIRST_brio_distance              diagonal
 #define BRIO_FIRST_brio_evidence              origin_of
 #define BRIO_FIRST_brio_file_facts            version
@@ -49,7 +49,7 @@
 #define BRIO_FIRST_brio_read_options          origins
 #define BRIO_FIRST_brio_restricted_stats      cut_seconds
 #define BRIO_FIRST_brio_spanning_tree_stats   tree_seconds
-#define BRIO_FIRST_brio_surface_options       reserved_int
+#define BRIO_FIRST_brio_surface_options       pieces
 #define BRIO_FIRST_brio_surface_stats         rounding
 #define BRIO_FIRST_brio_voronoi_axis_options  seed
 #define BRIO_FIRST_brio_voronoi_axis_stats    label_seconds

@@ -21,6 +21,10 @@ typedef struct {
  *  angle, 1 or more when one ball is inside the other ball. */
 double brio_ball_weight(const brio_poles *poles, uint32_t p, uint32_t q);
 
+/** The weight of balls that intersect at pi / 4: in dense samples an inner and an outer ball have a lesser one [Choi
+ *  2003, lemma 38]. */
+#define BRIO_DEEP_WEIGHT (-0.70710678118654752)
+
 /** Returns the view.   samples  #samples by 3.   power  the regular triangulation of the poles. */
 brio_power_diagram brio_power_diagram_of(const brio_poles *poles, const double *samples, size_t num_samples,
                                          const brio_triangulation *power);

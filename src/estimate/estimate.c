@@ -9,6 +9,7 @@
 #include "estimate/triangulation_size.h"
 #include "order/canonical_points.h"
 #include "reconstruct/surface/method.h"
+#include "triangulation/insertion_part.h"
 #include "triangulation/triangulation.h"
 #include <math.h>
 
@@ -21,10 +22,6 @@ static const double BYTES_A_HIDDEN_POINT = 32;
 static const double SORT_BYTES_A_POINT = 16, SORT_BYTES_A_TETRAHEDRON = 41;
 /* With threads: the rank on the curve, and a thirty-second of the result moved at a time, with the lists for it. */
 static const double THREADS_BYTES_A_POINT = 4, THREADS_BYTES_A_TETRAHEDRON = 1.25;
-/* Other locations than the walk. HISTORY and TRACE: 300,000 points of a scan peak at 892 bytes a point resident, 322 by
- * the walk. An edge takes 8 bytes as a pair and 8 in the graph. */
-static const double HISTORY_BYTES_A_POINT = 570, LOCATION_BYTES_A_POINT = 8, BYTES_AN_EDGE = 16;
-
 /* In the plane: record, index in the input, representative, two triangles; with weights two marks, a triangle of each
  * vertex and a list of the points that may be hidden. */
 static const double PLANE_BYTES_A_POINT = 88, PLANE_BYTES_A_WEIGHT = 10;
@@ -37,23 +34,11 @@ static uint64_t bytes_of(double bytes) {
     return bytes < 0x1p64 ? (uint64_t)bytes : UINT64_MAX;
 }
 
-static double location_bytes(double points, const brio_delaunay_options *o) {
-    switch (o->locate) {
-    case BRIO_LOCATION_WALK:
-        return 0;
-    case BRIO_LOCATION_HISTORY:
-        return HISTORY_BYTES_A_POINT * points;
-    case BRIO_LOCATION_TRACE:
-        return HISTORY_BYTES_A_POINT * points + BYTES_AN_EDGE * (double)o->num_edges;
-    case BRIO_LOCATION_NEIGHBOUR:
-        return LOCATION_BYTES_A_POINT * points + BYTES_AN_EDGE * (double)o->num_edges;
-    default:
-        return LOCATION_BYTES_A_POINT * points;
-    }
-}
-
-static double sequence_bytes(double points, const brio_delaunay_options *o) {
-    return o->order == BRIO_ORDER_BRIO && o->locate == BRIO_LOCATION_WALK ? SEQUENCE_BYTES_A_POINT * points : 0;
+/* Returns the bytes of the sequence by weights, which an experiment may have no use for. */
+static double sequence_bytes(const brio_context *ctx, double points, const brio_delaunay_options *o) {
+    const struct brio_insertion_part *part = BRIO_PART(ctx, insertion);
+    bool made = o->order == BRIO_ORDER_BRIO && !BRIO_PART(ctx, order) && (!part || part->walks);
+    return made ? SEQUENCE_BYTES_A_POINT * points : 0;
 }
 
 static double delaunay_bytes(double points, const brio_triangulation_size *size, double sequence, bool threads) {
@@ -71,12 +56,14 @@ brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, cons
     brio_triangulation_size size = {0};
     *bytes = 0;
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
-    BRIO_FORWARD(brio_delaunay_check_options(ctx, num_points, &o));
+    BRIO_FORWARD(brio_delaunay_begin(ctx, num_points, &o));
     BRIO_FORWARD(brio_refuse_points(ctx, points, num_points));
     BRIO_FORWARD(brio_estimate_size(ctx, points, weights, num_points, &size));
+    const struct brio_insertion_part *part = BRIO_PART(ctx, insertion);
     double n = (double)num_points;
-    double sequence = weights ? sequence_bytes(n, &o) : 0;
-    *bytes = bytes_of(delaunay_bytes(n, &size, sequence, brio_context_threads(ctx) > 1) + location_bytes(n, &o));
+    double sequence = weights ? sequence_bytes(ctx, n, &o) : 0;
+    double location = part ? part->bytes(part->user, n) : 0;
+    *bytes = bytes_of(delaunay_bytes(n, &size, sequence, brio_context_threads(ctx) > 1) + location);
     return BRIO_OK;
 }
 

@@ -245,8 +245,10 @@ brio_status brio_estimate_size(brio_context *ctx, const double *points, const do
     const cloud c = {ctx, points, weights, num_points, scale};
     tally far = {0}, near = {0};
     int threads = ctx->threads;
+    const struct brio_experiment *experiment = ctx->experiment;
     const brio_bar bar = brio_progress_bar(ctx);
     ctx->threads = 1;                   /* enough for so few points */
+    ctx->experiment = NULL;             /* it is about the whole */
     brio_progress_part(ctx, bar, 0, 0); /* the bar stands still */
     brio_status status = num_points <= ALL ? size_of_all(&c, size) : BRIO_ERR_TOO_LARGE;
     if (status == BRIO_ERR_TOO_LARGE) {
@@ -254,6 +256,7 @@ brio_status brio_estimate_size(brio_context *ctx, const double *points, const do
         if (status == BRIO_OK) extrapolate(&c, &far, &near, size);
     }
     ctx->threads = threads;
+    ctx->experiment = experiment;
     brio_progress_part(ctx, bar, 0, 1);
     return status;
 }

@@ -47,10 +47,8 @@ static brio_status take_records(hull *h, size_t n) {
     brio_status status = BRIO_OK;
     double *rows = NULL;
     uint32_t *order = NULL;
-    const brio_delaunay_options o = {.order = h->options.order,
-                                     .round_ratio = h->options.round_ratio,
-                                     .seed = h->options.seed,
-                                     .block_size = h->options.block_size};
+    const brio_delaunay_options o = {
+        .order = h->options.order, .round_ratio = h->options.round_ratio, .seed = h->options.seed};
     BRIO_TRY(BRIO_ALLOC(h->ctx, rows, 3 * n));
     BRIO_TRY(BRIO_ALLOC(h->ctx, order, n));
     BRIO_TRY(BRIO_ALLOC(h->ctx, h->records.record, n + 1));

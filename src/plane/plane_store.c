@@ -14,10 +14,8 @@ enum { MORE_RECORDS = 2 /* the apex and the infinite vertex */ };
 static brio_status order_as_in_space(brio_context *ctx, const brio_plane_input *input,
                                      const brio_delaunay2_options *options, uint32_t *order) {
     brio_status status = BRIO_OK;
-    const brio_delaunay_options o = {.order = options->order,
-                                     .round_ratio = options->round_ratio,
-                                     .seed = options->seed,
-                                     .block_size = options->block_size};
+    const brio_delaunay_options o = {
+        .order = options->order, .round_ratio = options->round_ratio, .seed = options->seed};
     brio_plane_points points = brio_plane_input_points(input);
     double *rows = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, rows, 3 * input->count));
@@ -39,7 +37,8 @@ static brio_status order_points(brio_context *ctx, const brio_plane_input *input
     brio_plane_points points = brio_plane_input_points(input);
     brio_round_ends ends;
     BRIO_TRY(brio_progress(ctx, "order", 0));
-    if (options->order != BRIO_ORDER_BRIO) return order_as_in_space(ctx, input, options, order);
+    if (options->order != BRIO_ORDER_BRIO || BRIO_PART(ctx, order))
+        return order_as_in_space(ctx, input, options, order);
     BRIO_TRY(BRIO_ALLOC(ctx, items, n));
     BRIO_TRY(BRIO_ALLOC(ctx, spare, n));
     for (size_t i = 0; i < n; i++) items[i] = i;

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "triangulation/tetrahedra.h"
 #include "triangulation/triangulation.h"
 #include <assert.h>
 

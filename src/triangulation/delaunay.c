@@ -9,8 +9,8 @@
 #include "base/versioned.h"
 #include "triangulation/canonical_order.h"
 #include "triangulation/insert.h"
+#include "triangulation/insertion_part.h"
 #include "triangulation/parallel.h"
-#include "triangulation/recorder.h"
 #include "triangulation/represent.h"
 #include "triangulation/start.h"
 #include "triangulation/triangulation.h"
@@ -32,25 +32,15 @@ static void settle(brio_delaunay_options *o) {
     if (!o->max_tetrahedra) o->max_tetrahedra = MOST_TETRAHEDRA;
 }
 
-brio_status brio_delaunay_check_options(brio_context *ctx, size_t n, const brio_delaunay_options *o) {
+brio_status brio_delaunay_begin(brio_context *ctx, size_t num_points, const brio_delaunay_options *o) {
+    const struct brio_insertion_part *part = BRIO_PART(ctx, insertion);
     BRIO_EXPECT(ctx, (unsigned)o->order < BRIO_ORDER_END, BRIO_ERR_ARGUMENT, "no insertion order %d", (int)o->order);
     BRIO_EXPECT(ctx, o->round_ratio >= 0 && o->round_ratio < 1, BRIO_ERR_ARGUMENT,
                 "round ratio %g is not between 0 and 1", o->round_ratio);
-    BRIO_EXPECT(ctx, (unsigned)o->locate < BRIO_LOCATION_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
-                (int)o->locate);
-    BRIO_EXPECT(ctx, o->edges || !o->num_edges, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them", o->num_edges);
-    BRIO_EXPECT(ctx, o->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1", o->num_edges);
-    for (size_t i = 0; i < 2 * o->num_edges; i++)
-        BRIO_EXPECT(ctx, o->edges[i] < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, o->edges[i], n);
-    BRIO_EXPECT(ctx, !(o->page_bytes & (o->page_bytes - 1)) && (!o->page_bytes || o->page_bytes >= 64),
-                BRIO_ERR_ARGUMENT, "pages of %llu bytes; their size is a power of two from 64 on",
-                (unsigned long long)o->page_bytes);
-    BRIO_EXPECT(ctx, !o->cache_bytes || o->page_bytes, BRIO_ERR_ARGUMENT, "a cache of pages without a size of pages");
-    BRIO_EXPECT(ctx, !o->all_conflicts || !o->first_conflict, BRIO_ERR_ARGUMENT,
-                "only one of all conflicts and the first conflict");
+    BRIO_EXPECT(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_delaunay_options.reserved_int is not 0");
     BRIO_EXPECT(ctx, o->max_tetrahedra <= MOST_TETRAHEDRA, BRIO_ERR_ARGUMENT, "at most 2^30 tetrahedra, not %u",
                 o->max_tetrahedra);
-    return BRIO_OK;
+    return part ? part->begin(part->user, ctx, num_points) : BRIO_OK;
 }
 
 /* --- construction --- */
@@ -78,18 +68,22 @@ static brio_status insert_some(brio_inserter *ins, size_t begin, size_t end) {
     return BRIO_OK;
 }
 
-/* Inserts the records after those of the first tetrahedron, in runs between the entries of the recorder. */
-static brio_status insert_all(brio_inserter *ins, const brio_delaunay_options *options, brio_recorder *recorder) {
+/* Inserts the records after those of the first tetrahedron, in runs between the numbers of points that an experiment
+ * wants to know of. */
+static brio_status insert_all(brio_inserter *ins, const struct brio_insertion_part *part) {
     const brio_store *s = ins->store;
     brio_status status = BRIO_OK;
     size_t n = s->num_points, p = (size_t)s->dimension + 1, end;
-    if (s->dimension <= 0) return brio_recorder_note(recorder, ins, n);
-    BRIO_TRY(brio_strategy_start(ins, options));
-    bool parallel = s->rank && s->dimension == 3 && !ins->touches.counts;
-    BRIO_TRY(brio_recorder_note(recorder, ins, p));
+    if (s->dimension <= 0) return part ? part->note(part->user, ins, n) : BRIO_OK;
+    if (part) {
+        ins->locator = part->strategy;
+        if (ins->locator->start) BRIO_TRY(ins->locator->start(ins));
+        BRIO_TRY(part->note(part->user, ins, p));
+    }
+    bool parallel = s->rank && s->dimension == 3;
     for (; p < n; p = end) {
         BRIO_TRY(brio_inserter_report(ins, (double)p / (double)n));
-        end = least(brio_recorder_next(recorder, p), n);
+        end = part ? least(part->next(part->user, p), n) : n;
         if (parallel) {
             end = end_of_run(s, p, end);
             BRIO_TRY(brio_insert_parallel(ins, p, end));
@@ -97,7 +91,7 @@ static brio_status insert_all(brio_inserter *ins, const brio_delaunay_options *o
             end = least(end, p + PROGRESS_EVERY - p % PROGRESS_EVERY);
             BRIO_TRY(insert_some(ins, p, end));
         }
-        BRIO_TRY(brio_recorder_note(recorder, ins, end));
+        if (part) BRIO_TRY(part->note(part->user, ins, end));
     }
     if (ins->locator->release) ins->locator->release(ins); /* the sort needs the room */
     status = brio_progress(s->ctx, "insert", 1);
@@ -161,7 +155,7 @@ static brio_status rename_representatives(const brio_store *s, uint32_t **out) {
     return BRIO_OK;
 }
 
-static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder, brio_triangulation **out) {
+static brio_status triangulation_new(brio_inserter *ins, brio_triangulation **out) {
     brio_store *s = ins->store;
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
@@ -169,7 +163,6 @@ static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder
     ins->stats.points = s->num_points;
     ins->stats.dimension = s->dimension;
     ins->stats.walk_steps = ins->walk.steps;
-    if (ins->touches.counts) brio_page_touches_total(ins->touches.counts, &ins->stats);
     ins->stats.exact_calls = ins->filter.unsettled + s->filter.unsettled;
     BRIO_TRY(BRIO_RESIZE(s->ctx, s->t.tet, s->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, t, 1));
@@ -179,10 +172,6 @@ static brio_status triangulation_new(brio_inserter *ins, brio_recorder *recorder
     t->stats = ins->stats;
     t->points_hash = s->points_hash;
     s->t.tet = NULL;
-    t->round = recorder->list;
-    t->num_rounds = recorder->count;
-    if (ins->touches.counts) t->num_caches = brio_page_touches_faults(ins->touches.counts, t->cache_faults);
-    recorder->list = NULL;
     assert(result_is_valid(t));
     *out = t;
     t = NULL;
@@ -191,29 +180,26 @@ done:
     return status;
 }
 
-/* Makes the triangulation of a store without tetrahedra, which `recorder` watches from now on. */
+/* Makes the triangulation of a store without tetrahedra.   rounds  of its order. */
 static brio_status construct(brio_store *store, const brio_delaunay_options *options, double order_seconds,
-                             brio_recorder *recorder, brio_triangulation **out) {
+                             const brio_round_ends *rounds, brio_triangulation **out) {
+    const struct brio_insertion_part *part = BRIO_PART(store->ctx, insertion);
     brio_inserter *ins = NULL;
-    brio_page_touches *touches = NULL;
     brio_status status = BRIO_OK;
-    recorder->start = brio_seconds();
+    double start = brio_seconds();
     BRIO_TRY(brio_start(store));
     BRIO_TRY(brio_inserter_new(store, &ins));
     ins->reports = true;
     ins->stats.order_seconds = order_seconds;
     ins->stats.created = store->t.count; /* the first ones */
-    if (options->page_bytes)
-        BRIO_TRY(brio_page_touches_new(store->ctx, options->page_bytes, options->cache_bytes, &touches));
-    brio_inserter_count_touches(ins, touches, 0);
-    BRIO_TRY(insert_all(ins, options, recorder));
+    if (part) part->start(part->user, ins, options, rounds, start);
+    BRIO_TRY(insert_all(ins, part));
     BRIO_TRY(brio_represent(ins, options->leave_hidden != 0));
     BRIO_TRY(sort_result(ins));
-    ins->stats.insert_seconds = brio_seconds() - recorder->start;
-    BRIO_TRY(triangulation_new(ins, recorder, out));
+    ins->stats.insert_seconds = brio_seconds() - start;
+    BRIO_TRY(triangulation_new(ins, out));
     (*out)->leaves_hidden = options->leave_hidden != 0;
 done:
-    brio_page_touches_free(touches);
     brio_inserter_free(ins);
     return status;
 }
@@ -223,21 +209,19 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     BRIO_DOOR;
     brio_delaunay_options o = {0};
     brio_store *store = NULL;
-    brio_recorder recorder = {0};
+    brio_round_ends rounds;
     brio_status status = BRIO_OK;
     *out = NULL;
     brio_keep_begin(ctx);
     BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
     BRIO_TRY(check_count(ctx, num_points));
-    BRIO_TRY(brio_delaunay_check_options(ctx, num_points, &o));
+    BRIO_TRY(brio_delaunay_begin(ctx, num_points, &o));
     settle(&o);
-    recorder.every = o.record_every;
     double start = brio_seconds();
-    BRIO_TRY(brio_store_new(ctx, &(brio_input){points, weights, num_points}, &o, &recorder.rounds, &store));
-    BRIO_TRY(construct(store, &o, brio_seconds() - start, &recorder, out));
+    BRIO_TRY(brio_store_new(ctx, &(brio_input){points, weights, num_points}, &o, &rounds, &store));
+    BRIO_TRY(construct(store, &o, brio_seconds() - start, &rounds, out));
 done:
     brio_store_free(store);
-    brio_release(ctx, recorder.list);
     brio_keep_end(ctx);
     return status;
 }
@@ -246,7 +230,6 @@ void brio_triangulation_free(brio_triangulation *t) {
     if (!t) return;
     brio_release(t->ctx, t->tet);
     brio_release(t->ctx, t->representative);
-    brio_release(t->ctx, t->round);
     brio_release(t->ctx, t);
 }
 
@@ -261,13 +244,4 @@ const uint32_t *brio_triangulation_representatives(const brio_triangulation *t) 
 }
 uint64_t brio_triangulation_points_hash(const brio_triangulation *t) {
     return t->points_hash;
-}
-const brio_round *brio_triangulation_rounds(const brio_triangulation *t, size_t *count) {
-    *count = t->num_rounds;
-    return t->round;
-}
-
-const uint64_t *brio_triangulation_cache_faults(const brio_triangulation *t, size_t *count) {
-    *count = t->num_caches;
-    return t->num_caches ? t->cache_faults : NULL;
 }

@@ -20,6 +20,12 @@ void brio_triangulation_vertex_tetrahedra(const brio_triangulation *t, uint32_t 
         for (int k = 0; k < 4; k++) tetrahedra[t->tet[i].vertex[k]] = (uint32_t)i;
 }
 
+void brio_edges_free(brio_edges *edges) {
+    if (!edges || !edges->context) return;
+    brio_release(edges->context, edges->ends);
+    *edges = (brio_edges){0};
+}
+
 void brio_incidences_free(brio_incidences *incidences) {
     if (!incidences || !incidences->context) return;
     brio_release(incidences->context, incidences->offsets);

@@ -63,19 +63,6 @@ static void expect_neighbours(brio_inserter *ins, uint32_t p) {
     }
 }
 
-/* Counts what the insertion of p has read and written: p, the slots of the tetrahedra in conflict, those behind the
- * border and the new ones with their vertices, which are those of the old ones. */
-static brio_status count_touches(brio_inserter *ins, uint32_t p) {
-    const brio_cavity *c = &ins->cavity;
-    const brio_tetrahedra *t = &ins->store->t;
-    if (!ins->touches.counts) return BRIO_OK;
-    brio_touch_record(&ins->touches, p);
-    for (size_t i = 0; i < c->num_tets; i++) brio_touch_slot(&ins->touches, brio_tet_of(c->entry[i]));
-    for (size_t i = 0; i < c->num_border; i++) brio_touch_tet(&ins->touches, t, brio_tet_of(c->border[i]));
-    for (size_t i = 0; i < c->num_created; i++) brio_touch_tet(&ins->touches, t, c->created[i]);
-    return brio_page_touches_status(ins->touches.counts);
-}
-
 /* Times one location in TIMED and scales the sum by TIMED: reading the clock costs as much as a step of a walk. */
 static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     enum { TIMED = 64 };
@@ -104,7 +91,6 @@ brio_status brio_insert(brio_inserter *ins, uint32_t p, brio_insertion *outcome)
     }
     assert(ins->store->state[ins->walk.start] == TET_PLAIN); /* N1 */
     if (ins->goes_on) expect_neighbours(ins, p);
-    BRIO_TRY(count_touches(ins, p));
     if (ins->locator->filled) status = ins->locator->filled(ins, p);
 done:
     return status;

@@ -20,7 +20,6 @@
 #include "triangulation/cavity.h"
 #include "triangulation/engine.h"
 #include "triangulation/locator.h"
-#include "triangulation/page_touches.h"
 #include "triangulation/star.h"
 #include "triangulation/store.h"
 #include <assert.h>
@@ -47,8 +46,8 @@ struct brio_inserter {
     brio_read_ahead read_ahead;
     bool goes_on; /* in scratch files: the next point is often close to the last one */
 
-    brio_touch_view touches; /* the caller of brio_delaunay owns what counts; a strategy gives it to its levels */
     brio_delaunay_stats stats;
+    uint64_t searched;  /* work of a strategy besides walks: nodes of a history, tetrahedra traced through */
     bool reports;       /* whether this thread, the caller's, reports progress */
     double done;        /* share of the points that were in at the last report */
     uint64_t report_at; /* work at which the next report is due */
@@ -60,12 +59,6 @@ enum { BRIO_INSERT_WORK = 1 << 18 };
 
 /** Slots that an inserter takes at once in a parallel pass. */
 enum { BRIO_SLOT_STRETCH = 4096 };
-
-/** Makes the inserter count page touches from now on: its records are array `first` of `counts`. */
-static inline void brio_inserter_count_touches(brio_inserter *ins, brio_page_touches *counts, int first) {
-    ins->touches = (brio_touch_view){counts, first};
-    ins->walk.touches = counts ? &ins->touches : NULL;
-}
 
 /** Makes an inserter for a store that brio_start has begun. It walks from the first tetrahedron, locates by walks
  *  (brio_strategy_start for other strategies), has no zone, and has counted nothing. */
@@ -85,18 +78,17 @@ brio_status brio_inserter_return_stretch(brio_inserter *ins);
 /** Reports the share of the points that are in, where this inserter reports. */
 brio_status brio_inserter_report(brio_inserter *ins, double done);
 
-/** Returns the work of an inserter so far: conflict tests, tetrahedra created, steps of walks, nodes of the history; a
+/** Returns the work of an inserter so far: conflict tests, tetrahedra created, steps of walks and other searches; a
  *  predicate that the floating-point filter leaves open counts as 64 of these. */
 static inline uint64_t brio_inserter_work(const brio_inserter *ins) {
     const brio_delaunay_stats *s = &ins->stats;
-    return s->insphere_calls + s->created + ins->walk.steps + s->history_tests + s->trace_intersections +
-           64 * ins->filter.unsettled;
+    return s->insphere_calls + s->created + ins->walk.steps + ins->searched + 64 * ins->filter.unsettled;
 }
 
 /** Walks to p from walk.start, by the engine's walk. */
 static inline uint32_t brio_inserter_walk(brio_inserter *ins, const double *p, uint64_t most_steps) {
     assert(brio_has_tet(&ins->store->t, ins->walk.start)); /* N1 */
-    if (__builtin_expect(ins->walk.touches != NULL, 0))
+    if (__builtin_expect(ins->walk.watch != NULL, 0))
         return brio_locate_walk(&ins->store->t, ins->zone, &ins->filter, &ins->walk, p, most_steps);
     return ins->engine->walk(&ins->store->t, ins->zone, &ins->filter, &ins->walk, p, most_steps);
 }

@@ -81,7 +81,7 @@ brio_status brio_locate_descent(brio_inserter *ins, const double *p, uint32_t *t
         brio_status status = brio_star_collect(s->ctx, &s->t, from, best.tet, MOST_OF_STAR, &ins->star);
         if (status != BRIO_OK) return status;
         for (size_t n = 0; n < ins->star.size; n++) {
-            brio_touch_tet(&ins->touches, &s->t, ins->star.tet[n]);
+            if (ins->walk.watch) ins->walk.watch->came_to(ins->walk.watch, &s->t, ins->star.tet[n]);
             offer(&s->t, &best, ins->star.tet[n], p);
         }
         ins->walk.steps++;

@@ -18,7 +18,7 @@ uint32_t brio_locate_walk(const brio_tetrahedra *t, brio_zone *zone, brio_filter
         if (steps > most_steps) return BRIO_NO_TET;
         assert(brio_has_tet(t, tet) && brio_zone_holds_tet(t, zone, tet)); /* P3 */
         const uint32_t *v = t->tet[tet].vertex;
-        if (walk->touches) brio_touch_tet(walk->touches, t, tet);
+        if (walk->watch) walk->watch->came_to(walk->watch, t, tet);
         if (v[3] == t->infinite) return tet;
         walk->random = brio_walk_random(walk->random);
         int first = (int)(walk->random >> 30), i = 0;

@@ -2,9 +2,13 @@
 #ifndef BRIO_TRIANGULATION_LOCATE_WALK_H
 #define BRIO_TRIANGULATION_LOCATE_WALK_H
 
-#include "triangulation/page_touches.h"
 #include "triangulation/zone.h"
 #include <assert.h>
+
+/** What an experiment (insertion_part.h) is told: each tetrahedron that the search for a point comes to. */
+typedef struct brio_watch {
+    void (*came_to)(const struct brio_watch *watch, const brio_tetrahedra *t, uint32_t tet);
+} brio_watch;
 
 /** State of a sequence of walks: the start of the next walk, random bits, and the number of steps of all walks. */
 typedef struct {
@@ -13,7 +17,7 @@ typedef struct {
     uint64_t steps;
     bool blocked;    /* the last walk left the thread's zone */
     unsigned unsure; /* bit i is 0: the last walk found the point strictly inside facet i of the finite tetrahedron */
-    const brio_touch_view *touches; /* NULL, or what brio_locate_walk counts the tetrahedra with that it comes to */
+    const brio_watch *watch; /* told by brio_locate_walk; NULL: nobody watches */
 } brio_walk;
 
 enum { BRIO_NO_TET = UINT32_MAX };

@@ -1,4 +1,5 @@
-/* Strategies of point location. An inserter uses one strategy for all points. Each strategy has a file locate_*.c. */
+/* Strategies of point location. An inserter uses one strategy for all points: the walk, unless an experiment has
+ * another one. */
 #ifndef BRIO_TRIANGULATION_LOCATOR_H
 #define BRIO_TRIANGULATION_LOCATOR_H
 
@@ -7,7 +8,7 @@
 /** What a strategy does; what it keeps is ins->location. All but `locate` may be NULL. */
 typedef struct {
     /** Once the first tetrahedron stands. After a failure `release` is called, too. */
-    brio_status (*start)(brio_inserter *ins, const brio_delaunay_options *options);
+    brio_status (*start)(brio_inserter *ins);
     /** *tet = a tetrahedron whose closure holds record p, or that conflicts with it; at the position of a vertex that
      *  is not lighter, one of that vertex; BRIO_NO_TET when the search leads out of the zone. In a
      *  pass the thread holds *tet. Records come in their order. */
@@ -18,10 +19,7 @@ typedef struct {
     void (*release)(brio_inserter *ins);
 } brio_strategy;
 
-extern const brio_strategy brio_strategy_walk, brio_strategy_jump, brio_strategy_hierarchy, brio_strategy_history,
-    brio_strategy_trace, brio_strategy_neighbour;
-
-/** Chooses the strategy of the options and starts it. The inserter keeps it from then on, also after a failure. */
-brio_status brio_strategy_start(brio_inserter *ins, const brio_delaunay_options *options);
+/** The default: the walk from the point inserted last. */
+extern const brio_strategy brio_strategy_walk;
 
 #endif

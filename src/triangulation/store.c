@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "order/order.h"
+#include "triangulation/insertion_part.h"
 #include "triangulation/records.h"
 #include <assert.h>
 #include <math.h>
@@ -36,17 +37,20 @@ brio_status brio_store_new(brio_context *ctx, const brio_input *input, const bri
                            brio_round_ends *rounds, brio_store **out) {
     brio_store *s = NULL;
     size_t n = input->count;
-    bool parallel = brio_threads(ctx, n, POINTS_A_THREAD) > 1 && options->locate == BRIO_LOCATION_WALK;
+    const struct brio_insertion_part *part = BRIO_PART(ctx, insertion);
+    bool in_blocks = BRIO_PART(ctx, order) != NULL;
+    bool parallel = brio_threads(ctx, n, POINTS_A_THREAD) > 1 && (!part || !part->alone);
     brio_status status = BRIO_OK;
     *out = NULL;
     BRIO_TRY(begin_store(ctx, n, &s));
     s->weighted = input->weights != NULL;
-    s->follows = options->order != BRIO_ORDER_RANDOM;
+    s->follows = in_blocks || options->order != BRIO_ORDER_RANDOM;
     s->max_tetrahedra = options->max_tetrahedra;
     BRIO_TRY(BRIO_ALLOC(ctx, s->caller, n + MORE_RECORDS));
     BRIO_TRY(brio_progress(ctx, "order", 0));
-    if (parallel && brio_order_has_ranks(options->order)) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->rank, n + MORE_RECORDS));
-    if (s->weighted && options->order == BRIO_ORDER_BRIO && options->locate == BRIO_LOCATION_WALK)
+    if (parallel && (in_blocks || brio_order_has_ranks(options->order)))
+        BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->rank, n + MORE_RECORDS));
+    if (s->weighted && options->order == BRIO_ORDER_BRIO && !in_blocks && (!part || part->walks))
         BRIO_TRY(BRIO_ALLOC(ctx, s->sequence, n));
     BRIO_TRY(brio_order_points(ctx, input, options, s->caller, s->rank, s->sequence, rounds));
     BRIO_TRY(brio_records_new(ctx, input, s->caller, MORE_RECORDS, &s->points_hash, &s->record));

@@ -147,6 +147,9 @@ class Answers(CliTest):
             facts = self.facts("delaunay", mesh, "--locate", "trace", "--subgraph", kind)
             self.assertEqual((facts["checksum"], facts["subgraph"]["kind"]), (plain, kind))
         self.assertEqual(self.facts("delaunay", mesh, "--locate", "trace")["subgraph"]["max_degree"], 3)
+        # the memory was estimated of edges that were not there yet, and refused
+        limited = self.facts("delaunay", mesh, "--locate", "trace", "--max-memory", "500M")
+        self.assertEqual(limited["checksum"], plain)
 
     def test_meshes_to_go_along(self):
         faces = OCTAHEDRON_FACES + [(0, 1, 2)]  # edges of three faces

@@ -7,11 +7,11 @@ enum { MOST = 12 };
 
 /* With leave_hidden all is the same, but that hidden points have no representative. */
 static void expect_left(brio_context *ctx, const site_set *s, const double *points, const double *weights,
-                        brio_delaunay_options o, const brio_triangulation *named) {
+                        trial_options o, const brio_triangulation *named) {
     brio_triangulation *left;
     const brio_delaunay_stats *a = &named->stats;
     o.leave_hidden = 1;
-    FUZZ_EXPECT(brio_delaunay(ctx, points, weights, s->n, &o, &left) == BRIO_OK, "%s", brio_message(ctx));
+    FUZZ_EXPECT(trial_delaunay(ctx, points, weights, s->n, &o, &left, NULL) == BRIO_OK, "%s", brio_message(ctx));
     const brio_delaunay_stats *b = &left->stats;
     size_t tets = a->tetrahedra + a->hull_facets;
     FUZZ_EXPECT(a->vertices == b->vertices && a->duplicates == b->duplicates && a->hidden == b->hidden);
@@ -35,10 +35,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     brio_triangulation *t;
     fuzz_sites(&in, MOST, &s);
     sites_as_doubles(&in, &s, points, weights);
-    brio_delaunay_options o = fuzz_options(&in, s.n, edges);
+    trial_options o = fuzz_options(&in, s.n, edges);
     brio_context_set_threads(ctx, fuzz_byte(&in) < 16 ? 3 : 1);
     const double *w = s.weighted ? weights : NULL;
-    FUZZ_EXPECT(brio_delaunay(ctx, points, w, s.n, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    FUZZ_EXPECT(trial_delaunay(ctx, points, w, s.n, &o, &t, NULL) == BRIO_OK, "%s", brio_message(ctx));
     if (s.n)
         FUZZ_EXPECT(brute_accepts_result(&s, t), "order %d, location %d", (int)o.order, (int)o.locate);
     else

@@ -1,6 +1,7 @@
 /* Meshes of any polygons: the certificate against surface_oracle.h; crossings, distances, subdivision, simplification,
  * subgraphs, normals and components answer, and keep what they promise. */
 #include "surface_oracle.h"
+#include "brio/laboratory.h"
 
 enum { MOST_VERTICES = 14, MOST_FACES = 28 };
 

@@ -43,11 +43,11 @@ static void change_cloud(fuzz_input *in, cloud *c) {
     for (size_t i = 0; i < c->n; i++) c->weights[i] *= 4;
 }
 
-static uint64_t checksum_of(brio_context *ctx, const cloud *c, const brio_delaunay_options *o) {
+static uint64_t checksum_of(brio_context *ctx, const cloud *c, const trial_options *o) {
     brio_triangulation *t;
     uint64_t sum = 0;
     const double *w = c->weighted ? c->weights : NULL;
-    FUZZ_EXPECT(brio_delaunay(ctx, c->points, w, c->n, o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    FUZZ_EXPECT(trial_delaunay(ctx, c->points, w, c->n, o, &t, NULL) == BRIO_OK, "%s", brio_message(ctx));
     FUZZ_EXPECT(brio_triangulation_check(ctx, t, c->points, w, c->n) == BRIO_OK, "%s", brio_message(ctx));
     FUZZ_EXPECT(brio_triangulation_checksum(ctx, t, c->points, &sum) == BRIO_OK);
     brio_triangulation_free(t);
@@ -63,7 +63,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     uint64_t first = checksum_of(ctx, &c, NULL);
     brio_context_set_threads(ctx, fuzz_byte(&in) < 16 ? 3 : 1);
     change_cloud(&in, &c);
-    brio_delaunay_options o = fuzz_options(&in, c.n, edges);
+    trial_options o = fuzz_options(&in, c.n, edges);
     uint8_t bits = fuzz_byte(&in);
     o.leave_hidden = bits & 1;
     if (bits & 2) FUZZ_EXPECT(brio_context_set_scratch(ctx, "/tmp") == BRIO_OK, "%s", brio_message(ctx));

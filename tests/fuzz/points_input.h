@@ -4,6 +4,7 @@
 
 #include "brute_check.h"
 #include "fuzz.h"
+#include "trial.h"
 
 /** Up to `most` sites on a grid of 4 x 4 x 4 places; or near such places, so that much is nearly cospherical. With weights
  *  or without; weights tie often. */
@@ -33,10 +34,10 @@ static inline void sites_as_doubles(fuzz_input *in, const site_set *s, double *p
 }
 
 /** Options of every kind.   edges  room for 16 pairs. */
-static inline brio_delaunay_options fuzz_options(fuzz_input *in, size_t n, uint32_t *edges) {
+static inline trial_options fuzz_options(fuzz_input *in, size_t n, uint32_t *edges) {
     static const double ratios[] = {0, 0.5, 0.01, 0.9};
-    brio_delaunay_options o = {0};
-    o.order = (brio_order)fuzz_below(in, BRIO_ORDER_END);
+    trial_options o = {0};
+    o.order = (int)fuzz_below(in, TRIAL_ORDERS);
     o.locate = (brio_location)fuzz_below(in, BRIO_LOCATION_END);
     uint8_t bits = fuzz_byte(in);
     o.round_ratio = ratios[bits & 3];

@@ -3,6 +3,7 @@
 #define BRIO_TESTS_SURFACE_METHODS_H
 
 #include "fuzz.h"
+#include "trial.h"
 
 enum { MOST_SAMPLES = 90 };
 
@@ -36,10 +37,12 @@ static inline size_t fuzz_samples(fuzz_input *in, double *points) {
     return n;
 }
 
-static inline brio_pole_options fuzz_poles(fuzz_input *in, brio_noise *noise) {
+/* lab  receives an experiment, to be freed, as one labeling in two is that of one. */
+static inline brio_pole_options fuzz_poles(brio_context *ctx, fuzz_input *in, brio_noise *noise,
+                                           brio_laboratory **lab) {
     brio_pole_options o = {0};
     uint8_t bits = fuzz_byte(in);
-    o.labeling = (brio_labeling)(bits % BRIO_LABELING_END);
+    FUZZ_EXPECT(trial_labeling(ctx, bits % TRIAL_LABELINGS, &o, lab) == BRIO_OK);
     *noise = (brio_noise)(bits / 4 % BRIO_NOISE_END);
     o.sharp = bits >> 6 & 1;
     o.sampling_density = bits & 128 ? 0.3 : 0;
@@ -52,13 +55,15 @@ static inline reconstruction power_crust(brio_context *ctx, fuzz_input *in, cons
     brio_surface_options o = {.method = BRIO_SURFACE_POWER_CRUST};
     reconstruction r = {.method = "power crust", .surface = true};
     double normals[3 * MOST_SAMPLES];
-    o.poles = fuzz_poles(in, &o.noise);
+    brio_laboratory *lab;
+    o.poles = fuzz_poles(ctx, in, &o.noise, &lab);
     uint8_t bits = fuzz_byte(in);
     o.simplify = bits >> 1 & 1, o.polygons = !(bits & 1) && !o.simplify, o.open = bits & 4 ? 1 + bits / 64.0 : 0;
     r.closed = o.open == 0;
     o.normals = bits & 8 ? normals : NULL;
     (void)unit;
     fuzz_expect_failure(brio_surface(ctx, points, n, &o, &r.mesh, NULL));
+    brio_laboratory_free(lab);
     return r;
 }
 
@@ -67,11 +72,13 @@ static inline reconstruction offset_surface(brio_context *ctx, fuzz_input *in, c
     static const double distances[] = {0, 0.1, -0.1, 1, -1, 100, 1e-30, -1e200};
     brio_surface_options o = {.method = BRIO_SURFACE_OFFSET};
     reconstruction r = {.method = "offset", .surface = true, .closed = true};
-    o.poles = fuzz_poles(in, &o.noise);
+    brio_laboratory *lab;
+    o.poles = fuzz_poles(ctx, in, &o.noise, &lab);
     uint8_t bits = fuzz_byte(in);
     o.simplify = bits >> 1 & 1, o.polygons = !(bits & 1) && !o.simplify;
     o.distance = unit * distances[bits >> 2 & 7];
     fuzz_expect_failure(brio_surface(ctx, points, n, &o, &r.mesh, NULL));
+    brio_laboratory_free(lab);
     return r;
 }
 
@@ -80,12 +87,14 @@ static inline reconstruction power_shape(brio_context *ctx, fuzz_input *in, cons
     brio_power_shape_options o = {0};
     reconstruction r = {.method = "crust of the power shape", .surface = true, .closed = true};
     brio_mesh *shape;
-    o.poles = fuzz_poles(in, &o.noise);
+    brio_laboratory *lab;
+    o.poles = fuzz_poles(ctx, in, &o.noise, &lab);
     uint8_t bits = fuzz_byte(in);
     o.sides = (brio_sides)(bits % BRIO_SIDES_END);
     o.scale = bits & 4 ? 1.2 : 1, o.redundancy = bits & 8 ? 0.1 : 0;
     (void)unit;
     fuzz_expect_failure(brio_power_shape(ctx, points, n, &o, &shape, bits & 16 ? &r.mesh : NULL, NULL));
+    brio_laboratory_free(lab);
     if (shape) fuzz_expect_sound(shape);
     brio_mesh_free(shape);
     return r;
@@ -113,6 +122,8 @@ static inline reconstruction labeled_delaunay(brio_context *ctx, fuzz_input *in,
 static inline reconstruction cocone(brio_context *ctx, fuzz_input *in, const double *points, size_t n, double unit) {
     brio_surface_options o = {.method = BRIO_SURFACE_COCONE};
     reconstruction r = {.method = "co-cone"};
+    brio_laboratory_options experiment = {0};
+    brio_laboratory *lab;
     uint8_t bits = fuzz_byte(in);
     o.boundaries = bits & 1, o.density = bits >> 1 & 1;
     o.theta = bits & 4 ? 1.0 : o.theta;
@@ -121,10 +132,12 @@ static inline reconstruction cocone(brio_context *ctx, fuzz_input *in, const dou
     else if (bits & 16)
         o.pieces = 2 + (bits >> 5);
     else
-        o.extraction = (brio_extraction)((bits >> 5) % BRIO_EXTRACTION_END);
-    r.surface = o.extraction == BRIO_EXTRACTION_LABELS, r.closed = o.method == BRIO_SURFACE_TIGHT_COCONE;
+        experiment.extraction = (brio_extraction)((bits >> 5) % BRIO_EXTRACTION_END);
+    r.surface = experiment.extraction == BRIO_EXTRACTION_LABELS, r.closed = o.method == BRIO_SURFACE_TIGHT_COCONE;
     (void)unit;
+    FUZZ_EXPECT(brio_laboratory_new(ctx, &experiment, &lab) == BRIO_OK);
     fuzz_expect_failure(brio_surface(ctx, points, n, &o, &r.mesh, NULL));
+    brio_laboratory_free(lab);
     return r;
 }
 

@@ -1,6 +1,7 @@
 /* Triangulations and hulls of up to 12 points of any finite doubles against brute force in exact integers: exact_answer.h.
  *   bruteforce [--inputs N] [--seed S] [--first I]
  * Prints what was compared. An input whose result is wrong is printed; --inputs 1 --first I repeats it. */
+#include "brio/laboratory.h"
 #include "compare_exact.h"
 #include <time.h>
 
@@ -15,15 +16,19 @@ typedef struct {
 
 /* --- one input --- */
 
-static brio_delaunay_options any_options(dice *d) {
-    brio_delaunay_options o = {0};
-    o.order = (brio_order)below(d, BRIO_ORDER_END);
-    o.locate = (brio_location)below(d, BRIO_LOCATION_END);
-    o.round_ratio = one_in(d, 2) ? 0 : 0.5;
-    o.block_size = below(d, 4);
-    o.seed = below(d, 1000);
-    o.leave_hidden = one_in(d, 8);
-    return o;
+static void any_options(dice *d, brio_delaunay_options *o, brio_laboratory_options *lab) {
+    uint32_t order = below(d, BRIO_ORDER_END + BRIO_BLOCKS_END - 1);
+    *o = (brio_delaunay_options){0};
+    *lab = (brio_laboratory_options){0};
+    if (order < BRIO_ORDER_END)
+        o->order = (brio_order)order;
+    else
+        lab->order = (brio_laboratory_order)(order - BRIO_ORDER_END + 1);
+    lab->locate = (brio_location)below(d, BRIO_LOCATION_END);
+    o->round_ratio = one_in(d, 2) ? 0 : 0.5;
+    lab->block_size = below(d, 4);
+    o->seed = below(d, 1000);
+    o->leave_hidden = one_in(d, 8);
 }
 
 /* Tetrahedra from anywhere: either orientation. */
@@ -41,10 +46,16 @@ static const char *check_tetrahedra(brio_context *ctx, dice *d, const point_set 
 }
 
 static const char *try_solid(brio_context *ctx, dice *d, const point_set *s, const exact_answer *a) {
-    brio_delaunay_options o = any_options(d);
+    brio_delaunay_options o;
+    brio_laboratory_options experiment;
+    brio_laboratory *lab;
+    any_options(d, &o, &experiment);
     const double *w = s->weighted ? s->w : NULL;
     brio_triangulation *t;
-    if (brio_delaunay(ctx, s->x, w, s->n, &o, &t)) return brio_message(ctx);
+    if (brio_laboratory_new(ctx, &experiment, &lab)) return brio_message(ctx);
+    brio_status status = brio_delaunay(ctx, s->x, w, s->n, &o, &t);
+    brio_laboratory_free(lab);
+    if (status) return brio_message(ctx);
     const char *wrong = compare_solid(s, a, t, o.leave_hidden);
     if (!wrong && brio_triangulation_check(ctx, t, s->x, w, s->n)) wrong = "brio_triangulation_check refuses it";
     if (!wrong && a->dimension == 3) wrong = check_tetrahedra(ctx, d, s, t);

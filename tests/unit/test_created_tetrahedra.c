@@ -4,15 +4,16 @@
 #include "brio/testdata.h"
 #include "harness.h"
 #include "points.h"
+#include "trial.h"
 
 enum { SEEDS = 3 };
 
-static const brio_order BRIOS[] = {BRIO_ORDER_BRIO, BRIO_ORDER_BRIO_OCTREE, BRIO_ORDER_BRIO_KDTREE};
+static const int BRIOS[] = {BRIO_ORDER_BRIO, TRIAL_BRIO_OCTREE, TRIAL_BRIO_KDTREE};
 
 /* Tetrahedra created, infinite ones too, over the number of vertices.   ratio  0: the default */
-static double created_a_point(brio_kind kind, size_t n, brio_order order, double ratio, uint64_t seed) {
+static double created_a_point(brio_kind kind, size_t n, int order, double ratio, uint64_t seed) {
     brio_context *ctx = new_context();
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     brio_generate_options generate = {0};
     brio_mesh *mesh = NULL;
     brio_triangulation *t = NULL;
@@ -22,7 +23,8 @@ static double created_a_point(brio_kind kind, size_t n, brio_order order, double
     if (ratio > 0) o.round_ratio = ratio;
     brio_context_set_threads(ctx, 1);
     EXPECT(brio_generate(ctx, kind, n, &generate, &mesh) == BRIO_OK);
-    EXPECT(brio_delaunay(ctx, mesh->vertices, NULL, mesh->num_vertices, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(trial_delaunay(ctx, mesh->vertices, NULL, mesh->num_vertices, &o, &t, NULL) == BRIO_OK, "%s",
+           brio_message(ctx));
     if (t) created = (double)brio_triangulation_stats(t)->created / (double)brio_triangulation_stats(t)->vertices;
     brio_triangulation_free(t);
     brio_mesh_free(mesh);
@@ -32,7 +34,7 @@ static double created_a_point(brio_kind kind, size_t n, brio_order order, double
 
 enum { LARGE = SHORT_TESTS ? 8000 : 16000 };
 
-static double mean_created(size_t n, brio_order order, double ratio) {
+static double mean_created(size_t n, int order, double ratio) {
     double sum = 0;
     for (uint64_t seed = 1; seed <= SEEDS; seed++) sum += created_a_point(BRIO_KIND_SCAN, n, order, ratio, seed);
     return sum / SEEDS;
@@ -47,7 +49,7 @@ static void scans_create_as_many_as_in_random_order(void) {
         for (size_t k = 0; k < sizeof BRIOS / sizeof *BRIOS; k++) {
             brio[i] = mean_created(n, BRIOS[k], 0.5);
             EXPECT(brio[i] < 1.03 * random[i] && brio[i] > 0.97 * random[i], "order %d: %g, %g in random order",
-                   (int)BRIOS[k], brio[i], random[i]);
+                   BRIOS[k], brio[i], random[i]);
         }
         brio[i] = mean_created(n, BRIO_ORDER_BRIO, 0);
         EXPECT(brio[i] < 1.1 * random[i], "default rounds: %g, %g in random order", brio[i], random[i]);

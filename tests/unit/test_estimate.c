@@ -1,6 +1,7 @@
 /* Memory estimates against what the context counts. Estimates are of the memory that is touched; the context also counts
  * room that is set aside for growth, which threads do for themselves. */
 #include "brio/testdata.h"
+#include "brio/laboratory.h"
 #include "harness.h"
 #include "points.h"
 #include "surface_calls.h"
@@ -12,12 +13,15 @@ enum { N = SHORT_TESTS ? 20000 : 40000 };
 static double points[3 * N], weights[N];
 
 /* The most bytes that the context held, beyond what it held before. */
-static double peak_of_delaunay(const double *w, int threads, const brio_delaunay_options *o) {
+static double peak_of_delaunay(const double *w, int threads, const brio_laboratory_options *o) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
+    brio_laboratory *lab = NULL;
     brio_context_set_threads(ctx, threads);
-    EXPECT(brio_delaunay(ctx, points, w, N, o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    if (o) EXPECT(brio_laboratory_new(ctx, o, &lab) == BRIO_OK);
+    EXPECT(brio_delaunay(ctx, points, w, N, NULL, &t) == BRIO_OK, "%s", brio_message(ctx));
     double peak = (double)brio_context_memory_peak(ctx);
+    brio_laboratory_free(lab);
     brio_triangulation_free(t);
     brio_context_free(ctx);
     return peak;
@@ -148,14 +152,20 @@ static void every_way_of_location_takes_what_was_estimated(void) {
     for (uint32_t i = 0; i < N; i++) edges[2 * i] = i, edges[2 * i + 1] = (i + 1) % N;
     for (int way = BRIO_LOCATION_WALK; way < BRIO_LOCATION_END; way++) {
         brio_context *ctx = new_context();
-        brio_delaunay_options o = {0};
-        uint64_t bytes;
-        o.locate = (brio_location)way;
+        brio_laboratory_options o = {.locate = (brio_location)way};
+        brio_laboratory *lab;
+        uint64_t bytes, counted;
         if (way == BRIO_LOCATION_TRACE || way == BRIO_LOCATION_NEIGHBOUR) o.edges = edges, o.num_edges = N;
+        EXPECT(brio_laboratory_new(ctx, &o, &lab) == BRIO_OK);
         brio_context_set_threads(ctx, 1);
-        EXPECT(brio_estimate_delaunay(ctx, points, NULL, N, &o, &bytes) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_estimate_delaunay(ctx, points, NULL, N, NULL, &bytes) == BRIO_OK, "%s", brio_message(ctx));
+        brio_laboratory_free(lab);
         double ratio = (double)bytes / peak_of_delaunay(NULL, 1, &o);
         EXPECT(ratio > 0.8 && ratio < 1.3, "way %d: %g", way, ratio);
+        o.edges = NULL; /* their number is enough */
+        EXPECT(brio_laboratory_new(ctx, &o, &lab) == BRIO_OK);
+        EXPECT(brio_estimate_delaunay(ctx, points, NULL, N, NULL, &counted) == BRIO_OK && counted == bytes);
+        brio_laboratory_free(lab);
         brio_context_free(ctx);
     }
 }
@@ -250,17 +260,20 @@ static void estimates_of_levels_out_of_range_are_those_of_the_nearest_level(void
 /* Memory was estimated of triangulations that brio_delaunay refuses to make. */
 static void options_that_are_refused_have_no_estimate(void) {
     const uint32_t edge[2] = {0, 50};
-    brio_delaunay_options wrong[6];
+    brio_delaunay_options wrong[4];
+    brio_laboratory *lab;
     brio_context *ctx = new_context();
     uniform_points(1, 50, points);
-    for (int i = 0; i < 6; i++) wrong[i] = (brio_delaunay_options){0};
+    for (int i = 0; i < 4; i++) wrong[i] = (brio_delaunay_options){0};
     wrong[0].order = (brio_order)99;
-    wrong[1].locate = (brio_location)-5;
-    wrong[2].round_ratio = 1;
-    wrong[3].num_edges = 1;
-    wrong[4].num_edges = 1, wrong[4].edges = edge;
-    wrong[5].max_tetrahedra = UINT32_MAX;
-    for (int i = 0; i < 6; i++) {
+    wrong[1].round_ratio = 1;
+    wrong[2].max_tetrahedra = UINT32_MAX;
+    for (int i = 0; i < 4; i++) {
+        bool leads_nowhere = i == 3; /* an edge */
+        brio_laboratory_options o = {.edges = leads_nowhere ? edge : NULL,
+                                     .num_edges = leads_nowhere,
+                                     .locate = leads_nowhere ? BRIO_LOCATION_NEIGHBOUR : BRIO_LOCATION_WALK};
+        EXPECT(brio_laboratory_new(ctx, &o, &lab) == BRIO_OK);
         brio_triangulation *t;
         char message[256];
         uint64_t bytes = 77;
@@ -268,6 +281,7 @@ static void options_that_are_refused_have_no_estimate(void) {
         snprintf(message, sizeof message, "%s", brio_message(ctx));
         EXPECT(brio_estimate_delaunay(ctx, points, NULL, 50, &wrong[i], &bytes) == BRIO_ERR_ARGUMENT, "%d", i);
         EXPECT(bytes == 0 && !strcmp(brio_message(ctx), message), "%d: %s", i, brio_message(ctx));
+        brio_laboratory_free(lab);
     }
     brio_context_free(ctx);
 }

@@ -3,6 +3,7 @@
 #include "harness.h"
 #include "points.h"
 #include "surface_calls.h"
+#include "trial.h"
 #include <stdint.h>
 
 static double points[3] = {1, 2, 3};
@@ -83,11 +84,11 @@ static brio_status estimate_tetrahedra(size_t n) {
 /* Edges were read by their number before it was held against any limit, and twice that number wrapped. */
 static brio_status edges(size_t n) {
     brio_triangulation *t = NULL;
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     o.locate = BRIO_LOCATION_NEIGHBOUR;
     o.edges = indices;
     o.num_edges = n;
-    return brio_delaunay(ctx, points, NULL, 1, &o, &t);
+    return trial_delaunay(ctx, points, NULL, 1, &o, &t, NULL);
 }
 
 /* Of a mesh: a new one for each call. */

@@ -6,6 +6,7 @@
 #include "order/order.h"
 #include "points.h"
 #include "surface_calls.h"
+#include "trial.h"
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
@@ -53,9 +54,9 @@ static void make_good(void) {
 
 static size_t sum; /* of what was read, so that it is read */
 
-static brio_status space(brio_context *ctx, const double *weights, const brio_delaunay_options *o) {
+static brio_status space(brio_context *ctx, const double *weights, const trial_options *o) {
     brio_triangulation *t;
-    brio_status status = brio_delaunay(ctx, now.points, weights, N, o, &t);
+    brio_status status = trial_delaunay(ctx, now.points, weights, N, o, &t, NULL);
     if (status != BRIO_OK) return status;
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
     const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
@@ -75,20 +76,20 @@ static brio_status regular(brio_context *ctx) {
     return space(ctx, now.weights, NULL);
 }
 
-static brio_status in_order(brio_context *ctx, brio_order order) {
-    brio_delaunay_options o = {0};
+static brio_status in_order(brio_context *ctx, int order) {
+    trial_options o = {0};
     o.order = order, o.block_size = 20;
     return space(ctx, NULL, &o);
 }
 static brio_status octree(brio_context *ctx) {
-    return in_order(ctx, BRIO_ORDER_BRIO_OCTREE);
+    return in_order(ctx, TRIAL_BRIO_OCTREE);
 }
 static brio_status kdtree(brio_context *ctx) {
-    return in_order(ctx, BRIO_ORDER_BRIO_KDTREE);
+    return in_order(ctx, TRIAL_BRIO_KDTREE);
 }
 
 static brio_status traced(brio_context *ctx) {
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     o.locate = BRIO_LOCATION_TRACE, o.edges = now.edges, o.num_edges = N;
     return space(ctx, NULL, &o);
 }
@@ -421,19 +422,19 @@ static void *move_points(void *user) {
     return NULL;
 }
 
-static void expect_permutation(brio_context *ctx, brio_order order) {
+static void expect_permutation(brio_context *ctx, int order) {
     static uint32_t found[MANY];
     static uint8_t seen[MANY];
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     size_t twice = 0;
     o.order = order, o.block_size = 50;
-    EXPECT(brio_order_points(ctx, &(brio_input){many, NULL, MANY}, &o, found, NULL, NULL, NULL) == BRIO_OK);
+    EXPECT(trial_order(ctx, &(brio_input){many, NULL, MANY}, &o, found, NULL, NULL, NULL) == BRIO_OK);
     memset(seen, 0, sizeof seen);
     for (size_t i = 0; i < MANY; i++) {
-        EXPECT(found[i] < MANY, "order %d", (int)order);
+        EXPECT(found[i] < MANY, "order %d", order);
         if (found[i] < MANY) twice += seen[found[i]]++;
     }
-    EXPECT(twice == 0, "order %d: %zu points come twice", (int)order, twice);
+    EXPECT(twice == 0, "order %d: %zu points come twice", order, twice);
 }
 
 static void orders_stay_permutations(void) {
@@ -442,12 +443,12 @@ static void orders_stay_permutations(void) {
     brio_context *ctx = new_context();
     __atomic_store_n(&stopped, 0, __ATOMIC_RELAXED);
     EXPECT(pthread_create(&thread, NULL, move_points, &seed) == 0);
-    for (int order = 0; order < BRIO_ORDER_END; order++)
+    for (int order = 0; order < TRIAL_ORDERS; order++)
         for (int threads = 1; threads <= 3; threads += BRIEF_TESTS ? 2 : 1) {
             size_t before = __atomic_load_n(&writes, __ATOMIC_RELAXED), written = 0;
             brio_context_set_threads(ctx, threads);
             for (int n = 0; n < 5 || (written < 100 * WRITES && n < 60); n++) {
-                expect_permutation(ctx, (brio_order)order);
+                expect_permutation(ctx, order);
                 written = __atomic_load_n(&writes, __ATOMIC_RELAXED) - before;
             }
         }

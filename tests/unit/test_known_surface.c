@@ -1,50 +1,56 @@
 /* The triangulation of a known surface: going along its edges changes nothing but the work. */
 #include "failing_allocator.h"
 #include "random_surfaces.h"
+#include "trial.h"
 
 static brio_context *ctx;
 
 static const brio_location ALONG[] = {BRIO_LOCATION_TRACE, BRIO_LOCATION_NEIGHBOUR};
 
-static uint64_t checksum(const brio_mesh *mesh, const brio_delaunay_options *options, brio_delaunay_stats *stats) {
+static uint64_t checksum(const brio_mesh *mesh, const trial_options *options, brio_delaunay_stats *stats,
+                         brio_laboratory_stats *counted) {
     brio_triangulation *t = NULL;
     uint64_t sum = 0;
-    EXPECT(brio_delaunay(ctx, mesh->vertices, NULL, mesh->num_vertices, options, &t) == BRIO_OK, "%s",
+    brio_laboratory *lab;
+    EXPECT(trial_delaunay(ctx, mesh->vertices, NULL, mesh->num_vertices, options, &t, &lab) == BRIO_OK, "%s",
            brio_message(ctx));
     if (!t) return 0;
     if (stats) *stats = *brio_triangulation_stats(t);
+    if (counted) *counted = *brio_laboratory_results(lab);
+    brio_laboratory_free(lab);
     EXPECT(brio_triangulation_checksum(ctx, t, mesh->vertices, &sum) == BRIO_OK);
     brio_triangulation_free(t);
     return sum;
 }
 
-static uint64_t checksum_along(const brio_mesh *mesh, brio_location location, brio_order order, brio_subgraph kind,
-                               brio_delaunay_stats *stats) {
-    brio_delaunay_options o = {0};
+static uint64_t checksum_along(const brio_mesh *mesh, brio_location location, int order, brio_subgraph kind,
+                               brio_delaunay_stats *stats, brio_laboratory_stats *counted) {
+    trial_options o = {0};
     brio_edges edges;
     EXPECT(brio_mesh_subgraph(ctx, mesh, kind, &edges) == BRIO_OK, "%s", brio_message(ctx));
     o.locate = location;
     o.order = order;
     o.edges = edges.ends;
     o.num_edges = edges.count;
-    uint64_t sum = checksum(mesh, &o, stats);
+    uint64_t sum = checksum(mesh, &o, stats, counted);
     brio_edges_free(&edges);
     return sum;
 }
 
 /* A trace in the order of its analysis, a neighbour in the order of its practice. */
 static void expect_same_triangulation(const brio_mesh *mesh, brio_subgraph kind, const char *name) {
-    uint64_t plain = checksum(mesh, NULL, NULL);
-    EXPECT(checksum_along(mesh, BRIO_LOCATION_TRACE, BRIO_ORDER_RANDOM, kind, NULL) == plain, "%s, trace", name);
-    EXPECT(checksum_along(mesh, BRIO_LOCATION_NEIGHBOUR, BRIO_ORDER_BRIO, kind, NULL) == plain, "%s, neighbour", name);
+    uint64_t plain = checksum(mesh, NULL, NULL, NULL);
+    EXPECT(checksum_along(mesh, BRIO_LOCATION_TRACE, BRIO_ORDER_RANDOM, kind, NULL, NULL) == plain, "%s, trace", name);
+    EXPECT(checksum_along(mesh, BRIO_LOCATION_NEIGHBOUR, BRIO_ORDER_BRIO, kind, NULL, NULL) == plain, "%s, neighbour",
+           name);
 }
 
 static void expect_same_in_every_order(const brio_mesh *mesh, const char *name) {
-    uint64_t plain = checksum(mesh, NULL, NULL);
+    uint64_t plain = checksum(mesh, NULL, NULL, NULL);
     for (int kind = 0; kind < BRIO_SUBGRAPH_END; kind++)
-        for (int order = 0; order < BRIO_ORDER_END; order++)
+        for (int order = 0; order < TRIAL_ORDERS; order++)
             for (int i = 0; i < 2; i++)
-                EXPECT(checksum_along(mesh, ALONG[i], (brio_order)order, (brio_subgraph)kind, NULL) == plain,
+                EXPECT(checksum_along(mesh, ALONG[i], order, (brio_subgraph)kind, NULL, NULL) == plain,
                        "%s, location %d, order %d, subgraph %d", name, (int)ALONG[i], order, kind);
 }
 
@@ -146,9 +152,10 @@ typedef struct {
 
 static work work_of(const brio_mesh *mesh, brio_location location) {
     brio_delaunay_stats s = {0};
+    brio_laboratory_stats lab = {0};
     double n = (double)mesh->num_vertices;
-    checksum_along(mesh, location, BRIO_ORDER_RANDOM, BRIO_SUBGRAPH_BOUNDED, &s);
-    return (work){(double)s.tetrahedra / n, (double)s.trace_intersections / n, (double)s.history_tests / n};
+    checksum_along(mesh, location, BRIO_ORDER_RANDOM, BRIO_SUBGRAPH_BOUNDED, &s, &lab);
+    return (work){(double)s.tetrahedra / n, (double)lab.trace_intersections / n, (double)lab.history_tests / n};
 }
 
 /* The history alone grows with the logarithm of the number of points; traced, it does not. */
@@ -180,12 +187,12 @@ static brio_status everything(brio_context *failing) {
     if (SHORT_TESTS) grid = (brio_implicit_grid){chain_value, &c, {-2, -2, -1}, 0.5, {8, 8, 4}};
     BRIO_TRY(brio_marched_surface(failing, &grid, &mesh));
     for (int kind = 0; kind < BRIO_SUBGRAPH_END; kind++) {
-        brio_delaunay_options o = {0};
+        trial_options o = {0};
         BRIO_TRY(brio_mesh_subgraph(failing, mesh, (brio_subgraph)kind, &edges));
         o.locate = ALONG[kind % 2];
         o.edges = edges.ends;
         o.num_edges = edges.count;
-        BRIO_TRY(brio_delaunay(failing, mesh->vertices, NULL, mesh->num_vertices, &o, &t));
+        BRIO_TRY(trial_delaunay(failing, mesh->vertices, NULL, mesh->num_vertices, &o, &t, NULL));
         brio_edges_free(&edges);
         brio_triangulation_free(t);
         t = NULL;

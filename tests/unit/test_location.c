@@ -5,8 +5,8 @@
 #include "harness.h"
 #include "insertion.h"
 #include "points.h"
-#include "triangulation/history.h"
-#include "triangulation/locate_segment.h"
+#include "laboratory/location/history.h"
+#include "laboratory/location/locate_segment.h"
 
 enum { N = 400, EDGES = 2 * N, SETS = 7 };
 
@@ -18,8 +18,8 @@ static const char *const names[] = {"walk", "jump", "hierarchy", "history", "tra
 /* The strategies, and those of the history DAG once more with each of its other searches. */
 enum { STRATEGIES = BRIO_LOCATION_END + 4 };
 
-static brio_delaunay_options strategy(int s) {
-    brio_delaunay_options o = {0};
+static trial_options strategy(int s) {
+    trial_options o = {0};
     int other = s - BRIO_LOCATION_END;
     o.all_conflicts = other == 0 || other == 1;
     o.first_conflict = other > 1;
@@ -67,15 +67,18 @@ static void make_set(int set) {
 typedef struct {
     uint64_t arrays, checksum; /* of all that is returned; of the set of tetrahedra */
     brio_delaunay_stats stats;
+    brio_laboratory_stats lab;
 } result;
 
-static result run(const double *p, const double *w, size_t n, const brio_delaunay_options *o) {
+static result run(const double *p, const double *w, size_t n, const trial_options *o) {
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
+    brio_laboratory *lab;
     result r = {0};
     brio_context_set_threads(ctx, 2);
-    EXPECT(brio_delaunay(ctx, p, w, n, o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(trial_delaunay(ctx, p, w, n, o, &t, &lab) == BRIO_OK, "%s", brio_message(ctx));
     if (t) {
+        r.lab = *brio_laboratory_results(lab);
         EXPECT(brio_triangulation_check(ctx, t, p, w, n) == BRIO_OK, "%s", brio_message(ctx));
         EXPECT(brio_triangulation_checksum(ctx, t, p, &r.checksum) == BRIO_OK);
         r.stats = *brio_triangulation_stats(t);
@@ -85,6 +88,7 @@ static result run(const double *p, const double *w, size_t n, const brio_delauna
         for (size_t i = 0; i < n; i++) r.arrays = brio_mix(r.arrays + brio_triangulation_representatives(t)[i]);
     }
     brio_triangulation_free(t);
+    brio_laboratory_free(lab);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
     return r;
@@ -104,11 +108,11 @@ static void every_strategy_in_every_order_gives_one_triangulation(void) {
         for (int weighted = BRIEF_TESTS ? set % 2 : 0; weighted < 2; weighted += BRIEF_TESTS ? 2 : 1) {
             const double *w = weighted ? weights : NULL;
             result first = {0};
-            for (int order = 0; order < BRIO_ORDER_END; order += BRIEF_TESTS ? 1 + set % 2 : 1) {
+            for (int order = 0; order < TRIAL_ORDERS; order += BRIEF_TESTS ? 1 + set % 2 : 1) {
                 result walk = {0};
                 for (int s = 0; s < STRATEGIES; s++) {
-                    brio_delaunay_options o = strategy(s);
-                    o.order = (brio_order)order;
+                    trial_options o = strategy(s);
+                    o.order = order;
                     result r = run(points, w, N, &o);
                     if (s == 0) walk = r;
                     if (s == 0 && order == 0) first = r;
@@ -124,15 +128,16 @@ static void every_strategy_in_every_order_gives_one_triangulation(void) {
 static void strategies_count_what_they_do(void) {
     make_set(1);
     for (int s = 0; s < STRATEGIES; s++) {
-        brio_delaunay_options o = strategy(s);
-        brio_delaunay_stats stats = run(points, NULL, N, &o).stats;
+        trial_options o = strategy(s);
+        result r = run(points, NULL, N, &o);
+        brio_laboratory_stats stats = r.lab;
         bool history = o.locate == BRIO_LOCATION_HISTORY || o.locate == BRIO_LOCATION_TRACE;
-        EXPECT(stats.history == (history ? stats.created : 0), "strategy %d", s);
+        EXPECT(stats.history == (history ? r.stats.created : 0), "strategy %d", s);
         EXPECT((stats.history_tests > 0) == history, "strategy %d", s);
         EXPECT((stats.history_conflicts > 0) == (o.all_conflicts || o.first_conflict), "strategy %d", s);
         EXPECT(stats.history_conflicts <= stats.history_tests, "strategy %d", s);
         EXPECT((stats.trace_intersections > 0) == (o.locate == BRIO_LOCATION_TRACE), "strategy %d", s);
-        EXPECT((stats.walk_steps > 0) == !history, "strategy %d", s);
+        EXPECT((r.stats.walk_steps > 0) == !history, "strategy %d", s);
     }
 }
 
@@ -154,7 +159,7 @@ static void walks_are_short(void) {
     uint32_t *pairs;
     double *many = paired_points(MANY, &pairs);
     for (int i = 0; i < 3; i++) {
-        brio_delaunay_options o = {0};
+        trial_options o = {0};
         o.order = BRIO_ORDER_RANDOM, o.locate = walks[i], o.edges = pairs, o.num_edges = MANY / 2;
         result r = run(many, NULL, MANY, &o);
         double steps = (double)r.stats.walk_steps / MANY;
@@ -181,10 +186,10 @@ static void history_tests_grow_as_the_logarithm(void) {
         double *p = malloc(3 * n * sizeof *p);
         uniform_points(1, n, p);
         for (int all = 0; all < 2; all++) {
-            brio_delaunay_options o = {0};
+            trial_options o = {0};
             o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_HISTORY, o.all_conflicts = all;
-            brio_delaunay_stats s = run(p, NULL, n, &o).stats;
-            double tests = (double)s.history_tests / (double)n, most = most_history_tests(&s, all);
+            result r = run(p, NULL, n, &o);
+            double tests = (double)r.lab.history_tests / (double)n, most = most_history_tests(&r.stats, all);
             EXPECT(tests < most, "%zu points, all conflicts %d: %g tests a point, at most %g", n, all, tests, most);
         }
         free(p);
@@ -198,10 +203,10 @@ static void history_tests_of_sorted_points_are_many(void) {
     double *p = malloc(3 * MANY * sizeof *p);
     uniform_points(1, MANY, p);
     for (size_t i = 0; i < MANY; i++) p[3 * i] = (double)i;
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     o.order = BRIO_ORDER_INPUT, o.locate = BRIO_LOCATION_HISTORY;
-    brio_delaunay_stats s = run(p, NULL, MANY, &o).stats;
-    double tests = (double)s.history_tests / MANY, most = most_history_tests(&s, false);
+    result r = run(p, NULL, MANY, &o);
+    double tests = (double)r.lab.history_tests / MANY, most = most_history_tests(&r.stats, false);
     EXPECT(tests > most, "%g tests a point, at most %g", tests, most);
     free(p);
 }
@@ -213,14 +218,14 @@ static void traced_pairs_save_their_history_tests(void) {
     uint32_t *pairs;
     double *many = paired_points(MANY, &pairs);
     for (int all = 0; all < 2; all++) {
-        brio_delaunay_options o = {0};
+        trial_options o = {0};
         o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_HISTORY, o.all_conflicts = all;
-        brio_delaunay_stats plain = run(many, NULL, MANY, &o).stats;
+        brio_laboratory_stats plain = run(many, NULL, MANY, &o).lab;
         o.locate = BRIO_LOCATION_TRACE;
-        brio_delaunay_stats without = run(many, NULL, MANY, &o).stats;
+        brio_laboratory_stats without = run(many, NULL, MANY, &o).lab;
         EXPECT(without.history_tests == plain.history_tests && without.trace_intersections == 0);
         o.edges = pairs, o.num_edges = MANY / 2;
-        brio_delaunay_stats traced = run(many, NULL, MANY, &o).stats;
+        brio_laboratory_stats traced = run(many, NULL, MANY, &o).lab;
         EXPECT((double)traced.history_tests < 0.6 * (double)plain.history_tests, "%g of %g tests a point",
                (double)traced.history_tests / MANY, (double)plain.history_tests / MANY);
         EXPECT(traced.trace_intersections > 0 && traced.trace_intersections < TRACINGS * MANY, "%g entered a point",
@@ -261,6 +266,7 @@ static void expect_searches_right(brio_inserter *ins, brio_history *h, const dou
 typedef struct {
     brio_inserter *ins;
     brio_history h;
+    brio_laboratory_stats stats;
     brio_history_node node[9];
     uint32_t first[5], node_of[9];
 } made_history;
@@ -277,8 +283,12 @@ static void make_history(made_history *m, brio_inserter *ins, unsigned conflicts
         m->node[i] = (brio_history_node){{v, v + 1, v + 2, v + 3}, next[i]};
         m->node_of[i] = i;
     }
-    m->h =
-        (brio_history){.node = m->node, .num_nodes = 9, .first = m->first, .num_insertions = 4, .node_of = m->node_of};
+    m->h = (brio_history){.stats = &m->stats,
+                          .node = m->node,
+                          .num_nodes = 9,
+                          .first = m->first,
+                          .num_insertions = 4,
+                          .node_of = m->node_of};
 }
 
 /* The nodes that a search for the origin tests, until it has `most` conflicts; *found is the first of these. */
@@ -286,14 +296,13 @@ static uint64_t tests_of_search(brio_inserter *ins, unsigned conflicts, size_t m
     static const double origin[4] = {0};
     made_history m;
     make_history(&m, ins, conflicts);
-    uint64_t before = ins->stats.history_tests;
     EXPECT(brio_history_conflicts(ins, &m.h, BRIO_HISTORY_ROOT, origin, most) == BRIO_OK);
     *found = m.h.num_conflicts ? m.h.conflict[0] : BRIO_NO_TET;
     brio_context *ctx = ins->store->ctx;
     brio_release(ctx, m.h.seen);
     brio_release(ctx, m.h.open);
     brio_release(ctx, m.h.conflict);
-    return ins->stats.history_tests - before;
+    return m.stats.history_tests;
 }
 
 /* The program hull's search goes depth first, and returns at the first live tetrahedron in conflict. */
@@ -312,7 +321,7 @@ static void a_search_ends_at_the_first_live_conflict(void) {
         {0x049, 9, 9, BRIO_NO_TET},
     };
     brio_context *ctx = new_context();
-    brio_delaunay_options o = strategy(BRIO_LOCATION_WALK);
+    trial_options o = strategy(BRIO_LOCATION_WALK);
     brio_inserter *ins = insertion_begin(ctx, corner, NULL, 8, &o);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         uint32_t found;
@@ -331,7 +340,7 @@ static void history_searches_find_what_brute_force_finds(void) {
         for (int weighted = 0; weighted < 2; weighted++) {
             make_set(set);
             brio_context *ctx = new_context();
-            brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
+            trial_options o = strategy(BRIO_LOCATION_HISTORY);
             brio_inserter *ins = insertion_begin(ctx, points, weighted ? weights : NULL, N, &o);
             const brio_store *s = ins->store;
             for (uint32_t end = 4, begin = 0; end < N; begin = end, end += 120) {
@@ -362,7 +371,7 @@ static void segments_lead_to_their_ends(void) {
     for (int set = 0; set < SETS; set++) {
         make_set(set);
         brio_context *ctx = new_context();
-        brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
+        trial_options o = strategy(BRIO_LOCATION_HISTORY);
         uint64_t entered = 0;
         brio_inserter *ins = insertion_begin(ctx, points, NULL, N, &o);
         const brio_store *s = ins->store;
@@ -384,7 +393,7 @@ static void segments_lead_to_their_ends(void) {
 static void segments_enter_what_they_cross(void) {
     static double ends[6 * 100];
     brio_context *ctx = new_context();
-    brio_delaunay_options o = strategy(BRIO_LOCATION_HISTORY);
+    trial_options o = strategy(BRIO_LOCATION_HISTORY);
     uniform_points(1, N, points);
     uniform_points(2, 200, ends);
     brio_inserter *ins = insertion_begin(ctx, points, NULL, N, &o);
@@ -415,7 +424,7 @@ static void segments_enter_what_they_cross(void) {
  * was traced. */
 static size_t list_tracings(uint32_t first, uint32_t tracings[8]) {
     brio_context *ctx = new_context();
-    brio_delaunay_options o = strategy(BRIO_LOCATION_TRACE);
+    trial_options o = strategy(BRIO_LOCATION_TRACE);
     size_t count = 0;
     for (uint32_t i = first; i + 1 < N; i++) edges[2 * (i - first)] = i, edges[2 * (i - first) + 1] = i + 1;
     o.num_edges = N - 1 - first;
@@ -423,9 +432,9 @@ static size_t list_tracings(uint32_t first, uint32_t tracings[8]) {
     brio_inserter *ins = insertion_begin(ctx, points, NULL, N, &o);
     const brio_store *s = ins->store;
     for (uint32_t p = (uint32_t)s->dimension + 1; p < N; p++) {
-        uint64_t before = ins->stats.trace_intersections;
+        uint64_t before = brio_trial_of(ins)->stats.trace_intersections;
         insert_records(ins, p, p + 1);
-        if (ins->stats.trace_intersections > before && count < 8) tracings[count++] = p;
+        if (brio_trial_of(ins)->stats.trace_intersections > before && count < 8) tracings[count++] = p;
     }
     insertion_end(ins);
     brio_context_free(ctx);
@@ -469,15 +478,15 @@ static void tracing_is_linear_on_a_sphere(void) {
         double *p = malloc(3 * n * sizeof *p);
         sphere_points(9, n, p);
         uint32_t *edge = hull_edges(p, n, &num_edges);
-        brio_delaunay_options o = {0};
+        trial_options o = {0};
         o.order = BRIO_ORDER_RANDOM, o.locate = BRIO_LOCATION_TRACE, o.edges = edge, o.num_edges = num_edges;
         result traced = run(p, NULL, n, &o);
         o.locate = BRIO_LOCATION_HISTORY;
         result plain = run(p, NULL, n, &o);
         EXPECT(traced.arrays == plain.arrays);
-        crossed[i] = (double)traced.stats.trace_intersections / (double)n;
-        tests[i] = (double)traced.stats.history_tests / (double)n;
-        from_root[i] = (double)plain.stats.history_tests / (double)n;
+        crossed[i] = (double)traced.lab.trace_intersections / (double)n;
+        tests[i] = (double)traced.lab.history_tests / (double)n;
+        from_root[i] = (double)plain.lab.history_tests / (double)n;
         free(edge);
         free(p);
         EXPECT(crossed[i] < 1.2 * crossed[0] && crossed[i] > 1, "%zu points: %g crossed a point", n, crossed[i]);
@@ -498,7 +507,7 @@ static void few_points_are_answered(void) {
             uint32_t edge[4] = {0, (uint32_t)n / 2, 0, (uint32_t)n / 3};
             result expected = run(points, NULL, n, NULL);
             for (int s = 0; s < STRATEGIES; s++) {
-                brio_delaunay_options o = strategy(s);
+                trial_options o = strategy(s);
                 o.edges = edge, o.num_edges = n ? 2 : 0;
                 EXPECT(run(points, NULL, n, &o).arrays == expected.arrays, "%zu points, strategy %d", n, s);
             }
@@ -513,7 +522,7 @@ static void coincident_points_are_answered(void) {
         result expected = run(points, weighted ? weights : NULL, N, NULL);
         EXPECT(expected.stats.duplicates >= N - 8);
         for (int s = 0; s < STRATEGIES; s++) {
-            brio_delaunay_options o = strategy(s);
+            trial_options o = strategy(s);
             o.order = BRIO_ORDER_INPUT;
             result r = run(points, weighted ? weights : NULL, N, &o);
             expect_same(&r, &expected, 0, s, BRIO_ORDER_INPUT);
@@ -530,16 +539,16 @@ static void chains_of_hidden_points_are_answered(void) {
     result expected = run(points, weights, N, NULL);
     EXPECT(expected.stats.hidden > N / 2, "%zu hidden", expected.stats.hidden);
     for (int s = 0; s < STRATEGIES; s++) {
-        brio_delaunay_options o = strategy(s);
+        trial_options o = strategy(s);
         o.order = BRIO_ORDER_INPUT;
         result r = run(points, weights, N, &o);
         expect_same(&r, &expected, 0, s, BRIO_ORDER_INPUT);
     }
 }
 
-static brio_status status_of(brio_context *ctx, const brio_delaunay_options *o) {
+static brio_status status_of(brio_context *ctx, const trial_options *o) {
     brio_triangulation *t = NULL;
-    brio_status status = brio_delaunay(ctx, points, NULL, N, o, &t);
+    brio_status status = trial_delaunay(ctx, points, NULL, N, o, &t, NULL);
     EXPECT((status == BRIO_OK) == (t != NULL));
     brio_triangulation_free(t);
     EXPECT(brio_context_memory(ctx) == 0);
@@ -549,7 +558,7 @@ static brio_status status_of(brio_context *ctx, const brio_delaunay_options *o) 
 static void wrong_options_are_refused(void) {
     brio_context *ctx = new_context();
     make_set(0);
-    brio_delaunay_options o = strategy(BRIO_LOCATION_TRACE);
+    trial_options o = strategy(BRIO_LOCATION_TRACE);
     edges[2 * EDGES - 1] = N;
     EXPECT(status_of(ctx, &o) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "edge 799 ends at point 400 of 400"),
            "%s", brio_message(ctx));
@@ -578,9 +587,9 @@ static void cancelled_strategies_free_everything(void) {
         for (double fraction = 0; fraction < 0.5; fraction += 0.4) {
             brio_context *ctx = new_context();
             brio_triangulation *t;
-            brio_delaunay_options o = strategy(s);
+            trial_options o = strategy(s);
             brio_context_set_progress(ctx, cancel_at, &fraction);
-            EXPECT(brio_delaunay(ctx, many, NULL, MANY, &o, &t) == BRIO_ERR_CANCELLED && !t, "strategy %d", s);
+            EXPECT(trial_delaunay(ctx, many, NULL, MANY, &o, &t, NULL) == BRIO_ERR_CANCELLED && !t, "strategy %d", s);
             EXPECT(brio_context_memory(ctx) == 0);
             brio_context_free(ctx);
         }
@@ -591,7 +600,7 @@ static void few_tetrahedra_allowed_is_a_status(void) {
     make_set(0);
     for (int s = 0; s < STRATEGIES; s++) {
         brio_context *ctx = new_context();
-        brio_delaunay_options o = strategy(s);
+        trial_options o = strategy(s);
         o.max_tetrahedra = 1000;
         EXPECT(status_of(ctx, &o) == BRIO_ERR_TOO_LARGE);
         brio_context_free(ctx);
@@ -601,9 +610,9 @@ static void few_tetrahedra_allowed_is_a_status(void) {
 static int failing_strategy;
 
 static brio_status triangulate(brio_context *ctx) {
-    brio_delaunay_options o = strategy(failing_strategy);
+    trial_options o = strategy(failing_strategy);
     brio_triangulation *t;
-    brio_status status = brio_delaunay(ctx, points, weights, N, &o, &t);
+    brio_status status = trial_delaunay(ctx, points, weights, N, &o, &t, NULL);
     brio_triangulation_free(t);
     return status;
 }

@@ -3,12 +3,13 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "base/memory.h"
-#include "order/blocks.h"
+#include "laboratory/blocks.h"
 #include "order/canonical_points.h"
 #include "order/curve.h"
 #include "order/hilbert.h"
 #include "order/order.h"
 #include "points.h"
+#include "trial.h"
 
 static void curve_visits_each_cell_once_in_unit_steps(void) {
     enum { BITS = 4, SIDE = 1 << BITS, CELLS = SIDE * SIDE * SIDE };
@@ -35,9 +36,9 @@ enum { MOST = 40000 };
 static double points[3 * MOST];
 static uint32_t order[MOST], other[MOST], rank[MOST], index_of[MOST], spare[MOST];
 
-static brio_delaunay_options options_of(int kind, size_t block_size) {
-    brio_delaunay_options o = {0};
-    o.order = (brio_order)kind;
+static trial_options options_of(int kind, size_t block_size) {
+    trial_options o = {0};
+    o.order = kind;
     o.block_size = block_size;
     return o;
 }
@@ -89,12 +90,11 @@ static void every_order_is_a_permutation(void) {
     brio_context *ctx = new_context();
     for (int set = 0; hard_points(set, 0); set++)
         for (size_t n = 0; n <= 5000; n = n < 3 ? n + 1 : 5000 + (n == 5000))
-            for (int kind = 0; kind < BRIO_ORDER_END; kind++)
+            for (int kind = 0; kind < TRIAL_ORDERS; kind++)
                 for (size_t block_size = 0; block_size < 100; block_size = block_size * 10 + 1) {
                     const char *name = hard_points(set, n);
-                    brio_delaunay_options o = options_of(kind, block_size);
-                    EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, n}, &o, order, NULL, NULL, NULL) ==
-                           BRIO_OK);
+                    trial_options o = options_of(kind, block_size);
+                    EXPECT(trial_order(ctx, &(brio_input){points, NULL, n}, &o, order, NULL, NULL, NULL) == BRIO_OK);
                     EXPECT(is_permutation(order, n), "order %d of %zu points %s", kind, n, name);
                 }
     EXPECT(brio_context_memory(ctx) == 0);
@@ -104,13 +104,13 @@ static void every_order_is_a_permutation(void) {
 static void number_of_threads_does_not_matter(void) {
     brio_context *ctx = new_context();
     for (int set = 0; set < 4; set++)
-        for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
+        for (int kind = 0; kind < TRIAL_ORDERS; kind++) {
             hard_points(set, MOST);
-            brio_delaunay_options o = options_of(kind, 0);
+            trial_options o = options_of(kind, 0);
             brio_context_set_threads(ctx, 1);
-            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
+            EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
             brio_context_set_threads(ctx, 3);
-            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
+            EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
             EXPECT(!memcmp(order, other, sizeof order), "order %d of set %d", kind, set);
         }
     brio_context_free(ctx);
@@ -121,13 +121,13 @@ static void powers_of_two_do_not_change_the_order(void) {
     static const int exponents[] = {-1074, -1030, -990, -500, 500, 1016};
     brio_context *ctx = new_context();
     for (size_t e = 0; e < sizeof exponents / sizeof *exponents; e++)
-        for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
-            brio_delaunay_options o = options_of(kind, 0);
+        for (int kind = 0; kind < TRIAL_ORDERS; kind++) {
+            trial_options o = options_of(kind, 0);
             integer_points(3, MOST, 100, points);
             for (size_t i = 0; i < 3 * MOST; i++) points[i] -= 50;
-            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
+            EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
             for (size_t i = 0; i < 3 * MOST; i++) points[i] = ldexp(points[i], exponents[e]);
-            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
+            EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
             EXPECT(!memcmp(order, other, sizeof order), "order %d, 2^%d", kind, exponents[e]);
         }
     brio_context_free(ctx);
@@ -136,14 +136,14 @@ static void powers_of_two_do_not_change_the_order(void) {
 static void seed_decides_every_random_choice(void) {
     brio_context *ctx = new_context();
     uniform_points(1, MOST, points);
-    for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
-        brio_delaunay_options o = options_of(kind, 0);
+    for (int kind = 0; kind < TRIAL_ORDERS; kind++) {
+        trial_options o = options_of(kind, 0);
         bool random = kind != BRIO_ORDER_HILBERT && kind != BRIO_ORDER_INPUT;
-        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
-        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
+        EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, NULL) == BRIO_OK);
+        EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
         EXPECT(!memcmp(order, other, sizeof order), "order %d", kind);
         o.seed++;
-        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
+        EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
         EXPECT((memcmp(order, other, sizeof order) != 0) == random, "order %d", kind);
     }
     brio_context_free(ctx);
@@ -151,9 +151,9 @@ static void seed_decides_every_random_choice(void) {
 
 static brio_status order_everything(brio_context *ctx) {
     brio_status status = BRIO_OK;
-    for (int kind = 0; kind < BRIO_ORDER_END && status == BRIO_OK; kind++) {
-        brio_delaunay_options o = options_of(kind, 10);
-        status = brio_order_points(ctx, &(brio_input){points, NULL, 1000}, &o, order, rank, NULL, NULL);
+    for (int kind = 0; kind < TRIAL_ORDERS && status == BRIO_OK; kind++) {
+        trial_options o = options_of(kind, 10);
+        status = trial_order(ctx, &(brio_input){points, NULL, 1000}, &o, order, rank, NULL, NULL);
     }
     return status;
 }
@@ -172,17 +172,17 @@ static void rounds_shrink_by_the_ratio(void) {
         int kind;
         double given, ratio;
     } rows[] = {{BRIO_ORDER_BRIO, 0, 0.125},
-                {BRIO_ORDER_BRIO_OCTREE, 0, 0.5},
-                {BRIO_ORDER_BRIO_KDTREE, 0, 0.5},
-                {BRIO_ORDER_BRIO_OCTREE, 0.3, 0.3},
+                {TRIAL_BRIO_OCTREE, 0, 0.5},
+                {TRIAL_BRIO_KDTREE, 0, 0.5},
+                {TRIAL_BRIO_OCTREE, 0.3, 0.3},
                 {BRIO_ORDER_BRIO, 0.7, 0.7}};
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
     for (size_t row = 0; row < sizeof rows / sizeof *rows; row++) {
-        brio_delaunay_options o = options_of(rows[row].kind, 0);
+        trial_options o = options_of(rows[row].kind, 0);
         brio_round_ends rounds;
         o.round_ratio = rows[row].given;
-        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
+        EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
         EXPECT(rounds.count > 1 && rounds.end[rounds.count - 1] == MOST);
         EXPECT(MOST * pow(rows[row].ratio, rounds.count) < 1 && MOST * pow(rows[row].ratio, rounds.count - 1) >= 1);
         for (int r = rounds.count - 1; r > 0; r--) {
@@ -199,12 +199,12 @@ static void round_follows_from_the_index(void) {
     brio_round_ends rounds;
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
-    for (int kind = BRIO_ORDER_BRIO_OCTREE; kind <= BRIO_ORDER_BRIO_KDTREE; kind++) {
-        brio_delaunay_options o = options_of(kind, 0);
-        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
+    for (int kind = TRIAL_BRIO_OCTREE; kind <= TRIAL_BRIO_KDTREE; kind++) {
+        trial_options o = options_of(kind, 0);
+        EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
         for (size_t i = 0, r = 0; i < MOST; i++) {
             while (i >= rounds.end[r]) r++;
-            EXPECT(kind == BRIO_ORDER_BRIO_OCTREE || round_of[order[i]] == r);
+            EXPECT(kind == TRIAL_BRIO_OCTREE || round_of[order[i]] == r);
             round_of[order[i]] = (uint8_t)r;
         }
     }
@@ -214,11 +214,11 @@ static void round_follows_from_the_index(void) {
 static void ranks_rise_inside_rounds(void) {
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
-    for (int kind = 0; kind < BRIO_ORDER_END; kind++) {
-        brio_delaunay_options o = options_of(kind, 500);
+    for (int kind = 0; kind < TRIAL_ORDERS; kind++) {
+        trial_options o = options_of(kind, 500);
         brio_round_ends rounds;
         if (!brio_order_has_ranks(o.order)) continue;
-        EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, rank, NULL, &rounds) == BRIO_OK);
+        EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, order, rank, NULL, &rounds) == BRIO_OK);
         EXPECT(is_permutation(rank, MOST));
         for (int r = 0; r < rounds.count; r++)
             for (size_t i = (r ? rounds.end[r - 1] : 0) + 1; i < rounds.end[r]; i++) EXPECT(rank[i] > rank[i - 1]);
@@ -228,9 +228,9 @@ static void ranks_rise_inside_rounds(void) {
 
 /* Which round each place along the curve has in the sequence by these weights, or in the order without weights. */
 static void rounds_along_the_curve(brio_context *ctx, const double *weights, uint8_t *round, brio_round_ends *rounds) {
-    brio_delaunay_options o = options_of(BRIO_ORDER_BRIO, 0);
+    trial_options o = options_of(BRIO_ORDER_BRIO, 0);
     brio_input input = {points, weights, MOST};
-    EXPECT(brio_order_points(ctx, &input, &o, order, rank, weights ? spare : NULL, rounds) == BRIO_OK);
+    EXPECT(trial_order(ctx, &input, &o, order, rank, weights ? spare : NULL, rounds) == BRIO_OK);
     EXPECT(is_permutation(order, MOST) && is_permutation(rank, MOST) && (!weights || is_permutation(spare, MOST)));
     for (size_t i = 0, r = 0; i < MOST; i++) {
         while (i >= rounds->end[r]) r++;
@@ -244,12 +244,12 @@ static void rounds_along_the_curve(brio_context *ctx, const double *weights, uin
 static void weights_change_the_sequence_and_not_the_order(void) {
     static double weights[MOST];
     brio_context *ctx = new_context();
-    brio_delaunay_options o = options_of(BRIO_ORDER_BRIO, 0);
+    trial_options o = options_of(BRIO_ORDER_BRIO, 0);
     brio_round_ends rounds;
     uniform_points(3, MOST, points);
     integer_weights(5, MOST, 1000, weights);
-    EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
-    EXPECT(brio_order_points(ctx, &(brio_input){points, weights, MOST}, &o, order, rank, spare, &rounds) == BRIO_OK);
+    EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, other, NULL, NULL, NULL) == BRIO_OK);
+    EXPECT(trial_order(ctx, &(brio_input){points, weights, MOST}, &o, order, rank, spare, &rounds) == BRIO_OK);
     EXPECT(memcmp(order, other, sizeof order) == 0);
     for (int r = 0; r < rounds.count; r++)
         for (size_t i = (r ? rounds.end[r - 1] : 0) + 1; i < rounds.end[r]; i++)
@@ -295,10 +295,10 @@ static void rounds_follow_the_curve(void) {
     brio_context *ctx = new_context();
     uniform_points(3, MOST, points);
     brio_hilbert_keys(ctx, points, MOST, 7, key); /* coarser than the order's own curve */
-    brio_delaunay_options o = options_of(BRIO_ORDER_BRIO, 0);
+    trial_options o = options_of(BRIO_ORDER_BRIO, 0);
     o.round_ratio = 0.5;
     brio_round_ends rounds;
-    EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
+    EXPECT(trial_order(ctx, &(brio_input){points, NULL, MOST}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
     for (int r = 1; r < rounds.count; r++)
         for (size_t i = rounds.end[r - 1] + 1; i < rounds.end[r]; i++) EXPECT(key[order[i - 1]] <= key[order[i]]);
     EXPECT(rounds.end[rounds.count - 2] > 0.48 * MOST && rounds.end[rounds.count - 2] < 0.52 * MOST);
@@ -449,18 +449,18 @@ static void kdtree_cells_are_halved_by_planes(void) {
 static void rounds_visit_blocks_in_turn(void) {
     enum { N = 30000, BLOCK = 300 };
     static uint32_t block_of[N];
-    const int kinds[] = {BRIO_ORDER_OCTREE, BRIO_ORDER_BRIO_OCTREE, BRIO_ORDER_BRIO_KDTREE};
+    const int kinds[] = {TRIAL_OCTREE, TRIAL_BRIO_OCTREE, TRIAL_BRIO_KDTREE};
     brio_context *ctx = new_context();
     for (int set = 0; set < 4; set += 3)
         for (int i = 0; i < 3; i++) {
             brio_round_ends rounds;
-            brio_delaunay_options o = options_of(kinds[i], BLOCK);
+            trial_options o = options_of(kinds[i], BLOCK);
             size_t rises = 0, pairs = 0;
             hard_points(set, N);
-            make_blocks(kinds[i] != BRIO_ORDER_BRIO_KDTREE, N, BLOCK);
+            make_blocks(kinds[i] != TRIAL_BRIO_KDTREE, N, BLOCK);
             for (size_t b = 0; b < N; b = blocks[b].end)
                 for (size_t j = b; j < blocks[b].end; j++) block_of[index_of[j]] = (uint32_t)b;
-            EXPECT(brio_order_points(ctx, &(brio_input){points, NULL, N}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
+            EXPECT(trial_order(ctx, &(brio_input){points, NULL, N}, &o, order, NULL, NULL, &rounds) == BRIO_OK);
             for (int r = 0; r < rounds.count; r++)
                 for (size_t j = (r ? rounds.end[r - 1] : 0) + 1; j < rounds.end[r]; j++) {
                     uint32_t before = block_of[order[j - 1]], now = block_of[order[j]];

@@ -11,6 +11,7 @@
 #include "harness.h"
 #include "points.h"
 #include "surface_calls.h"
+#include "trial.h"
 
 enum { MOST = 60000 };
 
@@ -107,7 +108,6 @@ static brio_surface_options surface_options(int bits) {
     o.poles.sharp = (bits & SHARP) != 0;
     o.open = bits & OPEN ? 3 : 0;
     o.noise = bits & KEPT ? BRIO_NOISE_KEEP : bits & SMOOTHED ? BRIO_NOISE_SMOOTH : BRIO_NOISE_AUTO;
-    o.poles.labeling = (brio_labeling)(bits / LABELING);
     return o;
 }
 
@@ -142,8 +142,11 @@ static void run_crust(brio_context *ctx, const input *in, int bits, outcome *out
     brio_surface_stats stats = {0};
     brio_mesh *mesh = NULL, *box = bits & SOLID ? box_mesh(ctx, in) : NULL;
     double *normals = bits & NORMALS ? calloc(3 * in->n, sizeof *normals) : NULL;
+    brio_laboratory *lab;
+    EXPECT(trial_labeling(ctx, bits / LABELING, &o.poles, &lab) == BRIO_OK);
     o.poles.solid = box;
     out->status = make_crust(ctx, in->points, in->n, &o, &mesh, normals, &stats);
+    brio_laboratory_free(lab);
     if (mesh) add_mesh(mesh, out);
     if (mesh && normals) add_normals(in, normals, out);
     out->stats = hash_crust_stats(stats);
@@ -207,8 +210,8 @@ static void run_cocone(brio_context *ctx, const input *in, int bits, outcome *ou
 static const method methods[] = {
     {"crust, global", run_crust, KEPT},
     {"crust, greedy", run_crust, KEPT | BRIO_LABELING_GREEDY *LABELING},
-    {"crust, naive", run_crust, KEPT | BRIO_LABELING_NAIVE *LABELING},
-    {"crust, theoretical", run_crust, KEPT | BRIO_LABELING_THEORETICAL *LABELING},
+    {"crust, naive", run_crust, KEPT | TRIAL_NAIVE *LABELING},
+    {"crust, theoretical", run_crust, KEPT | TRIAL_THEORETICAL *LABELING},
     {"crust, noise found", run_crust, TRIANGLES},
     {"crust, smoothed", run_crust, SMOOTHED | NORMALS},
     {"crust, simpler", run_crust, KEPT | SIMPLER},

@@ -1,11 +1,12 @@
 /* Page touches: distances against a stack, counts that depend on the sequence of insertions alone, and the locality of each
  * order on each kind of points. */
 #include "brio/testdata.h"
-#include "triangulation/page_touches.h"
+#include "laboratory/location/page_touches.h"
 #include "failing_allocator.h"
 #include "harness.h"
 #include "instruction_sets.h"
 #include "points.h"
+#include "trial.h"
 
 enum { N = 4000, PAGE = 256, SETS = 7, ORDERS = 5 };
 
@@ -85,7 +86,7 @@ static void distances_are_places_in_the_stack(void) {
     size_t caches = brio_page_touches_faults(t, faults);
     EXPECT(caches > 8 && faults[caches - 1] == s.count);
     for (size_t k = 0; k < caches; k++) EXPECT(faults[k] == expected[k], "cache of 2^%zu pages", k);
-    brio_delaunay_stats stats;
+    brio_laboratory_stats stats;
     brio_page_touches_total(t, &stats);
     EXPECT(stats.pages == s.count && stats.page_touches == TOUCHES && stats.page_faults == in_cache);
     brio_page_touches_free(t);
@@ -96,30 +97,32 @@ static void distances_are_places_in_the_stack(void) {
 /* --- insertions --- */
 
 typedef struct {
-    brio_delaunay_stats stats;
+    brio_laboratory_stats stats;
     uint64_t fault[BRIO_TOUCH_CACHES], checksum;
     size_t caches;
 } result;
 
-static brio_delaunay_options counted(int order, int locate) {
-    brio_delaunay_options o = {0};
-    o.order = (brio_order)order;
+static trial_options counted(int order, int locate) {
+    trial_options o = {0};
+    o.order = order;
     o.locate = (brio_location)locate;
     o.block_size = 100;
     o.page_bytes = PAGE;
     return o;
 }
 
-static result run(int threads, const brio_delaunay_options *o) {
+static result run(int threads, const trial_options *o) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
+    brio_laboratory *lab;
     result r = {0};
     brio_context_set_threads(ctx, threads);
-    EXPECT(brio_delaunay(ctx, points, NULL, N, o, &t) == BRIO_OK, "%s", brio_message(ctx));
-    r.stats = *brio_triangulation_stats(t);
-    const uint64_t *faults = brio_triangulation_cache_faults(t, &r.caches);
+    EXPECT(trial_delaunay(ctx, points, NULL, N, o, &t, &lab) == BRIO_OK, "%s", brio_message(ctx));
+    r.stats = *brio_laboratory_results(lab);
+    const uint64_t *faults = brio_laboratory_cache_faults(lab, &r.caches);
     if (faults) memcpy(r.fault, faults, r.caches * sizeof *faults);
     EXPECT(brio_triangulation_checksum(ctx, t, points, &r.checksum) == BRIO_OK);
+    brio_laboratory_free(lab);
     brio_triangulation_free(t);
     brio_context_free(ctx);
     return r;
@@ -127,7 +130,7 @@ static result run(int threads, const brio_delaunay_options *o) {
 
 static void nothing_is_counted_unless_asked_for(void) {
     make_set(0);
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     result r = run(1, &o);
     EXPECT(r.caches == 0 && r.stats.pages == 0 && r.stats.page_touches == 0 && r.stats.page_faults == 0);
 }
@@ -135,10 +138,10 @@ static void nothing_is_counted_unless_asked_for(void) {
 /* Every strategy; any number of threads and any instructions; and the triangulation is the same. */
 static void counts_depend_on_the_sequence_alone(void) {
     make_set(0);
-    brio_delaunay_options plain = {0};
+    trial_options plain = {0};
     uint64_t checksum = run(1, &plain).checksum;
     for (int locate = 0; locate < BRIO_LOCATION_TRACE; locate++) {
-        brio_delaunay_options o = counted(BRIO_ORDER_BRIO_OCTREE, locate);
+        trial_options o = counted(TRIAL_BRIO_OCTREE, locate);
         result first = run(1, &o);
         EXPECT(first.checksum == checksum && first.stats.pages > (size_t)N * 32 * 7 / PAGE);
         EXPECT(first.fault[first.caches - 1] == first.stats.pages);
@@ -160,17 +163,19 @@ static void entries_end_with_the_totals(void) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
     size_t count;
-    brio_delaunay_options o = counted(BRIO_ORDER_BRIO_OCTREE, BRIO_LOCATION_WALK);
+    trial_options o = counted(TRIAL_BRIO_OCTREE, BRIO_LOCATION_WALK);
     o.record_every = BRIO_RECORD_ROUNDS;
     o.cache_bytes = 100 * PAGE;
-    EXPECT(brio_delaunay(ctx, points, NULL, N, &o, &t) == BRIO_OK);
-    const brio_round *r = brio_triangulation_rounds(t, &count);
-    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    brio_laboratory *lab;
+    EXPECT(trial_delaunay(ctx, points, NULL, N, &o, &t, &lab) == BRIO_OK);
+    const brio_round *r = brio_laboratory_rounds(lab, &count);
+    const brio_laboratory_stats *s = brio_laboratory_results(lab);
     for (size_t i = 1; i < count; i++)
         EXPECT(r[i].pages >= r[i - 1].pages && r[i].page_faults - r[i - 1].page_faults >= r[i].pages - r[i - 1].pages &&
                r[i].page_touches > r[i - 1].page_touches);
     EXPECT(r[count - 1].pages == s->pages && r[count - 1].page_touches == s->page_touches &&
            r[count - 1].page_faults == s->page_faults && s->page_faults > s->pages);
+    brio_laboratory_free(lab);
     brio_triangulation_free(t);
     brio_context_free(ctx);
 }
@@ -178,15 +183,15 @@ static void entries_end_with_the_totals(void) {
 static void wrong_pages_are_refused(void) {
     brio_context *ctx = new_context();
     brio_triangulation *t;
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     const uint64_t sizes[] = {1, 32, 100, 4095};
     for (int i = 0; i < 4; i++) {
         o.page_bytes = sizes[i];
-        EXPECT(brio_delaunay(ctx, points, NULL, 10, &o, &t) == BRIO_ERR_ARGUMENT &&
+        EXPECT(trial_delaunay(ctx, points, NULL, 10, &o, &t, NULL) == BRIO_ERR_ARGUMENT &&
                strstr(brio_message(ctx), "power of two"));
     }
     o.page_bytes = 0, o.cache_bytes = 4096;
-    EXPECT(brio_delaunay(ctx, points, NULL, 10, &o, &t) == BRIO_ERR_ARGUMENT &&
+    EXPECT(trial_delaunay(ctx, points, NULL, 10, &o, &t, NULL) == BRIO_ERR_ARGUMENT &&
            strstr(brio_message(ctx), "without a size"));
     brio_context_free(ctx);
 }
@@ -206,9 +211,9 @@ static const struct {
 } local[ORDERS] = {
     {BRIO_ORDER_BRIO, BRIO_LOCATION_WALK, {4.4, 4.2, 2.1, 12, 3.5, 3, 3.5}},
     {BRIO_ORDER_HILBERT, BRIO_LOCATION_WALK, {4.7, 4, 1.9, 10, 3.4, 4.7, 8.2}},
-    {BRIO_ORDER_OCTREE, BRIO_LOCATION_WALK, {8.3, 5.9, 2.4, 14, 4.3, 6.8, 11}},
-    {BRIO_ORDER_BRIO_OCTREE, BRIO_LOCATION_WALK, {11, 10, 4.9, 26, 7.6, 6.4, 7}},
-    {BRIO_ORDER_BRIO_KDTREE, BRIO_LOCATION_WALK, {11, 10, 4.8, 30, 7.5, 7.1, 7.4}},
+    {TRIAL_OCTREE, BRIO_LOCATION_WALK, {8.3, 5.9, 2.4, 14, 4.3, 6.8, 11}},
+    {TRIAL_BRIO_OCTREE, BRIO_LOCATION_WALK, {11, 10, 4.9, 26, 7.6, 6.4, 7}},
+    {TRIAL_BRIO_KDTREE, BRIO_LOCATION_WALK, {11, 10, 4.8, 30, 7.5, 7.1, 7.4}},
 };
 
 /* Random order faults tens of times a point in a cache of an eighth of the pages, the other orders a few times. The counts are
@@ -217,12 +222,12 @@ static void orders_keep_their_locality(void) {
     for (int set = 0; set < SETS; set++) {
         if (SHORT_TESTS && (set == 1 || set == 3)) continue;
         make_set(set);
-        brio_delaunay_options random = counted(BRIO_ORDER_RANDOM, BRIO_LOCATION_HIERARCHY);
+        trial_options random = counted(BRIO_ORDER_RANDOM, BRIO_LOCATION_HIERARCHY);
         result r = run(1, &random);
         double thrashing = faults_a_point(&r);
         EXPECT(thrashing > 30, "%s, random order: %g faults a point", set_name[set], thrashing);
         for (int i = 0; i < ORDERS; i++) {
-            brio_delaunay_options o = counted(local[i].order, local[i].locate);
+            trial_options o = counted(local[i].order, local[i].locate);
             r = run(1, &o);
             double faults = faults_a_point(&r);
             EXPECT(faults < local[i].most[set] && faults < thrashing / 3,
@@ -232,9 +237,9 @@ static void orders_keep_their_locality(void) {
 }
 
 static brio_status count_everything(brio_context *ctx) {
-    brio_delaunay_options o = counted(BRIO_ORDER_RANDOM, BRIO_LOCATION_HISTORY);
+    trial_options o = counted(BRIO_ORDER_RANDOM, BRIO_LOCATION_HISTORY);
     brio_triangulation *t;
-    brio_status status = brio_delaunay(ctx, points, NULL, 300, &o, &t);
+    brio_status status = trial_delaunay(ctx, points, NULL, 300, &o, &t, NULL);
     brio_triangulation_free(t);
     return status;
 }

@@ -2,6 +2,7 @@
 #include "harness.h"
 #include "points.h"
 #include "surface_calls.h"
+#include "trial.h"
 #include <string.h>
 #include <unistd.h>
 
@@ -70,8 +71,12 @@ static void expect_same(const result *a, const result *b, int threads) {
     EXPECT(a->file_size == b->file_size && !memcmp(a->file, b->file, (size_t)a->file_size), "%d threads", threads);
 }
 
-static void expect_one_answer(size_t n, const brio_surface_options *o) {
+static void expect_one_answer_with(size_t n, const brio_surface_options *options, int labeling) {
     brio_context *ctx = new_context();
+    brio_surface_options usual = CRUST_OPTIONS, *o = &usual;
+    brio_laboratory *lab;
+    if (options) usual = *options;
+    EXPECT(trial_labeling(ctx, labeling, &o->poles, &lab) == BRIO_OK);
     result one, many;
     run(ctx, n, o, 1, &one);
     for (int threads = SHORT_TESTS ? 3 : 2; threads <= MOST_THREADS; threads += threads < 3 ? 1 : 5) {
@@ -80,8 +85,13 @@ static void expect_one_answer(size_t n, const brio_surface_options *o) {
         result_free(&many);
     }
     result_free(&one);
+    brio_laboratory_free(lab);
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
+}
+
+static void expect_one_answer(size_t n, const brio_surface_options *o) {
+    expect_one_answer_with(n, o, BRIO_LABELING_GLOBAL);
 }
 
 static void every_number_of_threads_gives_the_same_surface(void) {
@@ -107,11 +117,7 @@ static void sphere_is_the_same_by_threads(void) {
 
 static void every_labeling_is_the_same_by_threads(void) {
     clustered_points(5, 700, points);
-    for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
-        brio_surface_options o = CRUST_OPTIONS;
-        o.poles.labeling = (brio_labeling)labeling;
-        expect_one_answer(700, &o);
-    }
+    for (int labeling = 0; labeling < TRIAL_LABELINGS; labeling++) expect_one_answer_with(700, NULL, labeling);
 }
 
 SUITE(test_parallel_surface) {

@@ -8,6 +8,7 @@
 #include "reconstruct/power_crust/labeled_poles.h"
 #include "reconstruct/labels/pole_queue.h"
 #include "reconstruct/labels/roof_duality.h"
+#include "trial.h"
 
 /* --- graph --- */
 
@@ -77,11 +78,12 @@ static void edges_are_those_of_the_triangulation_and_the_samples(void) {
     brio_surface_options o = CRUST_OPTIONS;
     size_t doubted = 0;
     for (int shape = 0; shape < 4; shape++)
-        for (int labeling = 0; labeling < BRIO_LABELING_END; labeling++) {
+        for (int labeling = 0; labeling < TRIAL_LABELINGS; labeling++) {
             brio_context *ctx = new_context();
             brio_pole_request request;
             brio_labeled_poles l;
-            o.poles.labeling = (brio_labeling)labeling;
+            brio_laboratory *lab;
+            EXPECT(trial_labeling(ctx, labeling, &o.poles, &lab) == BRIO_OK);
             if (shape == 0) uniform_points(1, SAMPLES, p);
             if (shape == 1) clustered_points(2, SAMPLES, p);
             if (shape == 2) sphere_points(3, SAMPLES, p);
@@ -89,9 +91,10 @@ static void edges_are_those_of_the_triangulation_and_the_samples(void) {
             EXPECT(brio_pole_request_of(ctx, &o.poles, o.noise, o.seed, &request) == BRIO_OK);
             EXPECT(brio_labeled_poles_find(ctx, p, SAMPLES, &request, &l) == BRIO_OK, "%s", brio_message(ctx));
             bool balanced = labeling == BRIO_LABELING_GLOBAL;
-            check_neighbours(&l.graph, labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0, balanced);
+            check_neighbours(&l.graph, labeling == TRIAL_THEORETICAL ? BRIO_DEEP_WEIGHT : 0, balanced);
             check_opposite(&l.graph, balanced, &doubted);
             brio_labeled_poles_free(&l);
+            brio_laboratory_free(lab);
             EXPECT(brio_context_memory(ctx) == 0);
             brio_context_free(ctx);
         }

@@ -7,6 +7,7 @@
 #include "harness.h"
 #include "surface_calls.h"
 #include "surfaces.h"
+#include "trial.h"
 #include <float.h>
 
 static brio_context *ctx;
@@ -25,20 +26,21 @@ static int look(const char *stage, double fraction, void *user) {
 }
 
 static uint64_t work_of(const brio_delaunay_stats *s) {
-    return s->created + s->insphere_calls + s->walk_steps + s->history_tests + s->trace_intersections +
-           64 * s->exact_calls;
+    return s->created + s->insphere_calls + s->walk_steps + 64 * s->exact_calls;
 }
 
-static brio_delaunay_stats triangulate(const double *p, size_t n, brio_location locate, watch *w) {
-    brio_delaunay_options options = {0};
+static brio_delaunay_stats triangulate(const double *p, size_t n, brio_location locate, watch *w, uint64_t *searched) {
+    trial_options options = {0};
+    brio_laboratory *lab;
     brio_triangulation *t = NULL;
     brio_delaunay_stats stats = {0};
     options.locate = locate;
     options.order = BRIO_ORDER_INPUT;
     brio_context_set_progress(ctx, look, w);
-    EXPECT(brio_delaunay(ctx, p, NULL, n, &options, &t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(trial_delaunay(ctx, p, NULL, n, &options, &t, &lab) == BRIO_OK, "%s", brio_message(ctx));
     brio_context_set_progress(ctx, NULL, NULL);
-    if (t) stats = *brio_triangulation_stats(t);
+    if (t) stats = *brio_triangulation_stats(t), *searched = brio_laboratory_results(lab)->history_tests;
+    brio_laboratory_free(lab);
     brio_triangulation_free(t);
     return stats;
 }
@@ -53,8 +55,9 @@ static void few_points_of_much_work_are_reported(void) {
                                   BRIO_LOCATION_HISTORY};
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         watch w = {.allowed = SIZE_MAX, .from = 0};
-        brio_delaunay_stats stats = triangulate(p, N, ways[i], &w);
-        uint64_t due = work_of(&stats) / (2 * BRIO_INSERT_WORK);
+        uint64_t searched = 0;
+        brio_delaunay_stats stats = triangulate(p, N, ways[i], &w, &searched);
+        uint64_t due = (work_of(&stats) + searched) / (2 * BRIO_INSERT_WORK);
         EXPECT(due > 3 && w.late >= due, "%zu reports of %llu", w.late, (unsigned long long)due);
     }
     free(p);
@@ -96,7 +99,8 @@ static void one_insertion_of_a_huge_star_is_reported(void) {
         for (int c = 0; c < 3; c++) q[c] = i + 1 < N ? 0.5 + (q[c] - 0.5) / sqrt(length) : 0.5;
     }
     watch w = {.allowed = SIZE_MAX, .from = (N - 1.0) / N};
-    triangulate(p, N, BRIO_LOCATION_JUMP, &w);
+    uint64_t searched;
+    triangulate(p, N, BRIO_LOCATION_JUMP, &w, &searched);
     size_t inside = w.late - 2; /* without the one before, and that of the end */
     EXPECT(inside >= 2 && inside < N, "%zu reports", inside);
     free(p);
@@ -258,9 +262,9 @@ static brio_status triangulation(void) {
 }
 static brio_status triangulation_by_history(void) {
     brio_triangulation *t = NULL;
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     o.locate = BRIO_LOCATION_HISTORY;
-    brio_status status = brio_delaunay(ctx, scan->vertices, NULL, scan->num_vertices, &o, &t);
+    brio_status status = trial_delaunay(ctx, scan->vertices, NULL, scan->num_vertices, &o, &t, NULL);
     brio_triangulation_free(t);
     return status;
 }

@@ -12,7 +12,7 @@ static const double position[3 * POINTS] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 
 /* An insertion as threads may leave it: record 1 was deferred, its twin 5 became the vertex, and 1 was absorbed by it. The
  * caller's lower index keeps the name. *unused is a slot without a tetrahedron, which may hold anything. */
 static brio_inserter *leave_insertion(brio_context *ctx, size_t *unused) {
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
     brio_inserter *ins = insertion_begin(ctx, position, NULL, POINTS, &o);
     brio_store *s = ins->store;
     insert_records(ins, 0, POINTS);

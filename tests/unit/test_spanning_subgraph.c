@@ -1,5 +1,5 @@
 /* Spanning subgraphs: every vertex reached, components connected, degrees bounded, work linear; spanning trees. */
-#include "mesh/spanning_subgraph.h"
+#include "laboratory/subgraph/spanning_subgraph.h"
 #include "failing_allocator.h"
 #include "random_surfaces.h"
 #include <string.h>

@@ -81,8 +81,7 @@ static void options_of_other_methods_are_refused(void) {
                  {{.poles.sharp = 1}, "poles.sharp", "BRIO_SURFACE_OFFSET"},
                  {{.theta = 0.3}, "theta", "BRIO_SURFACE_TIGHT_COCONE"},
                  {{.density = 1}, "density", "BRIO_SURFACE_COCONE"},
-                 {{.method = BRIO_SURFACE_TIGHT_COCONE, .pieces = 3}, "pieces", "BRIO_SURFACE_COCONE"},
-                 {{.method = BRIO_SURFACE_TIGHT_COCONE, .extraction = 1}, "extraction", "BRIO_SURFACE_COCONE"}};
+                 {{.method = BRIO_SURFACE_TIGHT_COCONE, .pieces = 3}, "pieces", "BRIO_SURFACE_COCONE"}};
     brio_context *ctx = new_context();
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         brio_mesh *mesh = NULL;
@@ -124,8 +123,7 @@ static void the_table_lists_the_options_that_are_taken(void) {
                 {{.theta = 0.4}, "theta"},
                 {{.boundaries = 1}, "boundaries"},
                 {{.density = 1}, "density"},
-                {{.pieces = 2}, "pieces"},
-                {{.extraction = BRIO_EXTRACTION_WALK}, "extraction"}};
+                {{.pieces = 2}, "pieces"}};
     for (int method = 0; method < BRIO_SURFACE_END; method++) {
         const char *options = brio_surface_method_facts((brio_surface_method)method)->options;
         size_t listed = *options != 0, known = 0;

@@ -1,5 +1,6 @@
 /* What users get of a surface: components dropped, normals of points, confidence, holes left open, fewer triangles, the
  * co-cone of the dissertation. */
+#include "brio/laboratory.h"
 #include "base/rng.h"
 #include "failing_allocator.h"
 #include "harness.h"
@@ -411,8 +412,10 @@ static brio_mesh *cocone_of(brio_context *ctx, const double *p, size_t n, brio_e
     brio_surface_options o = COCONE_OPTIONS;
     brio_mesh *mesh;
     *s = (brio_surface_stats){.size = sizeof *s};
-    o.extraction = extraction;
+    brio_laboratory *lab;
+    EXPECT(brio_laboratory_new(ctx, &(brio_laboratory_options){.extraction = extraction}, &lab) == BRIO_OK);
     brio_status status = make_cocone(ctx, p, n, &o, &mesh, s);
+    brio_laboratory_free(lab);
     EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_ANSWER, "%s", brio_message(ctx));
     return mesh;
 }
@@ -471,12 +474,20 @@ static void extractions_are_of_the_co_cone_in_one_piece(void) {
     brio_mesh *mesh;
     double p[3 * 30];
     sphere_points(1, 30, p);
-    o.extraction = BRIO_EXTRACTION_WALK, o.method = BRIO_SURFACE_TIGHT_COCONE;
+    brio_laboratory_options walk = {.extraction = BRIO_EXTRACTION_WALK};
+    brio_laboratory *lab, *second;
+    EXPECT(brio_laboratory_new(ctx, &walk, &lab) == BRIO_OK);
+    EXPECT(brio_laboratory_new(ctx, &walk, &second) == BRIO_ERR_ARGUMENT && !second);
+    o.method = BRIO_SURFACE_TIGHT_COCONE;
     EXPECT(make_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    o.method = 0, o.pieces = 3 ? BRIO_SURFACE_TIGHT_COCONE : BRIO_SURFACE_COCONE;
+    o.method = BRIO_SURFACE_COCONE, o.pieces = 3;
     EXPECT(make_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
-    o.pieces = 0, o.extraction = (brio_extraction)9;
-    EXPECT(make_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    o.pieces = 0;
+    EXPECT(make_cocone(ctx, p, 30, &o, &mesh, NULL) == BRIO_OK);
+    brio_mesh_free(mesh);
+    brio_laboratory_free(lab);
+    walk.extraction = (brio_extraction)9;
+    EXPECT(brio_laboratory_new(ctx, &walk, &lab) == BRIO_ERR_ARGUMENT && !lab);
     brio_context_free(ctx);
 }
 
@@ -500,10 +511,12 @@ static brio_status make_surface(brio_context *ctx) {
 static brio_status walk(brio_context *ctx) {
     static double p[3 * 200];
     brio_surface_options o = COCONE_OPTIONS;
-    brio_mesh *mesh;
-    o.extraction = BRIO_EXTRACTION_WALK;
+    brio_mesh *mesh = NULL;
+    brio_laboratory *lab;
     sphere_points(1, 200, p);
-    brio_status status = make_cocone(ctx, p, 200, &o, &mesh, NULL);
+    brio_status status = brio_laboratory_new(ctx, &(brio_laboratory_options){.extraction = BRIO_EXTRACTION_WALK}, &lab);
+    if (status == BRIO_OK) status = make_cocone(ctx, p, 200, &o, &mesh, NULL);
+    brio_laboratory_free(lab);
     brio_mesh_free(mesh);
     return status;
 }

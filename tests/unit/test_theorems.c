@@ -4,6 +4,7 @@
 #include "surface_calls.h"
 #include "order/order.h"
 #include "query/nearest_points.h"
+#include "trial.h"
 #include <string.h>
 
 static const double PI = 3.141592653589793;
@@ -62,20 +63,20 @@ enum { FEW = 256, SEEDS = 3000, TRIGGERS = 4, FIRST_STOPPER = 16 };
 
 static double few[3 * FEW];
 
-static void order_few(brio_context *ctx, brio_order order, double ratio, uint64_t seed, uint32_t *to) {
-    brio_delaunay_options o = {0};
+static void order_few(brio_context *ctx, int order, double ratio, uint64_t seed, uint32_t *to) {
+    trial_options o = {0};
     brio_input input = {few, NULL, FEW};
     o.order = order, o.seed = seed, o.block_size = 4, o.round_ratio = ratio;
-    EXPECT(brio_order_points(ctx, &input, &o, to, NULL, NULL, NULL) == BRIO_OK);
+    EXPECT(trial_order(ctx, &input, &o, to, NULL, NULL, NULL) == BRIO_OK);
 }
 
 /* In what share of the orders all triggers come before all s stoppers: so often a tetrahedron with these appears. The
  * triggers lead the path through space, which is the worst for the bound. */
-static double share_that_appear(brio_order order, double ratio, uint32_t s) {
+static double share_that_appear(int order, double ratio, uint32_t s) {
     brio_context *ctx = new_context();
     uint32_t path[FEW], at[FEW], place[FEW];
     int appear = 0;
-    order_few(ctx, BRIO_ORDER_OCTREE, 0, 1, path);
+    order_few(ctx, TRIAL_OCTREE, 0, 1, path);
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         order_few(ctx, order, ratio, seed, at);
         for (uint32_t i = 0; i < FEW; i++) place[at[i]] = i;
@@ -102,9 +103,9 @@ static void lemma_16_appearance_falls_with_the_fourth_power(void) {
     uniform_points(9, FEW, few);
     for (uint32_t s = 4; s <= 16; s *= 2) {
         double noise = 3 / sqrt((double)SEEDS), bound = share_at_random(s);
-        double half = share_that_appear(BRIO_ORDER_BRIO_OCTREE, 0.5, s);
-        double eighth = share_that_appear(BRIO_ORDER_BRIO_OCTREE, 0.125, s);
-        double one = share_that_appear(BRIO_ORDER_OCTREE, 0, s), random = share_that_appear(BRIO_ORDER_RANDOM, 0, s);
+        double half = share_that_appear(TRIAL_BRIO_OCTREE, 0.5, s);
+        double eighth = share_that_appear(TRIAL_BRIO_OCTREE, 0.125, s);
+        double one = share_that_appear(TRIAL_OCTREE, 0, s), random = share_that_appear(BRIO_ORDER_RANDOM, 0, s);
         EXPECT(fabs(random - bound) <= noise * sqrt(bound) + 1e-3, "%u stoppers: %g at random, %g", s, random, bound);
         EXPECT(half > random && half <= 16 * bound + noise * sqrt(16 * bound), "%u stoppers: %g of %g", s, half,
                16 * bound);
@@ -149,16 +150,18 @@ static void lemma_17_few_tetrahedra_have_few_stoppers(void) {
     EXPECT(most[0] > 7 * 36, "%g tetrahedra on the curve", most[0]);
 }
 
-static double conflicts_a_point(size_t n, brio_order order, bool sorted) {
+static double conflicts_a_point(size_t n, int order, bool sorted) {
     brio_context *ctx = new_context();
     brio_triangulation *t = NULL;
-    brio_delaunay_options o = {0};
+    trial_options o = {0};
+    brio_laboratory *lab;
     double *p = malloc(3 * n * sizeof *p);
     uniform_points(1, n, p);
     for (size_t i = 0; i < n && sorted; i++) p[3 * i] = (double)i;
     o.order = order, o.locate = BRIO_LOCATION_HISTORY, o.all_conflicts = 1, o.block_size = 200;
-    EXPECT(brio_delaunay(ctx, p, NULL, n, &o, &t) == BRIO_OK);
-    double conflicts = (double)brio_triangulation_stats(t)->history_conflicts / (double)n;
+    EXPECT(trial_delaunay(ctx, p, NULL, n, &o, &t, &lab) == BRIO_OK);
+    double conflicts = (double)brio_laboratory_results(lab)->history_conflicts / (double)n;
+    brio_laboratory_free(lab);
     brio_triangulation_free(t);
     brio_context_free(ctx);
     free(p);
@@ -170,7 +173,7 @@ static void theorem_18_conflicts_grow_as_n_log_n(void) {
     double brio[3], random[3];
     for (int i = 0; i < 3; i++) {
         size_t n = (size_t)(SHORT_TESTS ? 250 : 500) << (2 * i);
-        brio[i] = conflicts_a_point(n, BRIO_ORDER_BRIO_OCTREE, false);
+        brio[i] = conflicts_a_point(n, TRIAL_BRIO_OCTREE, false);
         random[i] = conflicts_a_point(n, BRIO_ORDER_RANDOM, false);
         EXPECT(brio[i] < 1.5 * random[i] && brio[i] > 0.7 * random[i], "%g, %g in random order", brio[i], random[i]);
     }
@@ -280,8 +283,11 @@ static void lemma_31_candidates_leave_the_normals_of_samples_free(void) {
     brio_mesh *mesh;
     size_t n, tried = 0, met = 0, beyond = 0;
     double *points = known_torus.sample(0.08, 1, &n);
-    o.extraction = BRIO_EXTRACTION_CANDIDATES;
+    brio_laboratory *lab;
+    EXPECT(brio_laboratory_new(ctx, &(brio_laboratory_options){.extraction = BRIO_EXTRACTION_CANDIDATES}, &lab) ==
+           BRIO_OK);
     EXPECT(make_cocone(ctx, points, n, &o, &mesh, NULL) == BRIO_OK);
+    brio_laboratory_free(lab);
     for (size_t s = 0; s < n; s += 601, tried++) {
         const double *p = points + 3 * s;
         double normal[3], centre[3], through[3];

@@ -3,6 +3,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
+#include "trial.h"
 #include <math.h>
 
 enum { MOST = 4096 };
@@ -119,11 +120,10 @@ static void small_grids_match_brute_force(void) {
 
 /* --- what must not matter --- */
 
-static uint64_t checksum_of(brio_context *ctx, const double *p, const double *w, size_t n,
-                            const brio_delaunay_options *o) {
+static uint64_t checksum_of(brio_context *ctx, const double *p, const double *w, size_t n, const trial_options *o) {
     brio_triangulation *t;
     uint64_t sum = 0;
-    EXPECT(brio_delaunay(ctx, p, w, n, o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(trial_delaunay(ctx, p, w, n, o, &t, NULL) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_triangulation_checksum(ctx, t, p, &sum) == BRIO_OK);
     brio_triangulation_free(t);
     return sum;
@@ -134,9 +134,9 @@ static void expect_one_answer(const double *p, const double *w, size_t n) {
     static size_t to[MOST];
     brio_context *ctx = new_context();
     uint64_t sum = checksum_of(ctx, p, w, n, NULL);
-    for (int order = 0; order < BRIO_ORDER_END; order++) {
-        brio_delaunay_options o = {0};
-        o.order = (brio_order)order;
+    for (int order = 0; order < TRIAL_ORDERS; order++) {
+        trial_options o = {0};
+        o.order = order;
         o.block_size = 64; /* many blocks, also of few points */
         o.seed = 5;
         EXPECT(checksum_of(ctx, p, w, n, &o) == sum, "order %d", order);

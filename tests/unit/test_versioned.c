@@ -170,13 +170,13 @@ static void results_that_cannot_be_freed_are_refused(void) {
 /* A field that is appended begins at the old size: no struct ends with padding, which would pass for the new field. */
 #define ENDS_WITH(type, last)                                                                                          \
     _Static_assert(offsetof(type, last) + sizeof(((type *)0)->last) == sizeof(type), #type " ends with padding")
-ENDS_WITH(brio_delaunay_options, cache_bytes);
-ENDS_WITH(brio_delaunay_stats, page_faults);
+ENDS_WITH(brio_delaunay_options, reserved_int);
+ENDS_WITH(brio_delaunay_stats, insert_seconds);
 ENDS_WITH(brio_certificate, volume);
 ENDS_WITH(brio_distance, diagonal);
 ENDS_WITH(brio_pole_options, reserved);
 ENDS_WITH(brio_pole_stats, reserved);
-ENDS_WITH(brio_surface_options, reserved_int);
+ENDS_WITH(brio_surface_options, pieces);
 ENDS_WITH(brio_surface_stats, rounding);
 ENDS_WITH(brio_power_shape_options, scale_axis);
 ENDS_WITH(brio_power_shape_stats, shape_seconds);
@@ -198,8 +198,8 @@ ENDS_WITH(brio_ball_union_options, seed);
 ENDS_WITH(brio_ball_union_stats, mesh_seconds);
 ENDS_WITH(brio_voronoi_axis_options, seed);
 ENDS_WITH(brio_voronoi_axis_stats, label_seconds);
-ENDS_WITH(brio_delaunay2_options, block_size);
-ENDS_WITH(brio_convex_hull_options, block_size);
+ENDS_WITH(brio_delaunay2_options, reserved_int);
+ENDS_WITH(brio_convex_hull_options, seed);
 ENDS_WITH(brio_convex_hull_stats, exact_calls);
 ENDS_WITH(brio_curve_options, reserved_int);
 ENDS_WITH(brio_curve_stats, curve_seconds);

@@ -144,7 +144,7 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
         `labeling`, `triangulate`, `simplify`, `seed`.
         "cocone": triangles of the samples, maybe open; options `theta`, `boundaries`, `density`, `pieces`,
         `extraction`, `seed`. "tight-cocone": the same, closed.
-        The options are those of ``brio/surface.h``.
+        The options are those of ``brio/surface.h`` and, `extraction` and two values of `labeling`, ``brio/laboratory.h``.
     normals : array_like, shape (n, 3), or False, optional
         Normals of the samples, which point outwards; some may be wrong or 0. By default the properties nx, ny, nz of a
         Mesh, if it has them; False: none. Not for "power-crust", which takes none.

@@ -103,10 +103,8 @@ done:
 static brio_status check_options(brio_context *ctx, const brio_surface_options *o) {
     BRIO_EXPECT(ctx, o->theta > 0 && o->theta < 1.57, BRIO_ERR_ARGUMENT, "theta is %g, expected a number in (0, pi/2)",
                 o->theta);
-    BRIO_EXPECT(ctx, (unsigned)o->extraction < BRIO_EXTRACTION_END, BRIO_ERR_ARGUMENT, "no such extraction: %d",
-                (int)o->extraction);
-    BRIO_EXPECT(ctx, o->extraction == BRIO_EXTRACTION_LABELS || o->pieces <= 1, BRIO_ERR_ARGUMENT,
-                "candidates, pruned and walk are extractions of the co-cone in one piece");
+    BRIO_EXPECT(ctx, !BRIO_PART(ctx, extraction) || (o->method == BRIO_SURFACE_COCONE && o->pieces <= 1),
+                BRIO_ERR_ARGUMENT, "candidates, pruned and walk are extractions of the co-cone in one piece");
     BRIO_EXPECT(ctx, !o->evidence || o->pieces <= 1, BRIO_ERR_ARGUMENT, "evidence is for a co-cone in one piece");
     return BRIO_OK;
 }

@@ -16,7 +16,6 @@
 #include "reconstruct/cocone/boundary_samples.h"
 #include "reconstruct/cocone/cocone_prune.h"
 #include "reconstruct/cocone/flat_tetrahedra.h"
-#include "reconstruct/cocone/literal_extraction.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/cocone/sample_orientation.h"
 #include <string.h>
@@ -114,11 +113,10 @@ done:
     return status;
 }
 
-static brio_status extract_literally(reconstruction *r) {
+static brio_status extract_as(reconstruction *r, const struct brio_extraction_part *part) {
     brio_status status = BRIO_OK;
     brio_cocone_surface *out = r->out;
-    BRIO_TRY(brio_extract_literally(r->ctx, &r->cocones, r->options->extraction, &out->stats.pruned, &out->faces,
-                                    &out->num_faces));
+    BRIO_TRY(part->extract(part->user, r->ctx, &r->cocones, &out->stats.pruned, &out->faces, &out->num_faces));
     BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no triangle is left of %zu candidates",
                  out->stats.candidates);
     lap(r, &out->stats.manifold_seconds);
@@ -167,6 +165,7 @@ brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, si
                         .num_points = num_points,
                         .out = out,
                         .lap = brio_seconds()};
+    const struct brio_extraction_part *part = BRIO_PART(ctx, extraction);
     const brio_bar bar = brio_progress_bar(ctx);
     *out = (brio_cocone_surface){0};
     brio_progress_part(ctx, bar, 0, 0.5);
@@ -174,9 +173,9 @@ brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, si
     brio_progress_part(ctx, bar, 0.5, 0.65);
     BRIO_TRY(find_candidates(&r));
     brio_progress_part(ctx, bar, 0.65, 0.8);
-    if (options->extraction == BRIO_EXTRACTION_LABELS) BRIO_TRY(label(&r));
+    if (!part) BRIO_TRY(label(&r));
     brio_progress_part(ctx, bar, 0.8, 1);
-    BRIO_TRY(options->extraction == BRIO_EXTRACTION_LABELS ? extract(&r) : extract_literally(&r));
+    BRIO_TRY(part ? extract_as(&r, part) : extract(&r));
     BRIO_TRY(find_density(&r));
 done:
     brio_progress_part(ctx, bar, 0, 1);

@@ -2,6 +2,7 @@
 #ifndef BRIO_RECONSTRUCT_COCONE_SURFACE_H
 #define BRIO_RECONSTRUCT_COCONE_SURFACE_H
 
+#include "base/experiment.h"
 #include "reconstruct/cocone/sample_evidence.h"
 
 /** Triangles of samples, and what was found out about the samples. */
@@ -13,6 +14,15 @@ typedef struct {
     uint8_t *distinct; /* #P: 1 for samples that represent their position */
     brio_surface_stats stats;
 } brio_cocone_surface;
+
+/** An experiment's part: faces of the candidates without labels of tetrahedra, of the co-cone in one piece. */
+struct brio_extraction_part {
+    void *user;
+    /** cocones  loses the candidates that are pruned.   pruned  receives their number.
+     *  faces    *num_faces by 3, owned by the caller (brio_release), on failure too. */
+    brio_status (*extract)(void *user, brio_context *ctx, const brio_cocones *cocones, size_t *pruned, uint32_t **faces,
+                           size_t *num_faces);
+};
 
 /** Finds the co-cone or, as options.method says, the tight co-cone.
  *  points    #P by 3, coordinates of at most 1, none -0.

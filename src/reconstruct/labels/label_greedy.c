@@ -200,6 +200,12 @@ static brio_status nodes_new(labeller *l) {
     return BRIO_OK;
 }
 
+void brio_label_certain(const brio_pole_graph *g, uint8_t *certain) {
+    memcpy(certain, g->diagram->poles->bounding, g->diagram->poles->count);
+    for (size_t tet = g->diagram->num_finite; tet < g->diagram->power.count; tet++)
+        for (int i = 0; i < 3; i++) certain[g->diagram->power.tet[tet].vertex[i]] = 1;
+}
+
 brio_status brio_label_greedy(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
     brio_status status = BRIO_OK;
     labeller l = {.ctx = g->ctx, .g = g, .label = label, .queue = brio_pole_queue_new(g->ctx, CERTAIN)};
@@ -212,9 +218,4 @@ done:
     brio_pole_queue_free(&l.queue);
     brio_release(g->ctx, l.nodes);
     return status;
-}
-
-brio_status brio_label_finish(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats) {
-    for (size_t p = 0; p < g->diagram->poles->count; p++) stats->unreached += label[p] == BRIO_LABEL_NONE;
-    return stats->unreached ? brio_label_greedy(g, label, stats) : BRIO_OK;
 }

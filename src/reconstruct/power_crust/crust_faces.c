@@ -140,7 +140,7 @@ done:
 /* Returns whether the face between two poles spans a hole: both balls are large and intersect at more than pi / 4. In
  * dense samples an inner and an outer ball do not intersect that deeply [Choi 2003, lemma 38]. */
 static bool spans_hole(const builder *b, uint32_t p, uint32_t q) {
-    if (!(b->options->open > 0) || !(brio_ball_weight(b->d->poles, p, q) > BRIO_THEORETICAL_WEIGHT)) return false;
+    if (!(b->options->open > 0) || !(brio_ball_weight(b->d->poles, p, q) > BRIO_DEEP_WEIGHT)) return false;
     double limit = b->options->open * fmax(b->options->spacing[p], b->options->spacing[q]);
     return fmin(b->d->poles->square[p], b->d->poles->square[q]) > limit * limit;
 }

@@ -38,6 +38,7 @@ brio_status brio_pole_request_of(brio_context *ctx, const brio_pole_options *o, 
     *request = (brio_pole_request){.seed = seed,
                                    .filter = {.sampling_density = o->sampling_density, .both = o->sharp},
                                    .labeling = o->labeling,
+                                   .experiment = BRIO_PART(ctx, labels),
                                    .noise = noise == BRIO_NOISE_AUTO && o->solid ? BRIO_NOISE_KEEP : noise,
                                    .solid = o->solid};
     if (o->sharp && o->sampling_density == 0) request->filter.sampling_density = SHARP_DENSITY;
@@ -141,7 +142,8 @@ static brio_status find_poles(brio_labeled_poles *l, const brio_pole_request *re
     brio_pole_filter filter = request->filter;
     const brio_bar bar = brio_progress_bar(l->ctx);
     double start = brio_seconds();
-    if (!request->solid && request->labeling == BRIO_LABELING_GLOBAL) filter.shapes = BRIO_TRUSTED_SHAPE;
+    if (!request->solid && !request->experiment && request->labeling == BRIO_LABELING_GLOBAL)
+        filter.shapes = BRIO_TRUSTED_SHAPE;
     brio_progress_part(l->ctx, bar, 0, TRIANGULATION_SHARE);
     BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
     l->found.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
@@ -184,20 +186,18 @@ static void count_labels(brio_labeled_poles *l) {
     l->stats.outer = l->poles.count - l->stats.inner;
 }
 
-typedef brio_status (*label_fn)(const brio_pole_graph *g, uint8_t *label, brio_labeling_stats *stats);
-
-static const label_fn labelings[BRIO_LABELING_END] = {brio_label_global, brio_label_greedy, brio_label_naive,
-                                                      brio_label_theoretical};
-
-static brio_status label_along_graph(brio_labeled_poles *l, brio_labeling labeling) {
+static brio_status label_along_graph(brio_labeled_poles *l, const brio_pole_request *request) {
     brio_status status = BRIO_OK;
     brio_labeling_stats s = {0};
-    brio_pole_evidence evidence = {labeling == BRIO_LABELING_THEORETICAL ? BRIO_THEORETICAL_WEIGHT : 0,
-                                   labeling == BRIO_LABELING_GLOBAL};
+    const struct brio_label_part *part = request->experiment;
+    bool global = !part && request->labeling == BRIO_LABELING_GLOBAL;
+    brio_pole_evidence evidence = {part ? part->least_weight : 0, global};
     BRIO_TRY(brio_pole_graph_new(l->ctx, &l->diagram, evidence, &l->graph));
-    BRIO_TRY(labelings[labeling](&l->graph, l->label, &s));
+    if (part)
+        BRIO_TRY(part->label(part->user, &l->graph, l->label, &s));
+    else
+        BRIO_TRY(global ? brio_label_global(&l->graph, l->label, &s) : brio_label_greedy(&l->graph, l->label, &s));
     l->stats.confused = s.confused;
-    l->stats.unreached = s.unreached;
     l->stats.undecided = s.undecided;
     l->stats.toggled = s.toggled;
     l->stats.energy_greedy = s.energy_greedy;
@@ -214,7 +214,7 @@ static brio_status label_poles(brio_labeled_poles *l, const brio_pole_request *r
     if (request->solid) {
         BRIO_TRY(brio_label_by_solid(l->ctx, &l->poles, l->exponent, request->solid, l->label));
     } else {
-        BRIO_TRY(label_along_graph(l, request->labeling));
+        BRIO_TRY(label_along_graph(l, request));
     }
     count_labels(l);
     l->stats.label_seconds = brio_seconds() - start;

@@ -9,6 +9,7 @@ typedef struct {
     uint64_t seed;
     brio_pole_filter filter;
     brio_labeling labeling;
+    const struct brio_label_part *experiment; /* in place of `labeling`, or NULL */
     brio_noise noise;
     const brio_mesh *solid; /* a closed mesh that gives the labels, or NULL; then `labeling` gives them */
     double margin;          /* moves the bounding points out by this, in the unit of the points */

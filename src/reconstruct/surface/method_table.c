@@ -54,7 +54,7 @@ static const brio_method_row table[] = {
                                   .bytes_a_point = CRUST_BYTES,
                                   .bytes = power_crust_bytes},
     [BRIO_SURFACE_COCONE] = {{METHOD(COCONE), "cocone", "the points are the vertices; open where they end",
-                              "evidence normals theta boundaries density pieces extraction",
+                              "evidence normals theta boundaries density pieces",
                               BRIO_METHOD_ALL_POINTS | BRIO_METHOD_MAY_END},
                              "BRIO_SURFACE_COCONE",
                              brio_cocone,

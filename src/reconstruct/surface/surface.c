@@ -40,8 +40,7 @@ static brio_status check_uses(brio_context *ctx, const brio_surface_options *o) 
                 {"theta", o->theta != 0},
                 {"boundaries", o->boundaries != 0},
                 {"density", o->density != 0},
-                {"pieces", o->pieces > 1},
-                {"extraction", o->extraction != 0}};
+                {"pieces", o->pieces > 1}};
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
         char names[160];
         if (!uses[i].set || brio_surface_method_has(o->method, uses[i].name)) continue;
@@ -61,7 +60,6 @@ static brio_status settle(brio_context *ctx, const brio_surface_options *options
                 (int)o->noise);
     BRIO_EXPECT(ctx, (unsigned)o->holes < BRIO_HOLES_END, BRIO_ERR_ARGUMENT, "no such way with holes: %d",
                 (int)o->holes);
-    BRIO_EXPECT(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_surface_options.reserved_int is not 0");
     BRIO_FORWARD(check_uses(ctx, o));
     BRIO_EXPECT(ctx, o->open >= 0 && o->open < INFINITY, BRIO_ERR_ARGUMENT,
                 "open: %g spacings, expected a finite number, 0 or more", o->open);

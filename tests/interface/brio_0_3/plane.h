@@ -23,11 +23,9 @@ typedef struct brio_delaunay2_options {
     size_t size;
     double round_ratio; /* share of the points left for the rounds before the last one, below 1; 0: 1/8 */
     uint64_t seed;      /* every random choice follows from it */
-    brio_order
-        order; /* this and what follows came later. Insertion order, of which the triangles do not depend. Orders but BRIO_ORDER_BRIO take 24 bytes a
-                         point more, and their own ratio of rounds as in space */
+    brio_order order;   /* came later. Insertion order, of which the triangles do not depend. Orders but BRIO_ORDER_BRIO
+                           take 24 bytes a point more */
     int reserved_int;
-    size_t block_size; /* most points in a block of an octree or a k-d tree; 0: 2,000 */
 } brio_delaunay2_options;
 
 /** Facts of a triangulation of the plane. Counters are totals over the construction and include infinite triangles. */

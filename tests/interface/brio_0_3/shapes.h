@@ -23,7 +23,6 @@ typedef struct brio_convex_hull_options {
     int reserved_int2;
     double round_ratio; /* as in brio_delaunay_options; 0: the order's own */
     uint64_t seed;      /* every random choice follows from it */
-    size_t block_size;  /* most points in a block of an octree or a k-d tree; 0: 2,000 */
 } brio_convex_hull_options;
 
 typedef struct brio_convex_hull_stats {

@@ -1,6 +1,6 @@
 /* Builds lists of neighbours from pairs of points: copies, counts, sums, fills. The caller's edges are read once, since
  * another thread of the caller may write to them. */
-#include "triangulation/point_graph.h"
+#include "laboratory/location/point_graph.h"
 #include "base/memory.h"
 #include <assert.h>
 #include <string.h>
@@ -10,11 +10,14 @@ void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph) {
     brio_release(ctx, graph->neighbour);
 }
 
-brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_options *options, brio_point_graph *out) {
+brio_status brio_point_graph_new(const brio_store *store, const brio_laboratory_options *options,
+                                 brio_point_graph *out) {
     brio_status status = BRIO_OK;
     size_t n = store->num_points, ends = 2 * options->num_edges;
     uint32_t *record = NULL, *end = NULL, *first, sum = 0;
     memset(out, 0, sizeof *out);
+    BRIO_REQUIRE(store->ctx, options->edges || !ends, BRIO_ERR_ARGUMENT, "%zu edges, but no array of them",
+                 options->num_edges);
     BRIO_TRY(BRIO_ALLOC(store->ctx, record, n));
     for (uint32_t p = 0; p < n; p++) record[store->caller[p]] = p;
     BRIO_TRY(BRIO_ALLOC_ZERO(store->ctx, out->first, n + 1));

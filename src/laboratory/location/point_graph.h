@@ -1,7 +1,8 @@
 /* The caller's edges as lists of neighbours. */
-#ifndef BRIO_TRIANGULATION_POINT_GRAPH_H
-#define BRIO_TRIANGULATION_POINT_GRAPH_H
+#ifndef BRIO_LABORATORY_POINT_GRAPH_H
+#define BRIO_LABORATORY_POINT_GRAPH_H
 
+#include "brio/laboratory.h"
 #include "triangulation/store.h"
 
 /** The neighbours of record p are the records neighbour[first[p] .. first[p + 1]). */
@@ -11,7 +12,8 @@ typedef struct {
 
 /** Makes the graph of the options' edges, at most 2^31 - 1. The caller frees the
  *  graph, also after a failure. */
-brio_status brio_point_graph_new(const brio_store *store, const brio_delaunay_options *options, brio_point_graph *out);
+brio_status brio_point_graph_new(const brio_store *store, const brio_laboratory_options *options,
+                                 brio_point_graph *out);
 void brio_point_graph_free(brio_context *ctx, brio_point_graph *graph);
 
 #endif

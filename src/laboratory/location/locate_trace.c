@@ -13,9 +13,9 @@
  * yet is the end of one walk, and no other edge is walked. A component of the graph without a vertex is entered by one
  * location in the history DAG. Points without edges are never traced. */
 #include "base/memory.h"
-#include "triangulation/history.h"
-#include "triangulation/locate_segment.h"
-#include "triangulation/point_graph.h"
+#include "laboratory/location/history.h"
+#include "laboratory/location/locate_segment.h"
+#include "laboratory/location/point_graph.h"
 #include "triangulation/vertex_tets.h"
 #include <assert.h>
 
@@ -35,14 +35,14 @@ typedef struct {
     size_t head, tail;
 } tracing;
 
-static brio_status start_trace(brio_inserter *ins, const brio_delaunay_options *options) {
+static brio_status start_trace(brio_inserter *ins) {
     const brio_store *s = ins->store;
     trace *own = NULL;
     BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, own, 1));
     ins->location = own;
     own->logarithm = log((double)s->num_points);
-    BRIO_FORWARD(brio_history_new(ins, options, &own->history));
-    BRIO_FORWARD(brio_point_graph_new(s, options, &own->graph));
+    BRIO_FORWARD(brio_history_new(ins, &own->history));
+    BRIO_FORWARD(brio_point_graph_new(s, brio_trial_of(ins)->options, &own->graph));
     BRIO_FORWARD(BRIO_ALLOC(s->ctx, own->node, s->num_points));
     for (size_t p = 0; p < s->num_points; p++) own->node[p] = BRIO_HISTORY_ROOT;
     return BRIO_OK;
@@ -65,8 +65,10 @@ static void trace_edges(tracing *t) {
             assert(t->tet[u] != BRIO_NO_TET);
             uint32_t w = graph->neighbour[e];
             if (t->tet[w] != BRIO_NO_TET) continue;
-            found(t, w,
-                  brio_locate_segment(ins, t->tet[u], s->record[u], s->record[w], &ins->stats.trace_intersections));
+            uint64_t entered = 0;
+            found(t, w, brio_locate_segment(ins, t->tet[u], s->record[u], s->record[w], &entered));
+            t->own->history.stats->trace_intersections += entered;
+            ins->searched += entered;
         }
     }
 }
@@ -115,7 +117,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
 
 static brio_status filled(brio_inserter *ins, uint32_t p) {
     trace *own = ins->location;
-    (void)p;
+    BRIO_FORWARD(brio_count_insertion(ins, p));
     return brio_history_add(ins, &own->history);
 }
 

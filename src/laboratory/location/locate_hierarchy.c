@@ -9,6 +9,7 @@
  * Based on: Devillers. The Delaunay hierarchy. IJFCS 2002.
  * Differs from the paper: the nearest vertex of the tetrahedron, not of the sample, leads downwards. The sample is
  * drawn beforehand, so that the records of a level are contiguous. */
+#include "laboratory/location/trial.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "triangulation/insert.h"
@@ -26,6 +27,7 @@ typedef struct {
     uint32_t *below;  /* number of each record in the level below */
     uint32_t next;    /* no record before this one still waits for insertion */
     uint32_t located; /* tetrahedron that locates the point being inserted */
+    brio_touch_view view;
 } level;
 
 typedef struct {
@@ -46,7 +48,7 @@ static int height_of(const brio_store *s, const hierarchy *own, uint32_t p) {
 
 static brio_status filled_level(brio_inserter *ins, uint32_t p) {
     const level *own = ins->location;
-    (void)p;
+    BRIO_FORWARD(brio_count_insertion(ins, p));
     brio_vertex_tets_filled(ins, own->vertex_tet);
     return BRIO_OK;
 }
@@ -101,13 +103,13 @@ static brio_status start_level(const brio_store *all, level *own, const brio_sto
     return BRIO_OK;
 }
 
-static brio_status start_hierarchy(brio_inserter *ins, const brio_delaunay_options *options) {
+static brio_status start_hierarchy(brio_inserter *ins) {
     brio_store *s = ins->store;
     hierarchy *own = NULL;
     size_t size[MOST_LEVELS] = {0};
     BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, own, 1));
     ins->location = own;
-    own->seed = options->seed;
+    own->seed = brio_trial_of(ins)->seed;
     own->level[0].store = s;
     own->level[0].inserter = ins;
     own->num_levels = 1;
@@ -120,7 +122,7 @@ static brio_status start_hierarchy(brio_inserter *ins, const brio_delaunay_optio
     deal_records(s, own);
     for (int l = 1; l < own->num_levels; l++) {
         BRIO_FORWARD(start_level(s, &own->level[l], own->level[l - 1].store));
-        brio_inserter_count_touches(own->level[l].inserter, ins->touches.counts, 2 * l);
+        brio_count_touches(own->level[l].inserter, &own->level[l].view, brio_trial_of(ins)->touches, 2 * l);
     }
     return BRIO_OK;
 }
@@ -157,6 +159,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
 
 static brio_status filled(brio_inserter *ins, uint32_t p) {
     hierarchy *own = ins->location;
+    BRIO_FORWARD(brio_count_insertion(ins, p));
     brio_vertex_tets_filled(ins, own->level[0].vertex_tet);
     int height = height_of(ins->store, own, p);
     uint32_t below = p;

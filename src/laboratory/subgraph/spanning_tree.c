@@ -9,15 +9,10 @@
 #include "base/scale.h"
 #include "base/sort.h"
 #include "mesh/edge_rings.h"
-#include "mesh/spanning_subgraph.h"
+#include "laboratory/subgraph/spanning_subgraph.h"
+#include "base/memory.h"
 #include "base/union_find.h"
 #include <math.h>
-
-void brio_edges_free(brio_edges *edges) {
-    if (!edges || !edges->context) return;
-    brio_release(edges->context, edges->ends);
-    *edges = (brio_edges){0};
-}
 
 brio_status brio_mesh_edges(brio_context *ctx, const brio_mesh *mesh, brio_edges *out) {
     brio_status status = BRIO_OK;

@@ -9,7 +9,7 @@
  * walk until it meets the line.
  *
  * Based on: Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
-#include "triangulation/locate_segment.h"
+#include "laboratory/location/locate_segment.h"
 #include <assert.h>
 
 /* Returns whether the line through u and w meets the closed triangle of a facet; w is off the facet's plane. */

@@ -6,7 +6,8 @@
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 4.5. */
 #include "base/memory.h"
-#include "triangulation/point_graph.h"
+#include "laboratory/location/point_graph.h"
+#include "laboratory/location/trial.h"
 #include "triangulation/vertex_tets.h"
 #include <assert.h>
 
@@ -15,7 +16,7 @@ typedef struct {
     uint32_t *vertex_tet, last;
 } neighbours;
 
-static brio_status start_neighbours(brio_inserter *ins, const brio_delaunay_options *options) {
+static brio_status start_neighbours(brio_inserter *ins) {
     const brio_store *s = ins->store;
     neighbours *own = NULL;
     brio_status status = BRIO_OK;
@@ -23,7 +24,7 @@ static brio_status start_neighbours(brio_inserter *ins, const brio_delaunay_opti
     ins->location = own;
     BRIO_TRY(BRIO_ALLOC(s->ctx, own->vertex_tet, s->num_points + 3));
     brio_vertex_tets_fill(s, own->vertex_tet);
-    status = brio_point_graph_new(s, options, &own->graph);
+    status = brio_point_graph_new(s, brio_trial_of(ins)->options, &own->graph);
 done:
     return status;
 }
@@ -39,7 +40,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
         if (graph->neighbour[e] >= p) continue;
         uint32_t v = brio_alive(s, graph->neighbour[e]);
         double square = brio_square_distance(point, s->record[v]);
-        brio_touch_record(&ins->touches, v);
+        brio_touch_record(brio_touches_of(ins), v);
         if (square < least) best = v, least = square;
     }
     assert(s->representative[best] == best); /* a vertex has a tetrahedron */
@@ -50,6 +51,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
 
 static brio_status filled(brio_inserter *ins, uint32_t p) {
     neighbours *own = ins->location;
+    BRIO_FORWARD(brio_count_insertion(ins, p));
     brio_vertex_tets_filled(ins, own->vertex_tet);
     own->last = p;
     return BRIO_OK;

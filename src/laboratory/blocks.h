@@ -1,8 +1,9 @@
 /* Blocks of points that are near each other in space: the leaves of an octree or a k-d tree, in depth-first order. */
-#ifndef BRIO_ORDER_BLOCKS_H
-#define BRIO_ORDER_BLOCKS_H
+#ifndef BRIO_LABORATORY_BLOCKS_H
+#define BRIO_LABORATORY_BLOCKS_H
 
-#include "base/context.h"
+#include "brio/laboratory.h"
+#include "order/order.h"
 
 /** The points at the positions [begin, end) of the depth-first order. */
 typedef struct {
@@ -32,5 +33,11 @@ brio_status brio_octree_blocks(brio_context *ctx, const brio_blocks *blocks, uin
 /** Divides points into the cells of a k-d tree: a cell of n points has children of n / 2 and n - n / 2 points.
  *  Needs 16 n bytes of workspace. */
 brio_status brio_kdtree_blocks(brio_context *ctx, const brio_blocks *blocks);
+
+/** Writes an insertion order by blocks, shuffled inside a block, as brio_order_part has it.
+ *  user  a brio_laboratory_options, with an order that is not BRIO_BLOCKS_NONE.
+ *  Workspace in bytes a point: BRIO_OCTREE 6, BRIO_KDTREE 20, OCTREE 6. */
+brio_status brio_block_order(const void *user, brio_context *ctx, const brio_input *input,
+                             const brio_delaunay_options *options, const brio_ordering *out);
 
 #endif

@@ -7,7 +7,7 @@
  * Delaunay triangulations. CGTA 1999. */
 #include "base/memory.h"
 #include "base/rng.h"
-#include "triangulation/inserter.h"
+#include "laboratory/location/trial.h"
 #include "triangulation/vertex_tets.h"
 #include <assert.h>
 
@@ -16,12 +16,12 @@ typedef struct {
     brio_rng rng;
 } jump;
 
-static brio_status start_jump(brio_inserter *ins, const brio_delaunay_options *options) {
+static brio_status start_jump(brio_inserter *ins) {
     const brio_store *s = ins->store;
     jump *own = NULL;
     BRIO_FORWARD(BRIO_ALLOC_ZERO(s->ctx, own, 1));
     ins->location = own;
-    own->rng = brio_rng_new(options->seed);
+    own->rng = brio_rng_new(brio_trial_of(ins)->seed);
     BRIO_FORWARD(BRIO_ALLOC(s->ctx, own->vertex_tet, s->num_points + 3));
     brio_vertex_tets_fill(s, own->vertex_tet);
     return BRIO_OK;
@@ -36,7 +36,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
     for (int samples = (int)sqrt(sqrt(p)); samples > 0; samples--) {
         uint32_t v = brio_rng_below(&own->rng, p);
         double square = brio_square_distance(point, s->record[v]);
-        brio_touch_record(&ins->touches, v);
+        brio_touch_record(brio_touches_of(ins), v);
         if (s->representative[v] == v && square < least) best = v, least = square;
     }
     assert(s->representative[best] == best); /* a vertex has a tetrahedron */
@@ -47,6 +47,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
 
 static brio_status filled(brio_inserter *ins, uint32_t p) {
     jump *own = ins->location;
+    BRIO_FORWARD(brio_count_insertion(ins, p));
     brio_vertex_tets_filled(ins, own->vertex_tet);
     own->last = p;
     return BRIO_OK;

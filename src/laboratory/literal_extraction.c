@@ -10,7 +10,7 @@
  *
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.2 and appendix A. */
-#include "reconstruct/cocone/literal_extraction.h"
+#include "laboratory/laboratory.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "reconstruct/cocone/cocone_prune.h"
@@ -63,32 +63,28 @@ static uint32_t next_candidate(const walk *w, uint32_t facet, uint32_t a, uint32
 
 /* Adds a facet to the component at hand. */
 static brio_status add(walk *w, uint32_t facet) {
-    brio_status status = BRIO_OK;
     uint32_t mate = *brio_mate(w->t, facet);
     if (has_bit(w->listed, facet)) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(w->ctx, w->list, w->capacity, w->size + 1));
+    BRIO_FORWARD(BRIO_RESERVE(w->ctx, w->list, w->capacity, w->size + 1));
     w->list[w->size++] = facet;
     set_bit(w->listed, facet), set_bit(w->listed, mate);
     set_bit(w->current, facet), set_bit(w->current, mate);
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* Lists the candidates that are joined to a facet across edges. */
 static brio_status list_component(walk *w, uint32_t first) {
-    brio_status status = BRIO_OK;
     w->size = 0;
-    BRIO_TRY(add(w, first));
+    BRIO_FORWARD(add(w, first));
     for (size_t n = 0; n < w->size; n++)
         for (int k = 0; k < 3; k++) {
             uint32_t a = corner_of(w, w->list[n], k), b = corner_of(w, w->list[n], k + 1), facet = w->list[n];
             do {
                 facet = *brio_mate(w->t, next_candidate(w, facet, a, b));
-                BRIO_TRY(add(w, facet));
+                BRIO_FORWARD(add(w, facet));
             } while (facet != w->list[n]);
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static void forget_component(const walk *w) {
@@ -129,9 +125,8 @@ static bool faces_x(const walk *w, uint32_t tet, uint32_t p) {
  * the component. Stops at a facet of the component with `bounded`, or at a tetrahedron that faces x without. Returns
  * the facet, or the tetrahedron. */
 static brio_status search_star(walk *w, uint32_t tet, uint32_t p, bool bounded, uint32_t *found) {
-    brio_status status = BRIO_OK;
     w->height = 0;
-    BRIO_TRY(push(w, tet));
+    BRIO_FORWARD(push(w, tet));
     for (size_t n = 0; n < w->height; n++) {
         uint32_t now = w->stack[n];
         *found = now;
@@ -142,69 +137,62 @@ static brio_status search_star(walk *w, uint32_t tet, uint32_t p, bool bounded, 
             *found = facet;
             if (!known && bounded && has_bit(w->current, facet)) return BRIO_OK;
             for (size_t m = 0; m < w->height && !known; m++) known = w->stack[m] == other;
-            if (!known) BRIO_TRY(push(w, other));
+            if (!known) BRIO_FORWARD(push(w, other));
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the walk --- */
 
 static brio_status walk_on(walk *w, uint32_t start) {
-    brio_status status = BRIO_OK;
     w->height = 0;
     set_bit(w->walked, start);
-    BRIO_TRY(push(w, start));
+    BRIO_FORWARD(push(w, start));
     while (w->height > 0) {
         uint32_t facet = w->stack[--w->height];
         for (int k = 0; k < 3; k++) {
             uint32_t next = next_candidate(w, facet, corner_of(w, facet, k), corner_of(w, facet, k + 1));
             if (has_bit(w->walked, next)) continue;
             set_bit(w->walked, next);
-            BRIO_TRY(push(w, next));
+            BRIO_FORWARD(push(w, next));
         }
     }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status walk_on_all(walk *w) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC_ZERO(w->ctx, w->listed, w->t->count));
-    BRIO_TRY(BRIO_ALLOC_ZERO(w->ctx, w->current, w->t->count));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(w->ctx, w->listed, w->t->count));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(w->ctx, w->current, w->t->count));
     for (uint32_t tet = 0; tet < w->t->count; tet++)
         for (int i = 0; i < 4; i++) {
             uint32_t facet = brio_facet_of(tet, i), p, found;
             if (!brio_is_candidate(w->cocones, facet) || has_bit(w->listed, facet)) continue;
-            BRIO_TRY(list_component(w, facet));
+            BRIO_FORWARD(list_component(w, facet));
             p = last_sample(w, &found);
-            BRIO_TRY(search_star(w, found, p, false, &found));
-            BRIO_TRY(search_star(w, found, p, true, &found));
-            BRIO_TRY(walk_on(w, found));
+            BRIO_FORWARD(search_star(w, found, p, false, &found));
+            BRIO_FORWARD(search_star(w, found, p, true, &found));
+            BRIO_FORWARD(walk_on(w, found));
             forget_component(w);
         }
-done:
-    return status;
+    return BRIO_OK;
 }
 
 /* --- faces --- */
 
 /* Lists the candidates, each once: of those that were walked on, the side that the walk met; of others either side. */
 static brio_status write_faces(walk *w, bool walked, uint32_t **faces, size_t *num_faces) {
-    brio_status status = BRIO_OK;
     size_t capacity = 0, size = 0;
     for (uint32_t facet = 0; facet < 4 * (size_t)w->t->count; facet++) {
         uint32_t mate = *brio_mate(w->t, facet);
         bool twice = !walked || has_bit(w->walked, mate);
         if (walked ? !has_bit(w->walked, facet) : !brio_is_candidate(w->cocones, facet)) continue;
         if (twice && mate < facet) continue;
-        BRIO_TRY(BRIO_RESERVE(w->ctx, *faces, capacity, size + 3));
+        BRIO_FORWARD(BRIO_RESERVE(w->ctx, *faces, capacity, size + 3));
         for (int k = 0; k < 3; k++) (*faces)[size++] = corner_of(w, facet, k);
     }
     *num_faces = size / 3;
-done:
-    return status;
+    return BRIO_OK;
 }
 
 static brio_status prune(brio_context *ctx, const brio_cocones *cocones, size_t *pruned) {
@@ -215,9 +203,10 @@ static brio_status prune(brio_context *ctx, const brio_cocones *cocones, size_t 
     return status;
 }
 
-brio_status brio_extract_literally(brio_context *ctx, const brio_cocones *cocones, brio_extraction extraction,
-                                   size_t *pruned, uint32_t **faces, size_t *num_faces) {
+brio_status brio_extract_literally(void *user, brio_context *ctx, const brio_cocones *cocones, size_t *pruned,
+                                   uint32_t **faces, size_t *num_faces) {
     brio_status status = BRIO_OK;
+    const brio_extraction extraction = ((const brio_laboratory *)user)->options.extraction;
     walk w = {.ctx = ctx, .cocones = cocones, .t = &cocones->dual->t, .points = cocones->dual->points};
     *pruned = 0;
     if (extraction != BRIO_EXTRACTION_CANDIDATES) BRIO_TRY(prune(ctx, cocones, pruned));

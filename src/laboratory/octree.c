@@ -14,7 +14,7 @@
 #include "base/memory.h"
 #include "base/places.h"
 #include "base/team.h"
-#include "order/blocks.h"
+#include "laboratory/blocks.h"
 #include "order/cube.h"
 #include <assert.h>
 #include <string.h>

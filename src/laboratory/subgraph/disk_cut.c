@@ -12,7 +12,8 @@
  * surface. SoCG 2001.
  * Differs from the paper: the cut is the graph of all cycles at once, not a set of curves that may run side by side.
  * So no vertex lies on more cut edges than necessary. */
-#include "mesh/spanning_subgraph.h"
+#include "laboratory/subgraph/spanning_subgraph.h"
+#include "base/memory.h"
 #include "mesh/twins.h"
 
 /* --- sectors --- */

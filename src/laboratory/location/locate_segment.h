@@ -1,6 +1,6 @@
 /* A walk along a segment. */
-#ifndef BRIO_TRIANGULATION_LOCATE_SEGMENT_H
-#define BRIO_TRIANGULATION_LOCATE_SEGMENT_H
+#ifndef BRIO_LABORATORY_LOCATE_SEGMENT_H
+#define BRIO_LABORATORY_LOCATE_SEGMENT_H
 
 #include "triangulation/inserter.h"
 

@@ -11,7 +11,7 @@
  *
  * Based on: Mattson, Gecsei, Slutz, Traiger. Evaluation techniques for storage hierarchies. IBM Systems Journal 1970.
  *           Olken. Efficient methods for calculating the success function of fixed-space replacement policies. 1981. */
-#include "triangulation/page_touches.h"
+#include "laboratory/location/page_touches.h"
 #include "base/memory.h"
 
 typedef struct {
@@ -137,7 +137,7 @@ brio_status brio_page_touches_status(const brio_page_touches *t) {
     return t->status;
 }
 
-void brio_page_touches_total(const brio_page_touches *t, brio_delaunay_stats *stats) {
+void brio_page_touches_total(const brio_page_touches *t, brio_laboratory_stats *stats) {
     stats->pages = t->pages;
     stats->page_touches = t->touches;
     stats->page_faults = t->faults;
@@ -152,4 +152,41 @@ size_t brio_page_touches_faults(const brio_page_touches *t, uint64_t faults[BRIO
         misses -= t->far[k + 1];
     }
     return k;
+}
+
+/* --- of an inserter --- */
+
+/* Counts a tetrahedron, or the slot where one was. */
+static void touch_slot(const brio_touch_view *view, uint32_t tet) {
+    brio_touch(view->counts, view->first + BRIO_TOUCH_TETRAHEDRA, (uint64_t)tet * sizeof(brio_tetrahedron));
+}
+
+/* Counts a tetrahedron and the records of its vertices. */
+static void touch_tet(const brio_touch_view *view, const brio_tetrahedra *t, uint32_t tet) {
+    touch_slot(view, tet);
+    for (int i = 0; i < 4; i++)
+        if (t->tet[tet].vertex[i] != t->infinite) brio_touch_record(view, t->tet[tet].vertex[i]);
+}
+
+static void came_to(const brio_watch *watch, const brio_tetrahedra *t, uint32_t tet) {
+    touch_tet((const brio_touch_view *)watch, t, tet);
+}
+
+void brio_count_touches(brio_inserter *ins, brio_touch_view *view, brio_page_touches *counts, int first) {
+    *view = (brio_touch_view){{came_to}, counts, first};
+    ins->walk.watch = counts ? &view->watch : NULL;
+}
+
+/* Counts p, the slots of the tetrahedra in conflict, those behind the border and the new ones with their vertices,
+ * which are those of the old ones. */
+brio_status brio_count_insertion(brio_inserter *ins, uint32_t p) {
+    const brio_cavity *c = &ins->cavity;
+    const brio_tetrahedra *t = &ins->store->t;
+    const brio_touch_view *view = brio_touches_of(ins);
+    if (!view) return BRIO_OK;
+    brio_touch_record(view, p);
+    for (size_t i = 0; i < c->num_tets; i++) touch_slot(view, brio_tet_of(c->entry[i]));
+    for (size_t i = 0; i < c->num_border; i++) touch_tet(view, t, brio_tet_of(c->border[i]));
+    for (size_t i = 0; i < c->num_created; i++) touch_tet(view, t, c->created[i]);
+    return brio_page_touches_status(view->counts);
 }

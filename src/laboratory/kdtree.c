@@ -11,7 +11,7 @@
  * Differs from the paper: selection in place of sorting. */
 #include "base/memory.h"
 #include "base/rng.h"
-#include "order/blocks.h"
+#include "laboratory/blocks.h"
 #include "order/cube.h"
 #include "base/halving.h"
 #include <assert.h>

@@ -15,7 +15,7 @@
  * 1992, for the path. Clarkson, Mehlhorn, Seidel. Four results on randomized incremental constructions. CGTA 1993.
  * Differs from the paper: a created tetrahedron is linked to all tetrahedra destroyed with it, as in Choi 2003, not to
  * the two at its facet. So a conflict that descends only from the tetrahedron outside the cavity is not met. */
-#include "triangulation/history.h"
+#include "laboratory/location/history.h"
 #include "base/memory.h"
 #include <assert.h>
 
@@ -57,16 +57,17 @@ done:
 }
 
 static void touch_node(const brio_inserter *ins, size_t node) {
-    if (ins->touches.counts) brio_touch(ins->touches.counts, BRIO_TOUCH_HISTORY, node * sizeof(brio_history_node));
+    const brio_touch_view *view = brio_touches_of(ins);
+    if (view) brio_touch(view->counts, BRIO_TOUCH_HISTORY, node * sizeof(brio_history_node));
 }
 
 /* Counts a node and the records of its vertices. */
 static void touch_search(const brio_inserter *ins, const brio_history *h, size_t node) {
-    if (!ins->touches.counts) return;
+    const brio_touch_view *view = brio_touches_of(ins);
+    if (!view) return;
     touch_node(ins, node);
     for (int i = 0; i < 4; i++)
-        if (h->node[node].vertex[i] != ins->store->t.infinite)
-            brio_touch_record(&ins->touches, h->node[node].vertex[i]);
+        if (h->node[node].vertex[i] != ins->store->t.infinite) brio_touch_record(view, h->node[node].vertex[i]);
 }
 
 /* Adds nodes for `count` new tetrahedra in the given slots (NULL: slots 0, 1, ...). */
@@ -84,14 +85,22 @@ static brio_status add_nodes(brio_inserter *ins, brio_history *h, const uint32_t
     }
     assert(h->num_insertions + 1 < h->first_capacity);
     h->first[++h->num_insertions] = (uint32_t)h->num_nodes;
-    ins->stats.history = h->num_nodes;
+    h->stats->history = h->num_nodes;
     return BRIO_OK;
 }
 
-brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *options, brio_history *out) {
-    *out = (brio_history){.search = options->all_conflicts    ? BRIO_SEARCH_ALL_CONFLICTS
-                                    : options->first_conflict ? BRIO_SEARCH_FIRST_CONFLICT
-                                                              : BRIO_SEARCH_PATH};
+/* Counts nodes that a search compared with a point. */
+static void count_tests(brio_inserter *ins, const brio_history *h, uint64_t nodes) {
+    h->stats->history_tests += nodes;
+    ins->searched += nodes;
+}
+
+brio_status brio_history_new(brio_inserter *ins, brio_history *out) {
+    brio_trial *trial = brio_trial_of(ins);
+    *out = (brio_history){.stats = &trial->stats,
+                          .search = trial->options->all_conflicts    ? BRIO_SEARCH_ALL_CONFLICTS
+                                    : trial->options->first_conflict ? BRIO_SEARCH_FIRST_CONFLICT
+                                                                     : BRIO_SEARCH_PATH};
     brio_status status = add_nodes(ins, out, NULL, ins->store->t.count);
     if (status == BRIO_OK) out->first[0] = 0;
     return status;
@@ -137,7 +146,7 @@ uint32_t brio_history_path(brio_inserter *ins, brio_history *h, uint32_t from, c
         touch_search(ins, h, node);
         while (!holds(ins, h->node[node].vertex, p)) touch_search(ins, h, ++node);
         assert(node < h->first[next + 1]); /* one tetrahedron of the insertion holds p */
-        ins->stats.history_tests += node - h->first[next] + 1;
+        count_tests(ins, h, node - h->first[next] + 1);
         next = h->node[node].next;
     }
     return next & ~BRIO_HISTORY_LIVE;
@@ -198,9 +207,9 @@ brio_status brio_history_conflicts(brio_inserter *ins, brio_history *h, uint32_t
         }
         touch_search(ins, h, here->node);
         const brio_history_node *node = &h->node[here->node++];
-        ins->stats.history_tests++;
+        count_tests(ins, h, 1);
         if (!conflicts(ins, node, p)) continue;
-        ins->stats.history_conflicts++;
+        h->stats->history_conflicts++;
         if (is_live(node))
             BRIO_FORWARD(list_conflict(s->ctx, h, live_slot(node)));
         else
@@ -225,12 +234,12 @@ brio_status brio_history_locate(brio_inserter *ins, brio_history *h, uint32_t fr
 
 /* --- the strategy: point location in the history alone, as in the program hull --- */
 
-static brio_status start_history(brio_inserter *ins, const brio_delaunay_options *options) {
+static brio_status start_history(brio_inserter *ins) {
     brio_history *h = NULL;
     brio_status status = BRIO_ALLOC_ZERO(ins->store->ctx, h, 1);
     if (status != BRIO_OK) return status;
     ins->location = h;
-    return brio_history_new(ins, options, h);
+    return brio_history_new(ins, h);
 }
 
 static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
@@ -238,7 +247,7 @@ static brio_status locate(brio_inserter *ins, uint32_t p, uint32_t *tet) {
 }
 
 static brio_status filled(brio_inserter *ins, uint32_t p) {
-    (void)p;
+    BRIO_FORWARD(brio_count_insertion(ins, p));
     return brio_history_add(ins, ins->location);
 }
 

@@ -3,10 +3,10 @@
  * A destroyed tetrahedron links to all tetrahedra that the destroying insertion created. The nodes of one insertion
  * are consecutive. So a node stores its vertices and the number of the destroying insertion, and an insertion stores
  * its first node. Insertion 0 is the start. */
-#ifndef BRIO_TRIANGULATION_HISTORY_H
-#define BRIO_TRIANGULATION_HISTORY_H
+#ifndef BRIO_LABORATORY_HISTORY_H
+#define BRIO_LABORATORY_HISTORY_H
 
-#include "triangulation/inserter.h"
+#include "laboratory/location/trial.h"
 
 typedef struct {
     uint32_t vertex[4];
@@ -27,6 +27,7 @@ typedef struct {
 } brio_history_span;
 
 typedef struct {
+    brio_laboratory_stats *stats; /* of the trial, where it counts */
     brio_history_node *node;
     size_t num_nodes, node_capacity;
     uint32_t *first; /* first node of each insertion; then the end of the last */
@@ -43,7 +44,7 @@ typedef struct {
 } brio_history;
 
 /** Makes a history of the first tetrahedra. The caller frees the history, also after a failure. */
-brio_status brio_history_new(brio_inserter *ins, const brio_delaunay_options *options, brio_history *out);
+brio_status brio_history_new(brio_inserter *ins, brio_history *out);
 void brio_history_free(brio_context *ctx, brio_history *h);
 
 /** Adds the insertion whose cavity was filled last. Returns BRIO_ERR_TOO_LARGE beyond 2^32 - 2 nodes. */

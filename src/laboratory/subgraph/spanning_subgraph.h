@@ -1,9 +1,9 @@
 /* Sparse connected subgraphs of the edges of a mesh, as arrays of vertex pairs. */
-#ifndef BRIO_MESH_SPANNING_SUBGRAPH_H
-#define BRIO_MESH_SPANNING_SUBGRAPH_H
+#ifndef BRIO_LABORATORY_SPANNING_SUBGRAPH_H
+#define BRIO_LABORATORY_SPANNING_SUBGRAPH_H
 
+#include "brio/laboratory.h"
 #include "mesh/twins.h"
-#include "base/memory.h"
 
 /** Lists all edges of a mesh of polygons, each once, in the order of the last half-edges of the edges.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
