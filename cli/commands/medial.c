@@ -190,7 +190,7 @@ static brio_status try_plane(run *r, const brio_mesh *input, bool *done) {
     TRY(cli_may_be_flat(r, input, done));
     if (!*done) return BRIO_OK;
     status = cli_planar_shape(r, input, &crust, &shape);
-    if (status == BRIO_ERR_NO_ANSWER && strstr(brio_message(r->ctx), "not in a plane")) {
+    if (status == BRIO_ERR_NO_ANSWER && cli_failure(r).reason == BRIO_REASON_NOT_FLAT) {
         *done = false;
         return BRIO_OK;
     }

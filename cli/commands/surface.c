@@ -481,16 +481,16 @@ static void suggest_pieces(run *r, const brio_mesh *points) {
 static void suggest(run *r, brio_status status, const brio_mesh *points) {
     const arguments *a = r->arguments;
     if (status == BRIO_ERR_NO_MEMORY) {
-        if (!r->message[0]) cli_fail(r, status, "%s", brio_message(r->ctx));
+        cli_keep_failure(r, status);
         suggest_pieces(r, points);
     }
     if (status != BRIO_ERR_NO_ANSWER) return;
     cli_examine(r, status, points);
     if (r->flat) return;
-    const char *message = cli_message(r, status);
-    if (strstr(message, "span holes")) cli_hint(r, HINT_HOLES);
-    if (strstr(message, "no component is left")) cli_hint(r, HINT_COMPONENTS);
-    if (a->method != BRIO_SURFACE_COCONE && strstr(message, "no inside found")) cli_hint(r, HINT_COCONE);
+    const brio_reason reason = cli_failure(r).reason;
+    if (reason == BRIO_REASON_ALL_HOLES) cli_hint(r, HINT_HOLES);
+    if (reason == BRIO_REASON_NO_COMPONENT) cli_hint(r, HINT_COMPONENTS);
+    if (a->method != BRIO_SURFACE_COCONE && reason == BRIO_REASON_NO_INSIDE) cli_hint(r, HINT_COCONE);
 }
 
 /* --- curves --- */
@@ -518,7 +518,7 @@ static brio_status try_curves(run *r, const brio_mesh *points, brio_mesh **resul
     if (!flat) return BRIO_OK;
     status = crust ? cli_planar_crust(r, points, &a->crust, a->crust.labeling == NO_LABELING, result)
                    : curves(r, points, result);
-    *done = asked || status != BRIO_ERR_NO_ANSWER || !strstr(brio_message(r->ctx), "not in a plane");
+    *done = asked || status != BRIO_ERR_NO_ANSWER || cli_failure(r).reason != BRIO_REASON_NOT_FLAT;
     if (!*done) status = BRIO_OK;
 done:
     return status;

@@ -107,7 +107,27 @@ brio_status cli_fail(run *r, brio_status status, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(r->message, sizeof r->message, format, arguments);
     va_end(arguments);
+    r->failure = (brio_failure){.status = status};
     return status;
+}
+
+brio_status cli_because(run *r, brio_reason reason, brio_status status) {
+    r->failure.reason = reason;
+    return status;
+}
+
+brio_failure cli_failure(const run *r) {
+    brio_failure f = r->failure;
+    f.size = sizeof f;
+    if (!r->message[0] && r->ctx) (void)brio_last_failure(r->ctx, &f);
+    return f;
+}
+
+void cli_keep_failure(run *r, brio_status status) {
+    const brio_failure f = cli_failure(r);
+    if (r->message[0]) return;
+    cli_fail(r, status, "%s", brio_message(r->ctx));
+    r->failure = f;
 }
 
 brio_status cli_fail_output(run *r, const char *format, ...) {
@@ -116,6 +136,7 @@ brio_status cli_fail_output(run *r, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(r->message, sizeof r->message, format, arguments);
     va_end(arguments);
+    r->failure = (brio_failure){.status = BRIO_ERR_ARGUMENT};
     cli_list_outputs(r->command, outputs);
     if (*outputs) cli_hint(r, HINT_OUTPUTS, r->command->name, outputs);
     return BRIO_ERR_ARGUMENT;

@@ -105,6 +105,7 @@ typedef struct run {
     double started, lap;           /* clock at the beginning, and at the end of the last stage */
     bool neighbours, faces, edges; /* whether cli_write writes these files beside .node and .ele */
     char message[1024];            /* of a failure found here; the library's is in the context */
+    brio_failure failure;          /* what is known of the failure of `message` */
     notes warnings, hints;
     bool flat;       /* a failure is explained by the points: they lie in a plane or on a line */
     bool over_limit; /* an estimate is over --max-memory */
@@ -150,6 +151,12 @@ void cli_end(run *r);
 brio_status cli_fail(run *r, brio_status status, const char *format, ...) __attribute__((format(printf, 3, 4)));
 /** Does the same for an -o that does not fit the command: BRIO_ERR_ARGUMENT, and a hint what the command writes. */
 brio_status cli_fail_output(run *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/** Gives the failure that cli_fail has stored a reason; returns its status. */
+brio_status cli_because(run *r, brio_reason reason, brio_status status);
+/** Keeps the sentence and the reason of a failure of the library: the context's next call changes its own. */
+void cli_keep_failure(run *r, brio_status status);
+/** Returns what is known of the failure, found here or in the library. */
+brio_failure cli_failure(const run *r);
 /** Returns the sentence of the failure, found here or in the library. */
 const char *cli_message(const run *r, brio_status status);
 int cli_exit_code(brio_status status);

@@ -40,9 +40,10 @@ static brio_status judge(run *r, const brio_certificate *c, unsigned how) {
         return cli_fail(r, BRIO_ERR_CHECK, "the surface is not oriented: across %zu edges the faces disagree",
                         c->flipped_edges);
     if (!c->closed && !(how & CERTIFY_OPEN))
-        return cli_fail(r, BRIO_ERR_CHECK, "the surface is not closed: %zu boundary edge%s in %zu loop%s",
-                        c->boundary_edges, c->boundary_edges == 1 ? "" : "s", c->boundary_loops,
-                        c->boundary_loops == 1 ? "" : "s");
+        return cli_because(r, BRIO_REASON_NOT_CLOSED,
+                           cli_fail(r, BRIO_ERR_CHECK, "the surface is not closed: %zu boundary edge%s in %zu loop%s",
+                                    c->boundary_edges, c->boundary_edges == 1 ? "" : "s", c->boundary_loops,
+                                    c->boundary_loops == 1 ? "" : "s"));
     if (c->self_intersections > 0 && how & CERTIFY_EMBEDDED)
         return cli_fail(r, BRIO_ERR_CHECK, "the surface intersects itself: %lld pairs of faces",
                         (long long)c->self_intersections);

@@ -74,8 +74,9 @@ brio_status cli_check_edges(run *r, const brio_mesh *mesh, bool open) {
     if (!c.manifold)
         return cli_fail(r, BRIO_ERR_CHECK, "the curves branch: %zu vertices have more than two edges", c.branches);
     if (!c.closed && !open)
-        return cli_fail(r, BRIO_ERR_CHECK, "the curves are not closed: %zu ends in %zu of %zu curves", c.ends,
-                        c.components - c.loops, c.components);
+        return cli_because(r, BRIO_REASON_NOT_CLOSED,
+                           cli_fail(r, BRIO_ERR_CHECK, "the curves are not closed: %zu ends in %zu of %zu curves",
+                                    c.ends, c.components - c.loops, c.components));
     return BRIO_OK;
 }
 

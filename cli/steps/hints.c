@@ -1,6 +1,5 @@
-/* What to try after a failure, by the command, the status and, of sentences of the library, words that say what is
- * wrong: a sentence that changes its words loses its hint, and tests/cli/test_hints.py holds each of them. What the
- * program finds wrong by itself has its hint where it is found. */
+/* What to try after a failure, by the command, the status and its reason. What the program finds wrong by itself has
+ * its hint where it is found. */
 #include "cli/steps/hints.h"
 #include "cli/files/cloud.h"
 #include <math.h>
@@ -10,21 +9,23 @@ static bool is(const run *r, const char *name) {
     return !strcmp(r->command->name, name);
 }
 
-static bool says(const run *r, brio_status status, const char *words) {
-    return strstr(cli_message(r, status), words) != NULL;
+/* Returns whether the failure has a status and a reason. */
+static bool fails(const run *r, brio_status status, brio_reason reason) {
+    const brio_failure f = cli_failure(r);
+    return f.status == status && f.reason == reason;
 }
 
 static void suggest_for_poles(run *r) {
-    if (says(r, BRIO_ERR_NO_ANSWER, "swallows"))
+    if (fails(r, BRIO_ERR_NO_ANSWER, BRIO_REASON_SWALLOWED))
         cli_hint(r, HINT_DISTANCE);
-    else if (says(r, BRIO_ERR_NO_ANSWER, "the mesh has no inside"))
+    else if (fails(r, BRIO_ERR_NO_ANSWER, BRIO_REASON_OPEN_MESH))
         cli_hint(r, HINT_CHECK);
     else
         cli_hint(r, HINT_SOLID);
 }
 
 static void suggest_for_subdivision(run *r) {
-    if (says(r, BRIO_ERR_NO_ANSWER, "a mesh of triangles is needed"))
+    if (fails(r, BRIO_ERR_NO_ANSWER, BRIO_REASON_NOT_TRIANGLES))
         cli_hint(r, HINT_TRIANGLES);
     else
         cli_hint(r, HINT_CHECK);
@@ -33,8 +34,8 @@ static void suggest_for_subdivision(run *r) {
 /* Suggests what to try. What is said of flat points by cli_examine, and by a sentence that says how to scale, is all
  * there is to say. */
 static void suggest_for_no_answer(run *r) {
-    if (r->flat || says(r, BRIO_ERR_NO_ANSWER, "scale the")) return;
-    if (is(r, "alpha") && says(r, BRIO_ERR_NO_ANSWER, "no tetrahedron has a value")) cli_hint(r, HINT_ALPHA);
+    if (r->flat || fails(r, BRIO_ERR_NO_ANSWER, BRIO_REASON_SCALE)) return;
+    if (is(r, "alpha") && fails(r, BRIO_ERR_NO_ANSWER, BRIO_REASON_NO_VALUE)) cli_hint(r, HINT_ALPHA);
     if (is(r, "iso")) cli_hint(r, HINT_LEVEL);
     if (is(r, "subdivide") && !r->hints.used) suggest_for_subdivision(r);
     if (is(r, "medial") || is(r, "offset")) suggest_for_poles(r);
@@ -45,29 +46,30 @@ static void suggest_for_no_answer(run *r) {
  * file. */
 static bool helps_scratch(const run *r) {
     enum { LEAST_MAPPED = 1 << 20 }; /* bytes of a block of the library that can be in a file */
-    size_t bytes;
     if (r->common.scratch) return false;
     if (r->over_limit) return true;
-    return sscanf(cli_message(r, BRIO_ERR_NO_MEMORY), "out of memory: %zu bytes", &bytes) == 1 && bytes >= LEAST_MAPPED;
+    return cli_failure(r).bytes >= LEAST_MAPPED;
 }
 
 static void suggest_for_no_memory(run *r) {
-    static const char estimated[] = "delaunay voronoi hull alpha locate interpolate surface medial offset subdivide";
+    static const char *const estimated[] = {"delaunay",    "voronoi", "hull",   "alpha",  "locate",
+                                            "interpolate", "surface", "medial", "offset", "subdivide"};
     if (helps_scratch(r))
         cli_hint(r, HINT_SCRATCH);
     else if (r->common.max_memory)
         cli_hint(r, HINT_LIMIT);
-    if (r->num_operands > 0 && strstr(estimated, r->command->name)) cli_hint(r, HINT_ESTIMATE);
+    for (size_t i = 0; r->num_operands > 0 && i < sizeof estimated / sizeof *estimated; i++)
+        if (is(r, estimated[i])) cli_hint(r, HINT_ESTIMATE);
 }
 
 static void suggest_for_check(run *r) {
     if (!is(r, "check")) return;
-    if (strstr(cli_message(r, BRIO_ERR_CHECK), "not closed")) cli_hint(r, HINT_OPEN);
+    if (fails(r, BRIO_ERR_CHECK, BRIO_REASON_NOT_CLOSED)) cli_hint(r, HINT_OPEN);
     cli_hint(r, HINT_REPORT);
 }
 
 static void suggest_for_format(run *r) {
-    bool unknown = says(r, BRIO_ERR_FORMAT, "unknown format");
+    bool unknown = fails(r, BRIO_ERR_FORMAT, BRIO_REASON_UNKNOWN_FORMAT);
     if (unknown && is(r, "iso"))
         cli_hint(r, HINT_ISO);
     else if (unknown && !r->common.input_format)
@@ -156,18 +158,19 @@ static void examine_points(run *r, const brio_mesh *input) {
 static size_t coincident(run *r, const brio_mesh *mesh) {
     size_t count = 0;
     char message[sizeof r->message];
+    const brio_failure failure = r->failure;
     memcpy(message, r->message, sizeof message);
     if (cli_cloud_duplicates(r, mesh->vertices, mesh->num_vertices, &count) != BRIO_OK) count = 0;
     memcpy(r->message, message, sizeof message);
+    r->failure = failure;
     return count;
 }
 
 void cli_examine(run *r, brio_status status, const brio_mesh *input) {
-    bool open = status == BRIO_ERR_CHECK && says(r, status, "not closed");
-    bool hollow = status == BRIO_ERR_NO_ANSWER && says(r, status, "the mesh has no inside");
     if (status != BRIO_ERR_CHECK && status != BRIO_ERR_NO_ANSWER) return;
-    if (!r->message[0])
-        cli_fail(r, status, "%s", brio_message(r->ctx)); /* the next call changes the context's message */
+    bool open = fails(r, BRIO_ERR_CHECK, BRIO_REASON_NOT_CLOSED);
+    bool hollow = fails(r, BRIO_ERR_NO_ANSWER, BRIO_REASON_OPEN_MESH);
+    cli_keep_failure(r, status);
     if (status == BRIO_ERR_NO_ANSWER && !input->num_faces) examine_points(r, input);
     size_t count = open || hollow ? coincident(r, input) : 0;
     if (count) cli_hint(r, HINT_MERGE, count, r->operands[0]);
@@ -178,12 +181,21 @@ void cli_tell_apart(run *r, const brio_mesh *mesh, bool closed) {
     if (count) cli_warn(r, WARNING_APART, r->operands[0]);
 }
 
+/* Returns whether a sentence begins with a name, as all sentences do that are about one file. */
+static bool names(const char *sentence, const char *name) {
+    size_t length = strlen(name);
+    return !strncmp(sentence, name, length) && (sentence[length] == ':' || sentence[length] == ',');
+}
+
 void cli_name_input(run *r, brio_status status) {
     char message[sizeof r->message];
+    const brio_failure failure = cli_failure(r);
     bool about_input = status == BRIO_ERR_NO_ANSWER || status == BRIO_ERR_CHECK;
     if (!about_input || !r->command || r->command->first_input >= r->num_operands) return;
     const char *input = r->operands[r->command->first_input];
     snprintf(message, sizeof message, "%s", cli_message(r, status));
-    if (strstr(message, input)) return;
-    snprintf(r->message, sizeof r->message, "%.300s: %.700s", strcmp(input, "-") ? input : "standard input", message);
+    if (!strcmp(input, "-")) input = "standard input";
+    if (names(message, input)) return;
+    snprintf(r->message, sizeof r->message, "%.300s: %.700s", input, message);
+    r->failure = failure;
 }

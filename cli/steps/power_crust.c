@@ -30,7 +30,7 @@ brio_status cli_settle_labeling(run *r, const brio_mesh *input, int *labeling, b
 }
 
 void cli_suggest_labeling(run *r, brio_status status, const brio_mesh *input, bool by_mesh) {
-    bool hollow = status == BRIO_ERR_NO_ANSWER && strstr(cli_message(r, status), "the mesh has no inside") != NULL;
+    bool hollow = status == BRIO_ERR_NO_ANSWER && cli_failure(r).reason == BRIO_REASON_OPEN_MESH;
     cli_examine(r, status, input);
     if (hollow && by_mesh) cli_hint(r, HINT_LABELING);
 }

@@ -38,6 +38,36 @@ typedef enum brio_status {
 /** Returns a static sentence for a status; never NULL. */
 BRIO_API const char *brio_status_string(brio_status status);
 
+/** What a failure is about, beside its status: for programs that go by it. Most failures have none. */
+typedef enum brio_reason {
+    BRIO_REASON_NONE = 0,
+    BRIO_REASON_NO_INSIDE = 1,       /* the points, or what their poles tell, bound no solid */
+    BRIO_REASON_OPEN_MESH = 2,       /* a mesh that was to bound a solid has no inside: its faces do not close */
+    BRIO_REASON_NOT_CLOSED = 3,      /* a surface or a curve that was to be closed has a boundary */
+    BRIO_REASON_SWALLOWED = 4,       /* an offset inwards leaves nothing */
+    BRIO_REASON_NOT_TRIANGLES = 5,   /* a mesh of triangles is needed */
+    BRIO_REASON_SCALE = 6,           /* what is computed is beyond doubles; scaled, the input has an answer */
+    BRIO_REASON_NO_VALUE = 7,        /* no tetrahedron has so small a value */
+    BRIO_REASON_ALL_HOLES = 8,       /* all faces span holes that were to be left open */
+    BRIO_REASON_NO_COMPONENT = 9,    /* no component is large enough to be kept */
+    BRIO_REASON_NOT_FLAT = 10,       /* the points are not in a plane */
+    BRIO_REASON_UNKNOWN_FORMAT = 11, /* neither the name nor the beginning of a file tells its format */
+    BRIO_REASON_END
+} brio_reason;
+
+/** Returns a short name for a reason that stays the same, such as "open_mesh"; "" for BRIO_REASON_NONE. */
+BRIO_API const char *brio_reason_name(brio_reason reason);
+
+/** What is known of a failure besides its sentence. */
+typedef struct brio_failure {
+    size_t size;
+    brio_status status;
+    brio_reason reason;
+    size_t num_points; /* points that the sentence names: of these the first four are known */
+    size_t points[4];  /* their indices */
+    uint64_t bytes;    /* BRIO_ERR_NO_MEMORY: of the block that there was no room for; 0: not known */
+} brio_failure;
+
 /** Memory functions of the caller's choice. alloc and realloc return NULL on failure; sizes are in bytes; blocks are
  *  aligned as malloc's. Several threads may call them at a time. The context copies the struct; `user` must outlive the
  *  context. */
@@ -63,6 +93,10 @@ BRIO_API void brio_context_free(brio_context *ctx);
  *  was none. A call that succeeds leaves the sentence as it was, so it tells
  *  something after a failure only. Valid until the next call with the context. */
 BRIO_API const char *brio_message(const brio_context *ctx);
+
+/** Writes what is known of the failure that brio_message explains; zeros when there was none.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an impossible size). */
+BRIO_API brio_status brio_last_failure(brio_context *ctx, brio_failure *out);
 
 /** Sets the greatest number of threads that a call uses, the calling thread included. 0 (default) means every processor
  *  that the process may run on. The greatest number that counts is four for each processor, or 64 if that is more. A

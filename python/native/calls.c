@@ -116,9 +116,18 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
     return 0;
 }
 
-/* Sets the exception of a status and a sentence, whose reference it takes; NULL leaves the exception that is set. */
-static void raise(module_state *state, brio_status status, PyObject *sentence) {
-    PyObject *error = sentence ? PyObject_CallFunction(state->make_error, "iO", (int)status, sentence) : NULL;
+/* Sets the exception of a failure and a sentence, whose reference it takes; NULL leaves the exception that is set. */
+static void raise(module_state *state, const brio_failure *f, PyObject *sentence) {
+    PyObject *points = PyList_New(0), *error = NULL;
+    for (size_t i = 0; points && i < f->num_points && i < sizeof f->points / sizeof *f->points; i++) {
+        PyObject *point = PyLong_FromSize_t(f->points[i]);
+        if (!point || PyList_Append(points, point)) Py_CLEAR(points);
+        Py_XDECREF(point);
+    }
+    if (sentence && points)
+        error = PyObject_CallFunction(state->make_error, "iOOs", (int)f->status, sentence, points,
+                                      brio_reason_name(f->reason));
+    Py_XDECREF(points);
     Py_XDECREF(sentence);
     if (!error) return;
     PyErr_SetObject((PyObject *)Py_TYPE(error), error);
@@ -132,13 +141,18 @@ static PyObject *sentence_of(const call *c) {
 }
 
 int raise_argument(module_state *state, PyObject *sentence) {
-    raise(state, BRIO_ERR_ARGUMENT, sentence);
+    raise(state, &(brio_failure){.status = BRIO_ERR_ARGUMENT}, sentence);
     return -1;
 }
 
 int call_end(call *c, brio_status status) {
     int failed = status != BRIO_OK || PyErr_Occurred();
-    if (failed && !PyErr_Occurred()) raise(c->state, status, sentence_of(c));
+    brio_failure failure = {.size = sizeof failure};
+    if (failed && !PyErr_Occurred()) {
+        (void)brio_last_failure(c->ctx, &failure);
+        failure.status = status;
+        raise(c->state, &failure, sentence_of(c));
+    }
     brio_context_set_progress(c->ctx, NULL, NULL);
     context_give(c->state, c->context);
     return failed ? -1 : 0;
@@ -207,8 +221,9 @@ int handle_has_points(module_state *state, PyObject *object, const input *points
     uint64_t own =
         h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t) : brio_triangulation_points_hash(t);
     if (own == brio_points_hash(points->data, weights->data, points->rows, (int)points->columns)) return 0;
-    return raise_argument(state, PyUnicode_FromString("the points are not those of the triangulation: they were changed "
-                                                      "since"));
+    return raise_argument(state,
+                          PyUnicode_FromString("the points are not those of the triangulation: they were changed "
+                                               "since"));
 }
 
 static PyType_Slot handle_slots[] = {

@@ -48,7 +48,8 @@ static PyObject *build_info(PyObject *module, PyObject *unused) {
 
 static PyMethodDef methods[] = {
     {"build_info", build_info, METH_NOARGS, "How the library was built, in a dict."},
-    {"set_make_error", set_make_error, METH_O, "Sets the function that makes exceptions of status and sentence."},
+    {"set_make_error", set_make_error, METH_O,
+     "Sets the function that makes exceptions of status, sentence, points and reason."},
     {NULL, NULL, 0, NULL},
 };
 

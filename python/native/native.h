@@ -31,7 +31,7 @@ typedef struct {
     PyThread_type_lock lock;
     pooled_context *contexts;
     PyTypeObject *handle_type, *array_type;
-    PyObject *make_error; /* of status and sentence, an exception; None until errors.py has set it */
+    PyObject *make_error; /* of status, sentence, points and reason, an exception; None until errors.py has set it */
 } module_state;
 
 module_state *state_of(PyObject *module);

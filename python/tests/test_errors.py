@@ -11,9 +11,9 @@ GENERATOR = np.random.default_rng(5)
 
 def test_every_status_has_a_class():
     for status, kind in brio.errors._BY_STATUS.items():
-        error = brio.errors._make_error(status, "point 7: wrong, points 8 and 9 too")
+        error = brio.errors._make_error(status, "point 7: wrong, points 8 and 9 too", [7, 8], "why")
         assert type(error) is kind and error.status == status and str(error) == error.sentence
-        assert error.indices.tolist() == [7, 8] and isinstance(error, brio.Error)
+        assert error.indices.tolist() == [7, 8] and error.reason == "why" and isinstance(error, brio.Error)
     assert type(brio.errors._make_error(12345, "")) is brio.InternalError
 
 

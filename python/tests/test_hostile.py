@@ -268,7 +268,7 @@ import importlib.util, array
 spec = importlib.util.spec_from_file_location("brio._native", %r)
 native = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(native)
-native.set_make_error(lambda status, sentence: RuntimeError(sentence))
+native.set_make_error(lambda status, sentence, points, reason: RuntimeError(sentence))
 points = memoryview(array.array("d", [0, 0, 1, 0, 0, 1])).cast("B").cast("d", (3, 2))
 t = native.delaunay2(points, None, 0, None)
 assert native.triangulation_facts(t)["simplices"] == 1

@@ -78,7 +78,7 @@ brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex
         bool rises = i + 1 == n || g.value[order[i + 1]] > *alpha;
         if (rises && g.sets == 1 && g.vertices == complex->counts[0]) break;
     }
-    BRIO_REQUIRE(ctx, *alpha < INFINITY, BRIO_ERR_NO_ANSWER,
+    BRIO_REQUIRE(ctx, *alpha < INFINITY, BRIO_BECAUSE(ctx, SCALE, BRIO_ERR_NO_ANSWER),
                  "the squared radii of one solid are beyond doubles: scale the points down");
     BRIO_TRY(brio_refuse_small_alpha(ctx, complex, *alpha));
 done:

@@ -96,8 +96,8 @@ static void count_all(shape *s) {
 
 static brio_status make_surface(shape *s, const double *points) {
     count_all(s);
-    BRIO_EXPECT(s->ctx, s->stats.tetrahedra > 0, BRIO_ERR_NO_ANSWER, "no tetrahedron has a value of at most alpha = %g",
-                s->alpha);
+    BRIO_EXPECT(s->ctx, s->stats.tetrahedra > 0, BRIO_BECAUSE(s->ctx, NO_VALUE, BRIO_ERR_NO_ANSWER),
+                "no tetrahedron has a value of at most alpha = %g", s->alpha);
     BRIO_FORWARD(brio_refuse_small_alpha(s->ctx, s->complex, s->alpha));
     BRIO_FORWARD(list_faces(s));
     BRIO_FORWARD(place_vertices(s, points));

@@ -15,9 +15,32 @@ brio_status brio_fail(brio_context *ctx, brio_status status, const char *format,
     va_start(arguments, format);
     brio_mutex_lock(&ctx->lock); /* several threads may fail at a time */
     vsnprintf(ctx->message, sizeof ctx->message, format, arguments);
+    ctx->failure = ctx->next;
+    ctx->failure.status = status;
+    ctx->next = (brio_failure){0};
     brio_mutex_unlock(&ctx->lock);
     va_end(arguments);
     return status;
+}
+
+void brio_reason_is(brio_context *ctx, brio_reason reason) {
+    brio_mutex_lock(&ctx->lock);
+    ctx->next.reason = reason;
+    brio_mutex_unlock(&ctx->lock);
+}
+
+void brio_name_point(brio_context *ctx, size_t point) {
+    brio_mutex_lock(&ctx->lock);
+    brio_failure *f = &ctx->next;
+    if (f->num_points < sizeof f->points / sizeof *f->points) f->points[f->num_points] = point;
+    f->num_points++;
+    brio_mutex_unlock(&ctx->lock);
+}
+
+void brio_block_is(brio_context *ctx, size_t bytes) {
+    brio_mutex_lock(&ctx->lock);
+    ctx->next.bytes = bytes;
+    brio_mutex_unlock(&ctx->lock);
 }
 
 static double place_in(brio_bar bar, double fraction) {

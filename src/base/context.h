@@ -46,11 +46,22 @@ struct brio_context {
     bool stopped;                             /* the callback asked to stop, in the loop (team.h) that runs */
     const struct brio_experiment *experiment; /* experiment.h; NULL: none */
     char message[512];
+    brio_failure failure, next; /* of the message; what is known so far of the failure that is about to come */
 };
 
 /** Stores a message in the context and returns the status. Threads may call this together. */
 brio_status brio_fail(brio_context *ctx, brio_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+/** Records what the failure that comes next is about: a reason; a point that its sentence names; the bytes of a block.
+ *  In the arguments of brio_fail and of the macros below, which evaluate them after a failure only. */
+void brio_reason_is(brio_context *ctx, brio_reason reason);
+void brio_name_point(brio_context *ctx, size_t point);
+void brio_block_is(brio_context *ctx, size_t bytes);
+
+/** A status with its reason, and the index of a point, as arguments. */
+#define BRIO_BECAUSE(ctx, reason, code) (brio_reason_is(ctx, BRIO_REASON_##reason), (code))
+#define BRIO_POINT(ctx, point)          (brio_name_point(ctx, point), (point))
 
 /** Reports that a fraction of a stage is done. Returns BRIO_OK, or BRIO_ERR_CANCELLED if the callback asked to stop.
  *  Only the thread that called the library may call this. */

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/scratch_file.h"
 #include "base/team.h"
+#include "base/versioned.h"
 #include "platform/pages.h"
 #include <assert.h>
 #include <stdlib.h>
@@ -57,6 +58,12 @@ void brio_context_free(brio_context *ctx) {
     brio_mutex_free(&ctx->lock);
     brio_allocator a = ctx->allocator;
     a.free(ctx, a.user);
+}
+
+brio_status brio_last_failure(brio_context *ctx, brio_failure *out) {
+    BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_failure, out));
+    BRIO_GIVE(brio_failure, out, &ctx->failure);
+    return BRIO_OK;
 }
 
 void brio_context_set_threads(brio_context *ctx, int threads) {

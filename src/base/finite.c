@@ -37,10 +37,12 @@ brio_status brio_refuse_counted(brio_context *ctx, const brio_not_finite *found,
     assert(found->axis && found->what);
     if (!file)
         return brio_fail(ctx, BRIO_ERR_NOT_FINITE, "point %" PRIu64 ": %s is %s (%" PRIu64 " such point%s in all)",
-                         found->first, found->axis, found->what, found->count, found->count == 1 ? "" : "s");
+                         BRIO_POINT(ctx, found->first), found->axis, found->what, found->count,
+                         found->count == 1 ? "" : "s");
     return brio_fail(ctx, BRIO_ERR_NOT_FINITE,
                      "%s: point %" PRIu64 ": %s is %s (%" PRIu64 " such point%s in all); points are counted from 0",
-                     file, found->first, found->axis, found->what, found->count, found->count == 1 ? "" : "s");
+                     file, BRIO_POINT(ctx, found->first), found->axis, found->what, found->count,
+                     found->count == 1 ? "" : "s");
 }
 
 brio_status brio_refuse_not_finite(brio_context *ctx, const double *points, const double *weights, size_t n,

@@ -143,6 +143,7 @@ static void settle(void *block, size_t used) {
 }
 
 static brio_status refuse(brio_context *ctx, size_t size) {
+    brio_block_is(ctx, size);
     return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "out of memory: %zu bytes more, %zu in use, limit %zu", size,
                      brio_context_memory(ctx), brio_memory_limit(ctx));
 }

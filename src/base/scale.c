@@ -58,7 +58,7 @@ brio_status brio_scale(brio_context *ctx, const double *x, size_t n, int exponen
 brio_status brio_scale_vertices(brio_context *ctx, double *vertices, size_t num_vertices, int exponent) {
     BRIO_FORWARD(brio_scale(ctx, vertices, 3 * num_vertices, exponent, vertices));
     for (size_t i = 0; i < 3 * num_vertices; i++)
-        BRIO_EXPECT(ctx, isfinite(vertices[i]), BRIO_ERR_NO_ANSWER,
+        BRIO_EXPECT(ctx, isfinite(vertices[i]), BRIO_BECAUSE(ctx, SCALE, BRIO_ERR_NO_ANSWER),
                     "doubles cannot hold vertex %zu (counted from 0) of the result: scale the points down", i / 3);
     return BRIO_OK;
 }

@@ -1,4 +1,4 @@
-/* The sentences of statuses, and the version. */
+/* The sentences of statuses, the names of reasons, and the version. */
 #include "brio/brio.h"
 
 const char *brio_status_string(brio_status status) {
@@ -31,6 +31,25 @@ const char *brio_status_string(brio_status status) {
         break;
     }
     return "not a status";
+}
+
+const char *brio_reason_name(brio_reason reason) {
+    static const char *const names[] = {
+        [BRIO_REASON_NONE] = "",
+        [BRIO_REASON_NO_INSIDE] = "no_inside",
+        [BRIO_REASON_OPEN_MESH] = "open_mesh",
+        [BRIO_REASON_NOT_CLOSED] = "not_closed",
+        [BRIO_REASON_SWALLOWED] = "swallowed",
+        [BRIO_REASON_NOT_TRIANGLES] = "not_triangles",
+        [BRIO_REASON_SCALE] = "scale",
+        [BRIO_REASON_NO_VALUE] = "no_value",
+        [BRIO_REASON_ALL_HOLES] = "all_holes",
+        [BRIO_REASON_NO_COMPONENT] = "no_component",
+        [BRIO_REASON_NOT_FLAT] = "not_flat",
+        [BRIO_REASON_UNKNOWN_FORMAT] = "unknown_format",
+    };
+    _Static_assert(sizeof names / sizeof *names == BRIO_REASON_END, "a name for each reason");
+    return (unsigned)reason < BRIO_REASON_END ? names[reason] : "";
 }
 
 const char *brio_version(void) {

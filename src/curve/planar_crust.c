@@ -373,7 +373,8 @@ brio_status brio_planar_crust(brio_context *ctx, const double *points, size_t nu
     c.count = s->triangles + s->hull_edges;
     BRIO_TRY(label_triangles(&c));
     count_sides(&c, &mine);
-    BRIO_REQUIRE(ctx, mine.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
+    BRIO_REQUIRE(ctx, mine.inner > 0, BRIO_BECAUSE(ctx, NO_INSIDE, BRIO_ERR_NO_ANSWER),
+                 "no inside found: no pole is inner");
     BRIO_TRY(make_crust(&c, &flat, brio_triangulation2_representatives(t), points, out));
     if (shape) BRIO_TRY(make_shape(&c, &flat, shape));
     mine.samples = (*out)->num_vertices;

@@ -59,7 +59,8 @@ brio_status brio_flat_points_take(brio_context *ctx, const double *points, size_
     out->exponent = brio_exponent(brio_greatest(rows, 3 * n));
     BRIO_TRY(brio_scale(ctx, rows, 3 * n, -out->exponent, rows));
     BRIO_TRY(brio_plane_fit(ctx, rows, n, &out->frame));
-    BRIO_REQUIRE(ctx, out->frame.dimension < 3 || out->frame.thickness <= THIN * extent_of(rows, n), BRIO_ERR_NO_ANSWER,
+    BRIO_REQUIRE(ctx, out->frame.dimension < 3 || out->frame.thickness <= THIN * extent_of(rows, n),
+                 BRIO_BECAUSE(ctx, NOT_FLAT, BRIO_ERR_NO_ANSWER),
                  "the points are not in a plane: one is %g off the plane that fits them best",
                  ldexp(out->frame.thickness, out->exponent));
     BRIO_TRY(BRIO_ALLOC(ctx, out->at, n));

@@ -84,7 +84,8 @@ static brio_status cells_npy_write(brio_output *out, const brio_cells *cells) {
 /* --- any format --- */
 
 static brio_status check(brio_context *ctx, const char *path, const brio_cells *cells, brio_cells_format format) {
-    BRIO_EXPECT(ctx, format > BRIO_CELLS_FORMAT_AUTO && format < BRIO_CELLS_FORMAT_END, BRIO_ERR_ARGUMENT,
+    BRIO_EXPECT(ctx, format > BRIO_CELLS_FORMAT_AUTO && format < BRIO_CELLS_FORMAT_END,
+                BRIO_BECAUSE(ctx, UNKNOWN_FORMAT, BRIO_ERR_ARGUMENT),
                 "%s: unknown format of cells, expected .vtu .npy or .csv", path);
     BRIO_EXPECT(ctx, cells->area && cells->centroid && cells->face_offsets, BRIO_ERR_ARGUMENT,
                 "%s: the cells have no areas, centroids or faces: brio_cells_options asks for them", path);

@@ -28,7 +28,8 @@ static brio_status find_kind(brio_stream *s, const char *path, bool *is_map) {
     BRIO_FORWARD(brio_stream_fill(s, MAP_WORD + 4));
     bool marked = brio_stream_left(s) >= MAP_WORD + 4 && !memcmp(s->buffer + s->begin + MAP_WORD, "MAP ", 4);
     bool known = marked || !strcmp(path, "-") || has_extension(path, maps) || has_extension(path, atoms);
-    BRIO_EXPECT(s->ctx, known, BRIO_ERR_FORMAT, "%s: unknown format, expected .map .mrc .ccp4 or .pdb .ent", s->name);
+    BRIO_EXPECT(s->ctx, known, BRIO_BECAUSE(s->ctx, UNKNOWN_FORMAT, BRIO_ERR_FORMAT),
+                "%s: unknown format, expected .map .mrc .ccp4 or .pdb .ent", s->name);
     *is_map = marked || has_extension(path, maps);
     return BRIO_OK;
 }

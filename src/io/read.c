@@ -77,7 +77,8 @@ static brio_status find_format(brio_stream *s, const char *path, brio_read_job *
     if (job->format == BRIO_FORMAT_AUTO) {
         char known[BRIO_FORMAT_LIST];
         brio_format_list(0, 0, known, sizeof known);
-        status = brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: unknown format, expected one of %s", s->name, known);
+        status = brio_fail(s->ctx, BRIO_BECAUSE(s->ctx, UNKNOWN_FORMAT, BRIO_ERR_FORMAT),
+                           "%s: unknown format, expected one of %s", s->name, known);
     }
 done:
     return status;

@@ -36,7 +36,8 @@ brio_status brio_check_written(brio_context *ctx, const char *path, brio_format 
     if (!info) {
         char known[BRIO_FORMAT_LIST];
         brio_format_list(1, 0, known, sizeof known);
-        return brio_fail(ctx, BRIO_ERR_ARGUMENT, "%s: unknown format, expected one of %s", path, known);
+        return brio_fail(ctx, BRIO_BECAUSE(ctx, UNKNOWN_FORMAT, BRIO_ERR_ARGUMENT),
+                         "%s: unknown format, expected one of %s", path, known);
     }
     BRIO_EXPECT(ctx, info->written[0], BRIO_ERR_ARGUMENT, "%s: %s is read, not written", path, info->name);
     BRIO_EXPECT(ctx, format != BRIO_FORMAT_GLB || !brio_is_gltf(path), BRIO_ERR_ARGUMENT,

@@ -145,7 +145,8 @@ brio_status brio_mesh_keep_components(brio_mesh *mesh, int largest, size_t least
         BRIO_TRY(measure(&s));
         BRIO_TRY(BRIO_ALLOC_ZERO(s.ctx, s.used, mesh->num_vertices));
         BRIO_TRY(BRIO_ALLOC(s.ctx, s.number, mesh->num_vertices));
-        BRIO_REQUIRE(s.ctx, choose(&s, largest != 0, least_faces, &dropped) > 0, BRIO_ERR_NO_ANSWER,
+        BRIO_REQUIRE(s.ctx, choose(&s, largest != 0, least_faces, &dropped) > 0,
+                     BRIO_BECAUSE(s.ctx, NO_COMPONENT, BRIO_ERR_NO_ANSWER),
                      "no component is left: none of %zu has %zu faces", dropped, least_faces);
         move_faces(&s);
         move_vertices(&s);

@@ -218,7 +218,7 @@ static brio_status scale_back(brio_context *ctx, int exponent, brio_distance *d)
     double *const figures[] = {&d->mean, &d->rms, &d->p95, &d->hausdorff, &d->diagonal};
     for (int i = 0; i < 5; i++) {
         *figures[i] = ldexp(*figures[i], exponent);
-        BRIO_EXPECT(ctx, isfinite(*figures[i]), BRIO_ERR_NO_ANSWER,
+        BRIO_EXPECT(ctx, isfinite(*figures[i]), BRIO_BECAUSE(ctx, SCALE, BRIO_ERR_NO_ANSWER),
                     "doubles cannot hold the distances: scale the meshes down");
     }
     return BRIO_OK;

@@ -71,7 +71,7 @@ static brio_status check_boundary(brio_context *ctx, const brio_mesh *mesh) {
         for (end = begin; end < count && keys[end] == keys[begin]; end++) sum += upwards[end] ? 1 : -1;
         open += sum != 0;
     }
-    BRIO_REQUIRE(ctx, open == 0, BRIO_ERR_NO_ANSWER,
+    BRIO_REQUIRE(ctx, open == 0, BRIO_BECAUSE(ctx, OPEN_MESH, BRIO_ERR_NO_ANSWER),
                  "the mesh has no inside: along %zu edges its faces do not close or disagree about their sides", open);
 done:
     brio_release(ctx, number);
@@ -84,7 +84,8 @@ brio_status brio_solid_new(brio_context *ctx, const brio_mesh *mesh, brio_solid 
     *out = (brio_solid){{0}};
     BRIO_FORWARD(brio_mesh_check_faces(ctx, mesh));
     BRIO_FORWARD(brio_refuse_vertices(ctx, mesh->vertices, mesh->num_vertices, "the solid"));
-    BRIO_EXPECT(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
+    BRIO_EXPECT(ctx, mesh->num_faces > 0, BRIO_BECAUSE(ctx, OPEN_MESH, BRIO_ERR_NO_ANSWER),
+                "the mesh has no inside: it has no faces");
     BRIO_FORWARD(check_boundary(ctx, mesh));
     return brio_triangle_tree_new(ctx, mesh, &out->tree);
 }

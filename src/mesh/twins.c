@@ -7,8 +7,8 @@ static brio_status check_triangles(brio_context *ctx, const brio_mesh *mesh) {
     for (size_t f = 0; f < mesh->num_faces; f++) {
         BRIO_FORWARD(brio_look(ctx, 1));
         uint64_t first = mesh->face_offsets[f], sides = mesh->face_offsets[f + 1] - first;
-        BRIO_EXPECT(ctx, sides == 3, BRIO_ERR_NO_ANSWER, "face %zu has %llu corners: a mesh of triangles is needed", f,
-                    (unsigned long long)sides);
+        BRIO_EXPECT(ctx, sides == 3, BRIO_BECAUSE(ctx, NOT_TRIANGLES, BRIO_ERR_NO_ANSWER),
+                    "face %zu has %llu corners: a mesh of triangles is needed", f, (unsigned long long)sides);
         const uint32_t *v = mesh->face_vertices + first;
         BRIO_EXPECT(ctx, v[0] != v[1] && v[1] != v[2] && v[2] != v[0], BRIO_ERR_NO_ANSWER,
                     "face %zu has a vertex twice", f);

@@ -144,8 +144,9 @@ brio_status brio_offset_settle(brio_context *ctx, const brio_mesh *mesh, double 
     if (o->error == 0) o->error = USUAL_ERROR * fabs(distance);
     BRIO_EXPECT(ctx, o->error < fabs(distance), BRIO_ERR_ARGUMENT,
                 "the error %g of an offset is not less than its distance %g", o->error, fabs(distance));
-    BRIO_EXPECT(ctx, mesh->num_faces > 0, BRIO_ERR_NO_ANSWER, "the mesh has no inside: it has no faces");
-    BRIO_EXPECT(ctx, -distance <= size, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
+    BRIO_EXPECT(ctx, mesh->num_faces > 0, BRIO_BECAUSE(ctx, OPEN_MESH, BRIO_ERR_NO_ANSWER),
+                "the mesh has no inside: it has no faces");
+    BRIO_EXPECT(ctx, -distance <= size, BRIO_BECAUSE(ctx, SWALLOWED, BRIO_ERR_NO_ANSWER), SWALLOWED, distance);
     BRIO_EXPECT(ctx, distance / FARTHEST <= size, BRIO_ERR_ARGUMENT,
                 "the distance %g of the offset is more than 2^30 times the size %g of the mesh", distance, size);
     most = fmax(most, fabs(distance));
@@ -175,7 +176,7 @@ brio_status brio_mesh_offset(brio_context *ctx, const brio_mesh *mesh, double di
     w.field = (brio_offset_field){&solid, ldexp(fabs(distance), -exponent), distance < 0};
     w.error = ldexp(AIM * o.error, -exponent);
     BRIO_TRY(make(&w, &s.rounds));
-    BRIO_REQUIRE(ctx, w.num_triangles > 0, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
+    BRIO_REQUIRE(ctx, w.num_triangles > 0, BRIO_BECAUSE(ctx, SWALLOWED, BRIO_ERR_NO_ANSWER), SWALLOWED, distance);
     BRIO_TRY(give(&w, exponent, out));
     s.samples = w.num_points;
     s.error = ldexp(worst_of(&w), exponent);

@@ -38,7 +38,8 @@ static brio_status check_orientation(brio_plane_judge *j) {
                     "triangle %zu of %zu finite and %zu infinite ones is out of place", t, j->t->stats.triangles,
                     j->t->stats.hull_edges);
         for (int i = 0; i < 3 - infinite; i++)
-            BRIO_EXPECT(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "triangle %zu: no point %u", t, v[i]);
+            BRIO_EXPECT(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "triangle %zu: no point %u", t,
+                        BRIO_POINT(j->ctx, v[i]));
         BRIO_EXPECT(j->ctx, infinite || orientation(j, v[0], v[1], v[2]) > 0, BRIO_ERR_CHECK,
                     "triangle %zu (%u %u %u) is not counterclockwise", t, v[0], v[1], v[2]);
     }
@@ -77,11 +78,11 @@ brio_status brio_plane_check_circle(brio_plane_judge *j, uint32_t t, uint32_t p)
     const double *a = j->view.record[v[0]], *b = j->view.record[v[1]], *c = j->view.record[v[2]];
     const double *x = j->view.record[p];
     int sign = brio_incircle_sign(&j->filter, a, b, c, x, j->filter.general);
-    BRIO_EXPECT(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the circle of triangle %u (%u %u %u)", p, t,
-                v[0], v[1], v[2]);
+    BRIO_EXPECT(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the circle of triangle %u (%u %u %u)",
+                BRIO_POINT(j->ctx, p), t, v[0], v[1], v[2]);
     BRIO_EXPECT(j->ctx, sign < 0 || brio_incircle_tie(&j->filter, a, b, c, x) < 0, BRIO_ERR_CHECK,
-                "point %u is on the circle of triangle %u (%u %u %u), and the tie is not broken by the perturbation", p,
-                t, v[0], v[1], v[2]);
+                "point %u is on the circle of triangle %u (%u %u %u), and the tie is not broken by the perturbation",
+                BRIO_POINT(j->ctx, p), t, v[0], v[1], v[2]);
     return BRIO_OK;
 }
 

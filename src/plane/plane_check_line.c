@@ -82,21 +82,21 @@ static uint32_t nearest_vertex(const workspace *w, uint32_t p, size_t i) {
 /* Runs test 3 on point p, whose place is at or before the i-th vertex. */
 static brio_status check_point(workspace *w, uint32_t p, size_t i) {
     const brio_plane_judge *j = w->j;
-    BRIO_EXPECT(j->ctx, i < w->count, BRIO_ERR_CHECK, "point %u is outside the hull", p);
+    BRIO_EXPECT(j->ctx, i < w->count, BRIO_ERR_CHECK, "point %u is outside the hull", BRIO_POINT(j->ctx, p));
     uint32_t v = w->line[i], right = v;
     if (compare(w, v, p) == 0) {
         double more = w->record[p][3] - w->record[v][3];
         BRIO_EXPECT(j->ctx, more < 0 || (more == 0 && v <= p), BRIO_ERR_CHECK,
-                    "point %u should represent its duplicate %u", p, v);
+                    "point %u should represent its duplicate %u", BRIO_POINT(j->ctx, p), v);
     } else {
-        BRIO_EXPECT(j->ctx, i > 0, BRIO_ERR_CHECK, "point %u is outside the hull", p);
+        BRIO_EXPECT(j->ctx, i > 0, BRIO_ERR_CHECK, "point %u is outside the hull", BRIO_POINT(j->ctx, p));
         BRIO_EXPECT(j->ctx, !in_conflict(w, i - 1, p), BRIO_ERR_CHECK,
-                    "point %u is inside the circle of vertices %u and %u", p, w->line[i - 1], v);
+                    "point %u is inside the circle of vertices %u and %u", BRIO_POINT(j->ctx, p), w->line[i - 1], v);
         w->hidden[w->num_hidden++] = p;
         right = nearest_vertex(w, p, i);
     }
     BRIO_EXPECT(j->ctx, j->t->representative[p] == right, BRIO_ERR_CHECK, "point %u is represented by %u instead of %u",
-                p, j->t->representative[p], right);
+                BRIO_POINT(j->ctx, p), j->t->representative[p], right);
     return BRIO_OK;
 }
 
@@ -127,7 +127,8 @@ static brio_status check_one_place(workspace *w) {
         if (w->record[p][3] > w->record[best][3]) best = p;
     for (uint32_t p = 0; p < j->num_points; p++)
         BRIO_REQUIRE(j->ctx, j->t->representative[p] == best, BRIO_ERR_CHECK,
-                     "point %u is represented by %u instead of %u", p, j->t->representative[p], best);
+                     "point %u is represented by %u instead of %u", BRIO_POINT(j->ctx, p), j->t->representative[p],
+                     best);
     status = check_counts(w, j->num_points > 0);
 done:
     return status;

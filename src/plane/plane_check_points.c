@@ -34,7 +34,7 @@ static brio_status check_vertices(workspace *w) {
         uint32_t v = j->t->representative[p];
         bool vertex = w->corner[p] != BRIO_NO_TRIANGLE;
         BRIO_EXPECT(j->ctx, v < j->num_points && w->corner[v] != BRIO_NO_TRIANGLE, BRIO_ERR_CHECK,
-                    "point %zu is represented by %u, which is no vertex", p, v);
+                    "point %zu is represented by %u, which is no vertex", BRIO_POINT(j->ctx, p), v);
         BRIO_EXPECT(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
     }
     return BRIO_OK;
@@ -44,10 +44,13 @@ static brio_status check_vertices(workspace *w) {
 static brio_status check_duplicate(workspace *w, uint32_t p, uint32_t v) {
     const brio_plane_judge *j = w->j;
     double more = j->view.record[p][3] - j->view.record[v][3];
-    BRIO_EXPECT(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position", p, v);
-    BRIO_EXPECT(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u", p, v);
+    BRIO_EXPECT(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position",
+                BRIO_POINT(j->ctx, p), v);
+    BRIO_EXPECT(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u",
+                BRIO_POINT(j->ctx, p), v);
     BRIO_EXPECT(j->ctx, j->t->representative[p] == v, BRIO_ERR_CHECK,
-                "point %u is a duplicate of vertex %u, but vertex %u represents it", p, v, j->t->representative[p]);
+                "point %u is a duplicate of vertex %u, but vertex %u represents it", BRIO_POINT(j->ctx, p), v,
+                j->t->representative[p]);
     return BRIO_OK;
 }
 
@@ -60,7 +63,8 @@ static brio_status check_hidden(workspace *w, uint32_t p, uint32_t t) {
     w->hidden[w->num_hidden++] = p;
     uint32_t best = brio_plane_nearest_vertex(&nearest, t, j->view.record[p]);
     BRIO_EXPECT(j->ctx, j->t->representative[p] == best, BRIO_ERR_CHECK,
-                "hidden point %u is represented by %u instead of %u", p, j->t->representative[p], best);
+                "hidden point %u is represented by %u instead of %u", BRIO_POINT(j->ctx, p), j->t->representative[p],
+                best);
     return BRIO_OK;
 }
 
@@ -71,7 +75,7 @@ static brio_status check_point(workspace *w, uint32_t p) {
     uint32_t start = w->corner[j->t->representative[p]];
     uint32_t t = brio_plane_walk(&j->view, &j->filter, start, x, &w->steps);
     const uint32_t *v = j->view.triangle[t].vertex;
-    BRIO_REQUIRE(j->ctx, v[2] != BRIO_INFINITE, BRIO_ERR_CHECK, "point %u is outside the hull", p);
+    BRIO_REQUIRE(j->ctx, v[2] != BRIO_INFINITE, BRIO_ERR_CHECK, "point %u is outside the hull", BRIO_POINT(j->ctx, p));
     for (int i = 0; i < 3; i++)
         if (brio_same_place(j->view.record[v[i]], x)) return check_duplicate(w, p, v[i]);
     status = check_hidden(w, p, t);

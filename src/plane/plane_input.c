@@ -104,8 +104,8 @@ static brio_status find_corners(brio_context *ctx, search *s, double (*corner)[4
     find_filter(s);
     for (size_t i = 0; i < s->in->count; i++) {
         if (i > 0 && !off_hull(s, (const double(*)[4])corner, i)) continue;
-        BRIO_EXPECT(ctx, s->count < 3, BRIO_ERR_NO_ANSWER, "point %zu is off the plane of points %zu, %zu and %zu", i,
-                    c[0], c[1], c[2]);
+        BRIO_EXPECT(ctx, s->count < 3, BRIO_ERR_NO_ANSWER, "point %zu is off the plane of points %zu, %zu and %zu",
+                    BRIO_POINT(ctx, i), BRIO_POINT(ctx, c[0]), c[1], c[2]);
         load(s->in, i, corner[s->count]);
         s->corner[s->count++] = i;
     }

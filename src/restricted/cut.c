@@ -50,8 +50,8 @@ brio_status brio_restriction_edges(brio_restriction *r) {
     BRIO_TRY(brio_radix_sort(ctx, key, half, n, 62));
     for (size_t i = 0; i < n; i += 2) {
         bool two = i + 1 < n && key[i] == key[i + 1] && (i + 2 == n || key[i + 2] != key[i]);
-        BRIO_REQUIRE(ctx, two, BRIO_ERR_ARGUMENT, "the surface is not closed: an edge of face %u has not two faces",
-                     half[i] / 3);
+        BRIO_REQUIRE(ctx, two, BRIO_BECAUSE(ctx, NOT_CLOSED, BRIO_ERR_ARGUMENT),
+                     "the surface is not closed: an edge of face %u has not two faces", half[i] / 3);
         size_t e = r->num_edges++;
         r->end[e][0] = (uint32_t)(key[i] >> 31), r->end[e][1] = (uint32_t)(key[i] & ((UINT32_C(1) << 31) - 1));
         for (int k = 0; k < 2; k++) {

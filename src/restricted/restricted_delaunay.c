@@ -28,7 +28,7 @@ static brio_status check_surface(brio_context *ctx, const brio_mesh *surface) {
                      (int)(surface->face_offsets[f + 1] - surface->face_offsets[f]));
     BRIO_TRY(brio_mesh_certificate(ctx, surface, &c));
     BRIO_REQUIRE(
-        ctx, c.closed && c.manifold, BRIO_ERR_ARGUMENT,
+        ctx, c.closed && c.manifold, BRIO_BECAUSE(ctx, NOT_CLOSED, BRIO_ERR_ARGUMENT),
         "the surface is no closed manifold: %zu faces, %zu boundary edges, %zu edges of more than two faces, %zu "
         "vertices where more than one sheet meets",
         surface->num_faces, c.boundary_edges, c.nonmanifold_edges, c.nonmanifold_vertices);

@@ -160,7 +160,8 @@ static brio_status copy_positive(brio_context *ctx, const brio_record *r, size_t
         uint32_t *v = to[tet].vertex;
         memcpy(v, from->vertices + from->stride * tet, 4 * sizeof *v);
         for (int i = 0; i < 4; i++)
-            BRIO_EXPECT(ctx, v[i] < num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
+            BRIO_EXPECT(ctx, v[i] < num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet,
+                        BRIO_POINT(ctx, v[i]));
         int sign = brio_orient3d(r[v[0]], r[v[1]], r[v[2]], r[v[3]]);
         BRIO_EXPECT(ctx, sign != 0, BRIO_ERR_CHECK, "tetrahedron %zu (%u %u %u %u) is flat", tet, v[0], v[1], v[2],
                     v[3]);
@@ -258,7 +259,8 @@ static brio_status check_orientation(brio_judge *j) {
         const uint32_t *v = vertices_of(j, tet);
         bool infinite = v[3] == BRIO_INFINITE;
         for (int i = 0; i < 4 - infinite; i++)
-            BRIO_EXPECT(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet, v[i]);
+            BRIO_EXPECT(j->ctx, v[i] < j->num_points, BRIO_ERR_CHECK, "tetrahedron %zu: no point %u", tet,
+                        BRIO_POINT(j->ctx, v[i]));
         BRIO_EXPECT(j->ctx, infinite || brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[v[3]]) > 0,
                     BRIO_ERR_CHECK, "tetrahedron %zu (%u %u %u %u) is not positive", tet, v[0], v[1], v[2], v[3]);
     }
@@ -304,7 +306,8 @@ static brio_status check_hull_edge(brio_judge *j, size_t tet, uint32_t far) {
     const uint32_t *v = vertices_of(j, tet);
     const brio_record *r = j->t.record;
     BRIO_EXPECT(j->ctx, brio_orient3d_sign(&j->filter, r[v[0]], r[v[1]], r[v[2]], r[far]) <= 0, BRIO_ERR_CHECK,
-                "the hull is not convex: point %u is outside of facet (%u %u %u)", far, v[0], v[1], v[2]);
+                "the hull is not convex: point %u is outside of facet (%u %u %u)", BRIO_POINT(j->ctx, far), v[0], v[1],
+                v[2]);
     return BRIO_OK;
 }
 
@@ -313,8 +316,8 @@ brio_status brio_check_sphere(brio_judge *j, size_t tet, uint32_t p) {
     const double *a = j->t.record[v[0]], *b = j->t.record[v[1]], *c = j->t.record[v[2]], *d = j->t.record[v[3]],
                  *e = j->t.record[p];
     int sign = brio_insphere_sign(&j->filter, a, b, c, d, e, j->weighted);
-    BRIO_EXPECT(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the sphere of tetrahedron %zu (%u %u %u %u)", p,
-                tet, v[0], v[1], v[2], v[3]);
+    BRIO_EXPECT(j->ctx, sign <= 0, BRIO_ERR_CHECK, "point %u is inside the sphere of tetrahedron %zu (%u %u %u %u)",
+                BRIO_POINT(j->ctx, p), tet, v[0], v[1], v[2], v[3]);
     if (sign == 0 && brio_insphere_tie(&j->filter, a, b, c, d, e) > 0) j->canonical = false;
     return BRIO_OK;
 }

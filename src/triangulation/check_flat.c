@@ -69,7 +69,7 @@ static brio_status check_one_position(brio_context *ctx, const brio_triangulatio
         if (weights && weights[p] > weights[best]) best = p;
     for (size_t p = 0; p < n; p++)
         BRIO_EXPECT(ctx, t->representative[p] == best, BRIO_ERR_CHECK, "point %zu is represented by %u instead of %zu",
-                    p, t->representative[p], best);
+                    BRIO_POINT(ctx, p), t->representative[p], best);
     BRIO_EXPECT(ctx, t->stats.vertices == (n > 0) && t->stats.duplicates == n - (n > 0) && t->stats.hidden == 0,
                 BRIO_ERR_CHECK, "%zu points at one position are counted as %zu vertices, %zu duplicates, %zu hidden", n,
                 t->stats.vertices, t->stats.duplicates, t->stats.hidden);
@@ -81,7 +81,8 @@ static brio_status compare_with_solid(brio_context *ctx, const brio_triangulatio
     size_t n = t->stats.points, vertices = solid->stats.vertices - (solid->stats.points - n);
     for (size_t p = 0; p < n; p++)
         BRIO_EXPECT(ctx, t->representative[p] == solid->representative[p], BRIO_ERR_CHECK,
-                    "point %zu is represented by %u instead of %u", p, t->representative[p], solid->representative[p]);
+                    "point %zu is represented by %u instead of %u", BRIO_POINT(ctx, p), t->representative[p],
+                    solid->representative[p]);
     BRIO_EXPECT(ctx,
                 t->stats.vertices == vertices && t->stats.duplicates == solid->stats.duplicates &&
                     t->stats.hidden == solid->stats.hidden,

@@ -44,7 +44,7 @@ static brio_status check_vertices(workspace *w) {
         uint32_t v = w->result->representative[p];
         bool vertex = w->vertex_tet[p] != BRIO_NO_TET, open = v == BRIO_INFINITE && w->result->leaves_hidden;
         BRIO_EXPECT(j->ctx, open || (v < j->num_points && w->vertex_tet[v] != BRIO_NO_TET), BRIO_ERR_CHECK,
-                    "point %zu is represented by %u, which is no vertex", p, v);
+                    "point %zu is represented by %u, which is no vertex", BRIO_POINT(j->ctx, p), v);
         BRIO_EXPECT(j->ctx, !vertex || v == p, BRIO_ERR_CHECK, "vertex %zu is represented by %u", p, v);
     }
     return BRIO_OK;
@@ -62,11 +62,13 @@ static uint32_t vertex_at(const brio_judge *j, uint32_t tet, const double *x) {
 static brio_status check_duplicate(workspace *w, uint32_t p, uint32_t v) {
     const brio_judge *j = w->j;
     double more = j->weighted ? j->t.record[p][3] - j->t.record[v][3] : 0;
-    BRIO_EXPECT(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position", p, v);
+    BRIO_EXPECT(j->ctx, more <= 0, BRIO_ERR_CHECK, "point %u is heavier than vertex %u at the same position",
+                BRIO_POINT(j->ctx, p), v);
     if (!w->result) return BRIO_OK;
-    BRIO_EXPECT(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u", p, v);
+    BRIO_EXPECT(j->ctx, more < 0 || v < p, BRIO_ERR_CHECK, "point %u should represent its duplicate %u",
+                BRIO_POINT(j->ctx, p), v);
     BRIO_EXPECT(j->ctx, w->result->representative[p] == v, BRIO_ERR_CHECK,
-                "point %u is a duplicate of vertex %u, but vertex %u represents it", p, v,
+                "point %u is a duplicate of vertex %u, but vertex %u represents it", BRIO_POINT(j->ctx, p), v,
                 w->result->representative[p]);
     return BRIO_OK;
 }
@@ -82,7 +84,8 @@ static brio_status check_hidden(workspace *w, uint32_t p, uint32_t tet) {
     w->hidden[w->num_hidden++] = p;
     if (!w->result->leaves_hidden) BRIO_FORWARD(brio_nearest_vertex(&w->nearest, tet, j->t.record[p], &best));
     BRIO_EXPECT(j->ctx, w->result->representative[p] == best, BRIO_ERR_CHECK,
-                "hidden point %u is represented by %u instead of %u", p, w->result->representative[p], best);
+                "hidden point %u is represented by %u instead of %u", BRIO_POINT(j->ctx, p),
+                w->result->representative[p], best);
     return BRIO_OK;
 }
 
@@ -95,7 +98,8 @@ static brio_status check_point(workspace *w, uint32_t p) {
     uint32_t tet = brio_locate_walk(&j->t, NULL, &j->filter, &w->walk, x, UINT64_MAX);
     w->walk.start = tet;
     BRIO_TRY(brio_look(j->ctx, 16));
-    BRIO_REQUIRE(j->ctx, !brio_is_infinite(&j->t, tet), BRIO_ERR_CHECK, "point %u is outside the hull", p);
+    BRIO_REQUIRE(j->ctx, !brio_is_infinite(&j->t, tet), BRIO_ERR_CHECK, "point %u is outside the hull",
+                 BRIO_POINT(j->ctx, p));
     uint32_t v = vertex_at(j, tet, x);
     status = v != BRIO_INFINITE ? check_duplicate(w, p, v) : check_hidden(w, p, tet);
 done:

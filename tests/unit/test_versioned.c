@@ -183,6 +183,7 @@ ENDS_WITH(brio_power_shape_stats, shape_seconds);
 ENDS_WITH(brio_evidence, origin_of);
 ENDS_WITH(brio_iso_surface_options, vertices);
 ENDS_WITH(brio_write_options, reserved_int);
+ENDS_WITH(brio_failure, bytes);
 ENDS_WITH(brio_read_options, origins);
 ENDS_WITH(brio_read_notes, rounded_column);
 ENDS_WITH(brio_merge_stats, edges);

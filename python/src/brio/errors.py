@@ -1,6 +1,5 @@
 """Exceptions: one for each status of the library, with the sentence that explains the failure."""
 
-import re
 from typing import Any
 
 import numpy as np
@@ -20,20 +19,24 @@ class Error(Exception):
         What is wrong, and where.
     indices : ndarray of int64
         The points, or other rows of the input, that are to blame; empty where that is not known.
+    reason : str
+        What it is about, for programs, such as "no_inside" or "open_mesh": a name of ``brio_reason`` of brio/context.h. ""
+        where the class says it all.
     """
 
     status = 0
 
-    def __init__(self, sentence: str, indices: Any = ()) -> None:
+    def __init__(self, sentence: str, indices: Any = (), reason: str = "") -> None:
         super().__init__(sentence)
         self.sentence = sentence
+        self.reason = reason
         self.indices: NDArray[np.int64] = np.asarray(indices, dtype=np.int64)
 
     def __str__(self) -> str:
         return self.sentence
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self.sentence, self.indices)
+        return type(self), (self.sentence, self.indices, self.reason)
 
 
 class ArgumentError(Error, ValueError):
@@ -113,12 +116,11 @@ _BY_STATUS: dict[int, type[Error]] = {
     for kind in (ArgumentError, NotFiniteError, NoAnswerError, CheckError, OutOfMemoryError, TooLargeError,
                  CancelledError, OpenError, FormatError, WriteError, InternalError)
 }
-_NAMED = re.compile(r"\bpoints? (\d+)")
 
 
-def _make_error(status: int, sentence: str) -> Error:
-    """Makes the exception of a status; called by the module of C."""
-    return _BY_STATUS.get(status, InternalError)(sentence, [int(n) for n in _NAMED.findall(sentence)])
+def _make_error(status: int, sentence: str, points: Any = (), reason: str = "") -> Error:
+    """Makes the exception of a failure; called by the module of C."""
+    return _BY_STATUS.get(status, InternalError)(sentence, points, reason)
 
 
 _native.set_make_error(_make_error)

@@ -26,7 +26,8 @@ brio_status brio_point_graph_new(const brio_store *store, const brio_laboratory_
     first = out->first;
     for (size_t i = 0; i < ends; i++) {
         uint32_t point = __atomic_load_n(&options->edges[i], __ATOMIC_RELAXED);
-        BRIO_REQUIRE(store->ctx, point < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2, point, n);
+        BRIO_REQUIRE(store->ctx, point < n, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2,
+                     BRIO_POINT(store->ctx, point), n);
         end[i] = record[point];
         first[end[i]]++;
     }

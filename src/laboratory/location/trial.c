@@ -27,7 +27,7 @@ static brio_status begin(void *user, brio_context *ctx, size_t num_points) {
     brio_trial_clear(trial);
     for (size_t i = 0; o->edges && i < 2 * o->num_edges; i++)
         BRIO_EXPECT(ctx, o->edges[i] < num_points, BRIO_ERR_ARGUMENT, "edge %zu ends at point %u of %zu", i / 2,
-                    o->edges[i], num_points);
+                    BRIO_POINT(ctx, o->edges[i]), num_points);
     return o->page_bytes ? brio_page_touches_new(ctx, o->page_bytes, o->cache_bytes, &trial->touches) : BRIO_OK;
 }
 

@@ -131,7 +131,7 @@ static brio_status extract(reconstruction *r) {
     BRIO_TRY(brio_make_manifold(r->ctx, &r->labels, &boundary, &out->stats.relabeled));
     BRIO_TRY(brio_extract_faces(r->ctx, &r->labels, r->options->method != BRIO_SURFACE_TIGHT_COCONE, &boundary,
                                 &out->faces, &out->num_faces));
-    BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_ERR_NO_ANSWER, "no inside found");
+    BRIO_REQUIRE(r->ctx, out->num_faces > 0, BRIO_BECAUSE(r->ctx, NO_INSIDE, BRIO_ERR_NO_ANSWER), "no inside found");
     lap(r, &out->stats.manifold_seconds);
 done:
     brio_release(r->ctx, boundary.facet);

@@ -157,7 +157,7 @@ static brio_status extract(brio_reconstruction *r) {
     brio_status status = BRIO_OK;
     brio_facets boundary = {0};
     BRIO_TRY(find_boundary(r, &boundary));
-    BRIO_REQUIRE(r->ctx, boundary.count > 0, BRIO_ERR_NO_ANSWER, "no inside found");
+    BRIO_REQUIRE(r->ctx, boundary.count > 0, BRIO_BECAUSE(r->ctx, NO_INSIDE, BRIO_ERR_NO_ANSWER), "no inside found");
     BRIO_TRY(list_faces(r, &boundary));
     if (r->options->confidence) {
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->confidence, r->num_points));
@@ -202,7 +202,8 @@ static brio_status open_surface(brio_reconstruction *r) {
     r->stats.far_share = u.far_share;
     r->stats.bridge_radius = ldexp(u.largest_radius, r->exponent);
     for (size_t k = 0; k < 3; k++) r->stats.bridge_centre[k] = ldexp(u.largest_centre[k], r->exponent);
-    BRIO_REQUIRE(r->ctx, r->num_faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all triangles span holes");
+    BRIO_REQUIRE(r->ctx, r->num_faces > 0, BRIO_BECAUSE(r->ctx, ALL_HOLES, BRIO_ERR_NO_ANSWER),
+                 "no surface is left: all triangles span holes");
     brio_lap(r, &r->stats.open_seconds);
 done:
     return status;

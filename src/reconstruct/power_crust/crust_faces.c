@@ -266,7 +266,8 @@ static brio_status make_faces(builder *b) {
     BRIO_TRY(b->status);
     sum_blocks(b);
     const block_counts *total = &b->blocks[b->num_blocks];
-    BRIO_REQUIRE(ctx, total->faces > 0, BRIO_ERR_NO_ANSWER, "no surface is left: all faces span holes");
+    BRIO_REQUIRE(ctx, total->faces > 0, BRIO_BECAUSE(ctx, ALL_HOLES, BRIO_ERR_NO_ANSWER),
+                 "no surface is left: all faces span holes");
     BRIO_TRY(brio_progress(ctx, "crust", 0.8));
     BRIO_TRY(BRIO_ALLOC(ctx, m->face_offsets, total->faces + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, m->face_vertices, total->corners));
@@ -302,7 +303,8 @@ brio_status brio_crust_faces(const brio_power_diagram *d, const uint8_t *label, 
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.blocks, b.num_blocks + 1));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, b.lists, b.num_blocks));
     BRIO_TRY(make_vertices(&b));
-    BRIO_REQUIRE(ctx, mesh->num_vertices > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole with a cell is inner");
+    BRIO_REQUIRE(ctx, mesh->num_vertices > 0, BRIO_BECAUSE(ctx, NO_INSIDE, BRIO_ERR_NO_ANSWER),
+                 "no inside found: no pole with a cell is inner");
     if (options->spacing) BRIO_TRY(add_spacing(&b));
     BRIO_TRY(make_faces(&b));
     *counts = (brio_crust_counts){b.blocks[b.num_blocks].rings, b.blocks[b.num_blocks].left_out};

@@ -171,8 +171,8 @@ static brio_status triangulate_poles(brio_labeled_poles *l) {
     double start = brio_seconds();
     BRIO_TRY(brio_delaunay(l->ctx, l->poles.centre, l->poles.square, l->poles.count, &l->triangulation, &l->power));
     l->stats.power_seconds += brio_seconds() - start;
-    BRIO_REQUIRE(l->ctx, brio_triangulation_stats(l->power)->dimension == 3, BRIO_ERR_NO_ANSWER,
-                 "no inside found: the poles span no solid");
+    BRIO_REQUIRE(l->ctx, brio_triangulation_stats(l->power)->dimension == 3,
+                 BRIO_BECAUSE(l->ctx, NO_INSIDE, BRIO_ERR_NO_ANSWER), "no inside found: the poles span no solid");
     l->diagram = brio_power_diagram_of(&l->poles, l->points, l->num_samples, l->power);
 done:
     return status;

@@ -54,12 +54,14 @@ static brio_status find_balls(brio_labeled_poles *l, const double *points, size_
     double most = fmin(brio_greatest(points, 3 * num_points), DBL_MAX * 0x1p-64);
     BRIO_REQUIRE(l->ctx, num_points == 0 || distance <= FARTHEST * most, BRIO_ERR_ARGUMENT,
                  "the distance %g of the offset is more than 2^60 times the greatest coordinate %g", distance, most);
-    BRIO_REQUIRE(l->ctx, num_points == 0 || -distance <= FARTHEST * most, BRIO_ERR_NO_ANSWER, SWALLOWED, distance);
+    BRIO_REQUIRE(l->ctx, num_points == 0 || -distance <= FARTHEST * most,
+                 BRIO_BECAUSE(l->ctx, SWALLOWED, BRIO_ERR_NO_ANSWER), SWALLOWED, distance);
     BRIO_TRY(brio_pole_request_of(l->ctx, &o->poles, o->noise, o->seed, &request));
     request.spacing = o->simplify;
     request.margin = MARGIN * fabs(distance);
     BRIO_TRY(brio_labeled_poles_find(l->ctx, points, num_points, &request, l));
-    BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_ERR_NO_ANSWER, "no inside found: no pole is inner");
+    BRIO_REQUIRE(l->ctx, l->stats.inner > 0, BRIO_BECAUSE(l->ctx, NO_INSIDE, BRIO_ERR_NO_ANSWER),
+                 "no inside found: no pole is inner");
 done:
     return status;
 }
@@ -72,7 +74,8 @@ static brio_status make_offset(brio_labeled_poles *l, const brio_surface_options
     brio_progress_part(l->ctx, bar, MOVE_SHARE, 1);
     if (status == BRIO_OK) status = brio_make_crust(l, o, mesh, NULL, stats);
     brio_progress_part(l->ctx, bar, 0, 1);
-    if (status == BRIO_ERR_NO_ANSWER && o->distance < 0) return brio_fail(l->ctx, status, SWALLOWED, o->distance);
+    if (status == BRIO_ERR_NO_ANSWER && o->distance < 0)
+        return brio_fail(l->ctx, BRIO_BECAUSE(l->ctx, SWALLOWED, status), SWALLOWED, o->distance);
     return status;
 }
 
