@@ -87,7 +87,7 @@ static const brio_format_row table[] = {
       BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS},
      .codec = &brio_node_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_PTX, "a PTX file", "ptx", "ptx",
-      BRIO_HOLDS_COLOURS | BRIO_HOLDS_INTENSITY | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, "intensity"},
      .codec = &brio_ptx_codec,
      .colours = BRIO_COLOURS_8,
      .scans = true},
@@ -98,7 +98,7 @@ static const brio_format_row table[] = {
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
      .codec = &brio_chemical_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_PTS, "a PTS file", "pts", "pts",
-      BRIO_HOLDS_COLOURS | BRIO_HOLDS_INTENSITY | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, "intensity"},
      .codec = &brio_pts_codec,
      .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_XYZRGB, "a text of points with colours", "xyzrgb", "xyzrgb",
@@ -130,12 +130,22 @@ bool brio_format_holds(brio_format format, unsigned what) {
     return row && (row->info.holds & what);
 }
 
+/* Returns whether a list has a name. */
+static bool is_listed(const char *list, const char *name) {
+    for (const char *at = list ? list : ""; *at; at += *at == ' ') {
+        size_t length = strcspn(at, " ");
+        if (length == strlen(name) && !strncmp(at, name, length)) return true;
+        at += length;
+    }
+    return false;
+}
+
 bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i) {
     brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
     const brio_property *p = &m->properties[i];
     if (brio_format_holds(format, BRIO_HOLDS_PROPERTIES)) return true;
     if (colour.count > 3) colour.count = 3;
-    if (brio_format_holds(format, BRIO_HOLDS_INTENSITY) && !strcmp(p->name, "intensity")) return true;
+    if (is_listed(brio_format_facts(format)->properties, p->name)) return true;
     return (brio_format_holds(format, BRIO_HOLDS_COLOURS) && brio_channels_have(&colour, p)) ||
            (brio_format_holds(format, BRIO_HOLDS_NORMALS) && brio_channels_have(&normal, p));
 }
