@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets
 
 all:
 	@sh scripts/setup.sh build
@@ -152,6 +152,11 @@ thesis: all
 machines:
 	@sh scripts/setup.sh machines
 	/usr/bin/python3 tests/machines/machines.py . out/machines
+
+# Every system that brio is for, built here, and run where this machine can: docs/platforms.md. TARGETS="--only wasm32-wasi" for some.
+targets:
+	@sh scripts/setup.sh targets
+	/usr/bin/python3 tests/targets/targets.py . build/targets out/targets-env/bin/python $(TARGETS)
 
 # Debian packages of what is committed, in out/deb.
 deb:

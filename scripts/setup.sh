@@ -87,6 +87,11 @@ missing() {
         [ -x $python ] || echo python3
         return 0
     fi
+    if [ "$1" = targets ]; then
+        [ -x $python ] || echo python3
+        has_python_with ensurepip || echo python3-venv
+        return 0
+    fi
     if [ "$1" = deb ]; then
         has git || echo git
         has dpkg-buildpackage || echo dpkg-dev
@@ -127,6 +132,12 @@ missing_peers() {
         has aarch64-linux-gnu-gcc || echo gcc-aarch64-linux-gnu libc6-dev-arm64-cross
         has s390x-linux-gnu-gcc || echo gcc-s390x-linux-gnu libc6-dev-s390x-cross
         has qemu-s390x || echo qemu-user
+        return 0
+    fi
+    if [ "$1" = targets ]; then
+        has qemu-aarch64 || echo qemu-user
+        has wine || echo wine wine64
+        has node || echo nodejs
         return 0
     fi
     if [ "$1" = check ]; then
@@ -211,6 +222,18 @@ install_open3d() {
     has_open3d || echo "setup: Open3D could not be installed from PyPI: it is left out" >&2
 }
 
+# The C cross compiler of make targets, in an environment of its own and in the version that was tried.
+install_cross_compiler() {
+    environment=out/targets-env
+    has_ziglang() { "$environment/bin/python" -c 'import ziglang' >/dev/null 2>&1; }
+    has_ziglang && return 0
+    echo "setup: installing ziglang in $environment"
+    $python -m venv "$environment" >/dev/null 2>&1 && "$environment/bin/pip" install -q --no-compile ziglang==0.17.1 >/dev/null 2>&1 || true
+    has_ziglang && return 0
+    echo "setup: ziglang could not be installed from PyPI" >&2
+    exit 1
+}
+
 # An environment of the tests' own for the Python packages of tests/requirements.txt: CMake looks for its Python.
 make_tests_environment() {
     environment=out/tests-env
@@ -235,9 +258,9 @@ packages)
     install_tests_packages
     exit 0
     ;;
-build | check | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | deb) ;;
+build | check | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|deb" >&2
+    echo "usage: setup.sh build|check|packages|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|deb" >&2
     exit 1
     ;;
 esac
@@ -253,6 +276,7 @@ fi
 if [ -z "$packages" ]; then
     [ "$purpose" != quality ] || install_poisson
     [ "$purpose" != rivals ] || install_open3d
+    [ "$purpose" != targets ] || install_cross_compiler
     [ "$purpose" != check ] || make_tests_environment
     exit 0
 fi

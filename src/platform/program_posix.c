@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "platform/program.h"
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 #ifndef __wasi__
@@ -11,6 +12,10 @@
 
 void brio_program_begin(int *argc, char ***argv) {
     (void)argc, (void)argv;
+#ifdef __wasi__ /* where a program begins in no folder */
+    const char *here = getenv("PWD");
+    if (here) (void)!chdir(here);
+#endif
     for (int stream = 0; stream < 3; stream++)
         if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", stream ? O_RDONLY : O_WRONLY) != stream) return;
 }
