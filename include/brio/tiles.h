@@ -28,8 +28,8 @@ typedef struct brio_tiles_options {
     size_t size;
     const char *scratch; /* a folder with room for about 40 bytes a point twice, and 18 a tetrahedron */
     uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
-    int weighted;        /* 1: points have weights */
-    uint64_t key;        /* 0: a run that ends, in whatever way, leaves no file. Else a number that tells this input and
+    int reserved_int;
+    uint64_t key; /* 0: a run that ends, in whatever way, leaves no file. Else a number that tells this input and
                             this way to read it from others: the files of a process that was killed are then gone on
                             with, by the next run in the same folder that has the same key and number of tiles */
 } brio_tiles_options;
@@ -38,7 +38,7 @@ typedef struct brio_tiles_options {
 typedef struct brio_tiles_stats {
     size_t size;
     uint64_t points, vertices, duplicates, hidden;
-    int dimension;
+    int dimension, weighted;
     uint32_t tiles; /* that hold points */
     uint64_t tetrahedra, hull_facets;
     uint64_t asked;           /* spheres and half-spaces for which a tile asked others */
@@ -75,7 +75,7 @@ BRIO_API brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options 
 BRIO_API int brio_tiles_has_points(const brio_tiles *t);
 
 /** Appends points.
- *  points  num_points by 3.   weights  num_points; NULL where options.weighted is 0.
+ *  points  num_points by 3.   weights  num_points, or NULL: in all calls, or in none.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_WRITE (the disk is full), BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const double *points, const double *weights,

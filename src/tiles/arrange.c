@@ -169,7 +169,7 @@ brio_status brio_tiles_arrange(brio_tiles *t) {
     }
     t->stats.dimension = t->num_basis - 1;
     BRIO_TRY(brio_tile_tree_close(t));
-    status = brio_store_publish(&out, "points");
+    status = brio_store_publish(&out, "points", t->key != 0);
 done:
     brio_store_close(&out);
     brio_progress_part(t->ctx, bar, 0, 1);

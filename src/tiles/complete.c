@@ -132,7 +132,7 @@ static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_verte
     BRIO_FORWARD(brio_store_append(f, w->halo, w->facts->halo * sizeof *w->halo));
     BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points));
     BRIO_FORWARD(brio_store_write(f, 0, &head, sizeof head));
-    return brio_store_publish(f, name);
+    return brio_store_publish(f, name, w->t->key != 0);
 }
 
 static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {

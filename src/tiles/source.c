@@ -19,7 +19,7 @@
 enum {
     ENOUGH = 12,         /* points in conflict that end a search. Chosen: tiles.md */
     ENOUGH_OF_BLOCK = 4, /* of one block */
-    PATIENCE = 16,
+    PATIENCE = 2,
     BALLS_A_THREAD = 64
 };
 
@@ -178,24 +178,31 @@ static brio_status add_whole(search *se, block *b) {
     return BRIO_OK;
 }
 
-/* Adds points of a block.   *hits  grows by those in conflict, and by one if the block may have some that were added. */
-static brio_status search_block(search *se, const brio_ball *ball, block *b, int *hits) {
+static bool is_vertex(const brio_ball *ball, const double *record) {
+    for (int i = 0; i < (ball->infinite ? 3 : 4); i++)
+        if (brio_same_position(ball->vertex[i], record)) return true;
+    return false;
+}
+
+/* Adds points of a block.   *hits  grows by those in conflict.   *unsure  becomes true if the block has points that were
+ * added in this round and not compared: they end no search, for none need be in conflict. */
+static brio_status search_block(search *se, const brio_ball *ball, block *b, int *hits, bool *unsure) {
     uint32_t list[TILE_BLOCK], wasted = 0;
     int state = __atomic_load_n(&b->state, __ATOMIC_RELAXED), before = *hits;
-    if (state == BLOCK_ADDED) ++*hits;
+    *unsure |= state == BLOCK_ADDED;
     if (state != BLOCK_NEW) return BRIO_OK;
     uint32_t n = list_near(ball, b, list);
     for (uint32_t i = 0; i < n && *hits < before + ENOUGH_OF_BLOCK; i++) {
         brio_set_point p = point_of(b, list[i]);
         if (!brio_ball_takes(&se->filter, ball, p.record)) {
-            wasted++;
+            wasted += !is_vertex(ball, p.record);
             continue;
         }
         ++*hits;
         BRIO_FORWARD(brio_found_add(&se->found, &p));
     }
     if (!wasted || __atomic_add_fetch(&b->wasted, wasted, __ATOMIC_RELAXED) <= PATIENCE * b->points) return BRIO_OK;
-    ++*hits;
+    *unsure = true;
     return add_whole(se, b);
 }
 
@@ -218,6 +225,7 @@ static brio_status descend(brio_tile_source *s, search *se, const brio_ball *bal
 
 static brio_status search_ball(brio_tile_source *s, search *se, brio_ball *ball) {
     int hits = 0;
+    bool unsure = false;
     se->num_next = 0;
     BRIO_FORWARD(descend(s, se, ball, &(brio_tile_node){.first = (uint32_t)s->t->num_nodes - 1, .children = 1}, &hits));
     while (se->num_next > 0 && hits < ENOUGH) {
@@ -232,11 +240,11 @@ static brio_status search_ball(brio_tile_source *s, search *se, brio_ball *ball)
                 BRIO_FORWARD(descend(s, se, ball, node, &hits));
             } else {
                 BRIO_FORWARD(find_block(s, se->now[i], &b));
-                BRIO_FORWARD(search_block(se, ball, b, &hits));
+                BRIO_FORWARD(search_block(se, ball, b, &hits, &unsure));
             }
         }
     }
-    ball->is_free = hits == 0;
+    ball->is_free = hits == 0 && !unsure;
     return BRIO_OK;
 }
 

@@ -96,11 +96,11 @@ bool brio_store_has(const brio_store_folder *folder, const char *name) {
     return access(path, R_OK) == 0;
 }
 
-brio_status brio_store_publish(brio_store_file *f, const char *name) {
+brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts) {
     char from[PATH_BYTES], to[PATH_BYTES];
     path_of(f->folder, f->name, from);
     path_of(f->folder, name, to);
-    if (fdatasync(f->file) != 0) return fail_file(f, BRIO_ERR_WRITE, "write", errno);
+    if (lasts && fdatasync(f->file) != 0) return fail_file(f, BRIO_ERR_WRITE, "write", errno);
     if (rename(from, to) != 0) return fail_file(f, BRIO_ERR_WRITE, "rename it", errno);
     snprintf(f->name, sizeof f->name, "%s", name);
     return BRIO_OK;

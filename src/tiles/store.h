@@ -33,8 +33,9 @@ brio_status brio_store_create(brio_store_folder *folder, const char *name, brio_
 brio_status brio_store_open(brio_store_folder *folder, const char *name, brio_store_file *out);
 /** Returns whether a file is there. */
 bool brio_store_has(const brio_store_folder *folder, const char *name);
-/** Gives a complete file its name; *f stays open. Returns BRIO_OK or BRIO_ERR_WRITE. */
-brio_status brio_store_publish(brio_store_file *f, const char *name);
+/** Gives a complete file its name; *f stays open.   lasts  whether its bytes are on the disk before it has the name, so
+ *  that a machine that fails leaves no file that is not whole. Returns BRIO_OK or BRIO_ERR_WRITE. */
+brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts);
 void brio_store_remove(brio_store_folder *folder, const char *name);
 void brio_store_close(brio_store_file *f);
 

@@ -39,9 +39,8 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     t->ctx = ctx;
     t->raw.file = -1;
     t->folder.lock = -1;
-    t->weighted = o.weighted != 0;
     t->num_tiles = o.tiles ? o.tiles : TILES;
-    t->key = o.key ? brio_hash(o.key, (uint64_t)t->num_tiles << 1 | t->weighted) : 0;
+    t->key = o.key ? brio_hash(o.key, t->num_tiles) : 0;
     t->stats.size = sizeof t->stats;
     t->stats.dimension = -1;
     BRIO_TRY(begin_folder(t, o.scratch));
@@ -81,8 +80,10 @@ brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const double *point
     BRIO_DOOR;
     BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_EXPECT(ctx, !t->has_points, BRIO_ERR_ARGUMENT, "the tiles have all their points already");
-    BRIO_EXPECT(ctx, !weights == !t->weighted, BRIO_ERR_ARGUMENT, "the tiles are %s, and the points are not",
-                t->weighted ? "weighted" : "without weights");
+    if (!t->stats.points) t->weighted = weights != NULL;
+    BRIO_EXPECT(ctx, !num_points || !weights == !t->weighted, BRIO_ERR_ARGUMENT,
+                "earlier points have %s weights, and these have %s", t->weighted ? "" : "no",
+                weights ? "some" : "none");
     return brio_tiles_take(t, points, weights, num_points);
 }
 
@@ -120,6 +121,7 @@ typedef struct {
     brio_tiles_stats stats;
     brio_ball_box all;
     double lightest;
+    uint64_t weighted;
     brio_set_point extreme[TILE_DIRECTIONS], basis[4];
     int num_basis;
     uint64_t hash; /* of tiles and nodes */
@@ -146,6 +148,7 @@ static saved_head head_of(const brio_tiles *t) {
     h.stats = t->stats;
     h.all = t->all;
     h.lightest = t->lightest;
+    h.weighted = t->weighted;
     memcpy(h.extreme, t->extreme, sizeof h.extreme);
     memcpy(h.basis, t->basis, sizeof h.basis);
     h.num_basis = t->num_basis;
@@ -162,7 +165,7 @@ brio_status brio_tiles_save(brio_tiles *t) {
     BRIO_TRY(brio_store_append(&f, &h, sizeof h));
     BRIO_TRY(brio_store_append(&f, t->tile, t->num_tiles * sizeof *t->tile));
     BRIO_TRY(brio_store_append(&f, t->node, t->num_nodes * sizeof *t->node));
-    status = brio_store_publish(&f, "state");
+    status = brio_store_publish(&f, "state", true);
 done:
     brio_store_close(&f);
     return status;
@@ -186,6 +189,7 @@ static brio_status restore(brio_tiles *t, brio_store_file *f, bool *found) {
     t->stats = h.stats;
     t->all = h.all;
     t->lightest = h.lightest;
+    t->weighted = h.weighted != 0;
     memcpy(t->extreme, h.extreme, sizeof h.extreme);
     memcpy(t->basis, h.basis, sizeof h.basis);
     t->num_basis = h.num_basis;
@@ -242,6 +246,7 @@ static void add_facts(brio_tiles *t) {
     }
     if (s->dimension < 3) s->vertices = positions;
     s->hidden = positions - s->vertices;
+    s->weighted = t->weighted;
     s->scratch_bytes = t->folder.most;
 }
 

@@ -11,7 +11,7 @@
 #include "tiles/store.h"
 
 enum {
-    TILE_BLOCK = 256,    /* points in a block, at most. Chosen: tiles.md */
+    TILE_BLOCK = 128,    /* points in a block, at most. Chosen: tiles.md */
     TILE_FAN = 8,        /* blocks, or nodes, below a node */
     TILE_DIRECTIONS = 26 /* in which extreme points are found */
 };
