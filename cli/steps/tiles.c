@@ -3,12 +3,13 @@
 #include "cli/files/files.h"
 #include "cli/files/new_file.h"
 #include "cli/files/read_write.h"
+#include "platform/file.h"
+#include "platform/folder.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { MOST_TILES = 1 << 16, NAME_BYTES = 4096 };
 
@@ -88,14 +89,14 @@ static uint64_t mix_text(uint64_t hash, const char *text) {
 
 /* Returns a number for the input as it is now and the way in which it is read, or 0 if it cannot be read again. */
 static uint64_t key_of(const run *r, const weights_options *w) {
-    struct stat file;
+    brio_place_facts file;
     const common_options *c = &r->common;
     const char *path = r->operands[0];
-    if (!strcmp(path, "-") || stat(path, &file) != 0 || !S_ISREG(file.st_mode)) return 0;
+    if (!strcmp(path, "-") || !brio_find_facts(path, &file) || file.kind != BRIO_IS_FILE) return 0;
     uint64_t hash = mix_text(1, path);
-    hash = mix(mix(hash, (uint64_t)file.st_ino), (uint64_t)file.st_dev);
-    hash = mix(mix(hash, (uint64_t)file.st_size), (uint64_t)file.st_mtim.tv_sec);
-    hash = mix(hash, (uint64_t)file.st_mtim.tv_nsec);
+    hash = mix(mix(hash, file.number), file.volume);
+    hash = mix(mix(hash, file.size), (uint64_t)file.seconds);
+    hash = mix(hash, (uint64_t)file.nanoseconds);
     hash = mix_text(mix_text(hash, c->input_format), c->columns);
     hash = mix(hash, (uint64_t)c->drop_invalid << 2 | (uint64_t)c->salvage << 1 | w->unweighted);
     hash = mix_text(mix(hash, (uint64_t)(int64_t)w->exponent), brio_version());
@@ -188,10 +189,11 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
     char folder[NAME_BYTES], path[NAME_BYTES + 32];
     brio_status status = BRIO_OK;
     uint32_t written = 0;
+    bool made;
     size_t stem = strlen(r->common.output) - strlen(EXTENSION);
     if (stem >= sizeof folder) return cli_fail_output(r, "%s: the name is too long", r->common.output);
     snprintf(folder, sizeof folder, "%.*s", (int)stem, r->common.output);
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+    if (!brio_make_folder(folder, false, &made))
         return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", folder, strerror(errno));
     for (; written < tiles; written++) {
         snprintf(path, sizeof path, "%s/%u.vtu", folder, written);
@@ -201,9 +203,9 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
 done:
     for (uint32_t i = 0; status != BRIO_OK && i < written; i++) {
         snprintf(path, sizeof path, "%s/%u.vtu", folder, i);
-        remove(path);
+        brio_remove_file(path);
     }
-    if (status != BRIO_OK) remove(folder);
+    if (status != BRIO_OK && made) brio_remove_folder(folder);
     cli_lap(r, "write");
     return status;
 }

@@ -64,7 +64,7 @@ static brio_status flush(writing *w) {
     return status;
 }
 
-/* Is a brio_final_fn. */
+/* Takes final tetrahedra, as a brio_final_fn. */
 static brio_status take(void *user, const brio_set_point *known, const uint32_t (*vertex)[4], size_t count) {
     writing *w = user;
     for (size_t i = 0; i < count; i++) {

@@ -95,7 +95,8 @@ typedef struct {
     brio_ball_box home;
 } part;
 
-/* Finds where to cut along an axis so that `share` of the points are below. Returns false if all have one coordinate. */
+/* Finds where to cut along an axis so that `share` of the points are below. Returns false if all have one coordinate.
+ * */
 static bool find_cut(const brio_tiles *t, const part *p, int axis, uint64_t *key, double share, double *at) {
     size_t n = p->end - p->begin, rank = (size_t)(share * (double)n);
     for (size_t i = 0; i < n; i++) key[i] = brio_double_key(t->sample[p->begin + i][axis]);

@@ -12,6 +12,7 @@
  * A block in memory has a reader for each coordinate, so that comparisons with a ball run in vector lanes. */
 #include "base/memory.h"
 #include "base/team.h"
+#include "platform/thread.h"
 #include "tiles/work.h"
 #include <assert.h>
 #include <string.h>
@@ -52,7 +53,7 @@ struct brio_tile_source {
     uint64_t num_read;
     uint32_t *read; /* nodes whose blocks are in memory */
     size_t read_capacity;
-    pthread_mutex_t lock; /* of what is above */
+    brio_mutex lock; /* of what is above */
     search *search;
     int threads;
     brio_status status; /* of the threads; atomic */
@@ -73,7 +74,7 @@ brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, brio_tile_source 
     s->t = t;
     s->tile = tile;
     s->points.file = -1;
-    pthread_mutex_init(&s->lock, NULL);
+    brio_mutex_new(&s->lock);
     s->threads = brio_threads(t->ctx, 1 << 20, BALLS_A_THREAD);
     BRIO_TRY(brio_store_open(&t->folder, "points", &s->points));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->cache, t->num_nodes + 1));
@@ -99,7 +100,7 @@ void brio_tile_source_free(brio_tile_source *s) {
         brio_release(ctx, s->search[i].next);
     }
     brio_store_close(&s->points);
-    pthread_mutex_destroy(&s->lock);
+    brio_mutex_free(&s->lock);
     brio_release(ctx, s->search);
     brio_release(ctx, s->read);
     brio_release(ctx, s->cache);
@@ -133,7 +134,7 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
 static brio_status find_block(brio_tile_source *s, uint32_t node, block **out) {
     *out = __atomic_load_n(&s->cache[node], __ATOMIC_ACQUIRE);
     if (*out) return BRIO_OK;
-    pthread_mutex_lock(&s->lock);
+    brio_mutex_lock(&s->lock);
     brio_status status = BRIO_OK;
     *out = s->cache[node];
     if (!*out) status = BRIO_RESERVE(s->t->ctx, s->read, s->read_capacity, s->num_read + 1);
@@ -142,7 +143,7 @@ static brio_status find_block(brio_tile_source *s, uint32_t node, block **out) {
         s->read[s->num_read++] = node;
         __atomic_store_n(&s->cache[node], *out, __ATOMIC_RELEASE);
     }
-    pthread_mutex_unlock(&s->lock);
+    brio_mutex_unlock(&s->lock);
     return status;
 }
 
@@ -184,8 +185,8 @@ static bool is_vertex(const brio_ball *ball, const double *record) {
     return false;
 }
 
-/* Adds points of a block.   *hits  grows by those in conflict.   *unsure  becomes true if the block has points that were
- * added in this round and not compared: they end no search, for none need be in conflict. */
+/* Adds points of a block.   *hits  grows by those in conflict.   *unsure  becomes true if the block has points that
+ * were added in this round and not compared: they end no search, for none need be in conflict. */
 static brio_status search_block(search *se, const brio_ball *ball, block *b, int *hits, bool *unsure) {
     uint32_t list[TILE_BLOCK], wasted = 0;
     int state = __atomic_load_n(&b->state, __ATOMIC_RELAXED), before = *hits;

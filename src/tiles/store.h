@@ -39,8 +39,8 @@ brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts)
 void brio_store_remove(brio_store_folder *folder, const char *name);
 void brio_store_close(brio_store_file *f);
 
-/** Append, write over, and read bytes. Return BRIO_OK, BRIO_ERR_WRITE (full), BRIO_ERR_OPEN (cannot be read, or ends
- *  early), BRIO_ERR_CANCELLED. */
+/** Appends bytes; the next two functions write over and read bytes. Returns BRIO_OK, BRIO_ERR_WRITE (full),
+ *  BRIO_ERR_OPEN (cannot be read, or ends early), BRIO_ERR_CANCELLED. */
 brio_status brio_store_append(brio_store_file *f, const void *bytes, size_t size);
 brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *bytes, size_t size);
 brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *bytes, size_t size);

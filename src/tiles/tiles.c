@@ -4,11 +4,11 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/versioned.h"
+#include "platform/thread.h"
 #include "tiles/work.h"
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { TILES = 8, MOST_TILES = 1 << 16 };
 
@@ -22,7 +22,8 @@ static brio_status begin_folder(brio_tiles *t, const char *scratch) {
     if (t->key)
         snprintf(name, sizeof name, "brio-tiles-%016" PRIx64, t->key);
     else
-        snprintf(name, sizeof name, "brio-tiles-%ld-%" PRIxPTR, (long)getpid(), (uintptr_t)t); /* no two at a time */
+        snprintf(name, sizeof name, "brio-tiles-%ld-%" PRIxPTR, brio_process_number(),
+                 (uintptr_t)t); /* no two at a time */
     return brio_store_begin(t->ctx, scratch, name, &t->folder);
 }
 

@@ -104,7 +104,7 @@ typedef struct brio_tile_source brio_tile_source;
 
 brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, brio_tile_source **out);
 void brio_tile_source_free(brio_tile_source *s);
-/** Is a brio_conflicts_fn.   user  a brio_tile_source. */
+/** Finds points in conflict, as a brio_conflicts_fn.   user  a brio_tile_source. */
 brio_status brio_tile_conflicts(void *user, brio_ball *balls, size_t count, brio_found *found);
 /** Adds a sample of the other tiles: the denser the nearer they are. */
 brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found);
@@ -113,9 +113,9 @@ uint64_t brio_tile_source_read(const brio_tile_source *s);
 
 /** --- results --- */
 
-/** The file of a finished tile: its tetrahedra, the places of vertices of other tiles, and a byte for each of its points
- *  that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the tile's number of
- *  points subtracted, rows of the halo. */
+/** The file of a finished tile: its tetrahedra, the places of vertices of other tiles, and a byte for each of its
+ *  points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the tile's number
+ *  of points subtracted, rows of the halo. */
 typedef struct {
     uint32_t (*tetrahedra)[4];
     uint64_t *halo;
