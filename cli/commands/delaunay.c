@@ -7,6 +7,7 @@
 #include "cli/steps/order.h"
 #include "cli/steps/plane.h"
 #include "cli/steps/properties.h"
+#include "cli/steps/tiles.h"
 #include "cli/steps/weights.h"
 #include <inttypes.h>
 #include <math.h>
@@ -84,7 +85,7 @@ typedef struct arguments {
     weights_options weights;
     order_options order;
     int locate, subgraph, plane;
-    uint64_t record_every;        /* 0: not given */
+    uint64_t record_every, tiles; /* 0: not given */
     size_t page_size, cache_size; /* 0: not given */
     bool first_conflict, all_conflicts, rounds, verify, neighbours, faces, edges;
 } arguments;
@@ -101,6 +102,7 @@ static const option_choice locations[] = {{"walk", BRIO_LOCATION_WALK},
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     {"plane", 0, OPTION_CHOICE, FIELD(plane), "NAME", "triangles of two coordinates instead of tetrahedra", cli_planes},
+    TILES_ROWS(arguments, tiles),
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "how points are inserted (the result is the same)", 0},
     ORDER_ROWS(arguments, order, "; for trace random"),
@@ -146,6 +148,19 @@ static brio_status check_plane(run *r, const arguments *a) {
     return cli_require_output_holding(r, CLI_SURFACES, true);
 }
 
+/* Refuses options that say how all points are inserted at once. */
+static brio_status check_tiles(run *r, const arguments *a) {
+    bool once = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
+                a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING || a->verify ||
+                a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->order.block_size ||
+                !isnan(a->order.round_ratio);
+    if (once)
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--tiles goes with weights and -o, not with --plane, --verify, orders, "
+                        "locations or records");
+    return cli_check_tiles(r, &a->weights, a->tiles);
+}
+
 /* Refuses the files beside .node and .ele where these are not written. */
 static brio_status check_beside_node(run *r, const arguments *a) {
     const char *name = a->neighbours ? "neighbors" : a->faces ? "faces" : "edges", *output = r->common.output;
@@ -165,6 +180,7 @@ static brio_status check_arguments(run *r, const arguments *a) {
     TRY(cli_check_order(r, &a->order, insertion_order(a)));
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(check_beside_node(r, a));
+    if (a->tiles) return check_tiles(r, a);
     if (a->plane != NO_PLANE) return check_plane(r, a);
     TRY(cli_require_output(r, true));
     const char *output = r->common.output;
@@ -344,6 +360,7 @@ static brio_status delaunay(run *r) {
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a));
+    if (a->tiles) return cli_tiles(r, &a->weights, a->tiles);
     TRY(needs_edges((brio_location)a->locate) ? cli_read(r, r->operands[0], &mesh)
                                               : cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);

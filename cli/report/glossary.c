@@ -339,6 +339,22 @@ const glossary_line cli_glossary[] = {
     {NULL, NULL, "error", NULL, "why a run failed", LINE_JSON, STYLE_PLAIN},
     {NULL, NULL, "exit", NULL, "the exit code of a failed run", LINE_JSON, STYLE_PLAIN},
 
+    /* Tiles. */
+    {"delaunay", NULL, "tiles", NULL, "parts of space that hold points (--tiles)", LINE_PLAIN, STYLE_PLAIN},
+    {"delaunay", NULL, "resumed", NULL, "tiles that a run that was killed had finished", LINE_PLAIN, STYLE_UNLESS_ZERO},
+    {"delaunay", NULL, "largest_tile", NULL, "points in the largest triangulation, those about the tile included",
+     LINE_PLAIN, STYLE_PLAIN},
+    {"delaunay", NULL, "scratch_bytes", NULL, "the most that were in the scratch folder", LINE_PLAIN, STYLE_PLAIN},
+    {"delaunay", NULL, "asked", NULL, "spheres and half-spaces for which a tile asked others", LINE_VERBOSE,
+     STYLE_PLAIN},
+    {"delaunay", NULL, "found", NULL, "points of other tiles that were in them", LINE_VERBOSE, STYLE_PLAIN},
+    {"delaunay", NULL, "sampled", NULL, "points of the samples of all that tiles begin with", LINE_VERBOSE,
+     STYLE_PLAIN},
+    {"delaunay", NULL, "blocks_read", NULL, "blocks of points that tiles read of others", LINE_VERBOSE, STYLE_PLAIN},
+    {"delaunay", NULL, "triangulated", NULL, "points in the triangulations of all rounds", LINE_VERBOSE, STYLE_PLAIN},
+    {"delaunay", NULL, "most_rounds", NULL, "rounds of asking of a tile, at most", LINE_VERBOSE, STYLE_PLAIN},
+    {"delaunay", NULL, "most_tetrahedra", NULL, "in one triangulation", LINE_VERBOSE, STYLE_PLAIN},
+
     /* How it was done: the words of the papers, see docs/algorithms.md. */
     {"delaunay", NULL, "deferred", NULL, "insertions put off since threads met", LINE_INTERNAL, STYLE_PLAIN},
     {"delaunay", NULL, "serial", NULL, "insertions left to one thread", LINE_INTERNAL, STYLE_PLAIN},

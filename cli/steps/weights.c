@@ -126,8 +126,15 @@ static brio_status weights_of_properties(run *r, const brio_mesh *mesh, double *
     return BRIO_OK;
 }
 
-static void modular_weights(int exponent, double *weights, size_t count) {
-    for (size_t i = 0; i < count; i++) weights[i] = ldexp((double)((uint64_t)i * 7919 % 1000), exponent);
+static void modular_weights(int exponent, uint64_t first, double *weights, size_t count) {
+    for (size_t i = 0; i < count; i++) weights[i] = ldexp((double)((first + i) * 7919 % 1000), exponent);
+}
+
+brio_status cli_modular_weights(run *r, int exponent, uint64_t first, size_t count, double **weights) {
+    *weights = malloc((count + 1) * sizeof **weights);
+    if (!*weights) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu weights", count);
+    modular_weights(exponent, first, *weights, count);
+    return BRIO_OK;
 }
 
 /* Says which weights hold where that is not plain. */
@@ -150,7 +157,7 @@ brio_status cli_weights(run *r, const weights_options *options, const brio_mesh 
     if (options->file)
         TRY(read_weights(r, options->file, w, count));
     else if (options->exponent != NO_EXPONENT)
-        modular_weights(options->exponent, w, count);
+        modular_weights(options->exponent, 0, w, count);
     else
         status = weights_of_properties(r, mesh, w);
     if (status == BRIO_ERR_FORMAT && options->estimate) {

@@ -36,6 +36,9 @@ bool cli_is_weighted(const weights_options *options, const brio_mesh *mesh);
 /** Returns the weights in *weights, to be freed with free(); NULL for none. */
 brio_status cli_weights(run *r, const weights_options *options, const brio_mesh *mesh, double **weights);
 
+/** Returns the weights of --weights-mod for points `first`, first + 1 and so on, to be freed with free(). */
+brio_status cli_modular_weights(run *r, int exponent, uint64_t first, size_t count, double **weights);
+
 /** Makes the property `weight` of the mesh the weights that hold, so that its file can be checked by itself. Properties
  *  that they overrule become input_weight and input_radius. */
 brio_status cli_keep_weights(run *r, const weights_options *options, brio_mesh *mesh, const double *weights);

@@ -35,13 +35,13 @@ done:
     return status;
 }
 
-static uint64_t hash_of(uint32_t r[4]) {
+uint64_t brio_tetrahedron_hash(uint64_t r[4]) {
     for (int i = 1; i < 4; i++)
         for (int j = i; j > 0 && r[j] < r[j - 1]; j--) {
-            uint32_t swap = r[j];
+            uint64_t swap = r[j];
             r[j] = r[j - 1], r[j - 1] = swap;
         }
-    return brio_mix(brio_mix((uint64_t)r[0] << 32 | r[1]) + ((uint64_t)r[2] << 32 | r[3]));
+    return brio_mix(brio_mix(r[0] << 32 ^ r[1]) + (r[2] << 32 ^ r[3]));
 }
 
 brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
@@ -54,11 +54,11 @@ brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulat
     BRIO_TRY(lexicographic_ranks(ctx, t, points, rank));
     uint64_t sum = brio_mix(t->stats.vertices);
     for (size_t tet = 0; tet < t->stats.tetrahedra; tet++) {
-        uint32_t r[4];
+        uint64_t r[4];
         if (tet % EXPECTED == 0)
             brio_block_expect(t->tet, (tet + EXPECTED) * sizeof *t->tet, EXPECTED * sizeof *t->tet);
         for (int i = 0; i < 4; i++) r[i] = rank[t->tet[tet].vertex[i]];
-        sum += hash_of(r);
+        sum += brio_tetrahedron_hash(r);
         BRIO_TRY(brio_look(ctx, 1));
     }
     *checksum = sum;

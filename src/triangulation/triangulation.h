@@ -17,4 +17,7 @@ struct brio_triangulation {
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT. */
 brio_status brio_delaunay_begin(brio_context *ctx, size_t num_points, const brio_delaunay_options *options);
 
+/** Returns the hash of a tetrahedron, of which the checksum is the sum.   rank  of its vertices; sorted afterwards. */
+uint64_t brio_tetrahedron_hash(uint64_t rank[4]);
+
 #endif

@@ -17,7 +17,7 @@ COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
                  "--first-conflict", "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--page-size", "--cache-size", "--verify", "--neighbors", "--faces",
-                 "--edges"],
+                 "--edges", "--tiles"],
     "surface": ["--method", "--curves", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
                 "--vertex-normals", "--self-intersections", "--polygons", "--extraction", "--keep-largest",

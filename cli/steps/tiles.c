@@ -1,0 +1,234 @@
+/* --tiles: points go to the library block by block, as they are read; a report, and a file for each tile. */
+#include "cli/steps/tiles.h"
+#include "cli/files/files.h"
+#include "cli/files/new_file.h"
+#include "cli/files/read_write.h"
+#include "platform/file.h"
+#include "platform/folder.h"
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_TILES = 1 << 16, NAME_BYTES = 4096 };
+
+static const char EXTENSION[] = ".pvtu";
+
+static bool ends_with(const char *text, const char *end) {
+    size_t n = strlen(text), m = strlen(end);
+    return n > m && !strcmp(text + n - m, end);
+}
+
+brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t tiles) {
+    if (tiles > MOST_TILES)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles: %" PRIu64 " are more than %d", tiles, MOST_TILES);
+    if (!r->common.scratch) return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles needs --scratch DIR, where the tiles are");
+    if (weights->file)
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--tiles: not with --weights FILE; the points can have a property weight or radius");
+    if (r->common.output && !ends_with(r->common.output, EXTENSION))
+        return cli_fail_output(r, "%s: --tiles writes .pvtu, with a file for each tile beside it", r->common.output);
+    return BRIO_OK;
+}
+
+/* --- reading --- */
+
+typedef struct {
+    run *r;
+    const weights_options *options;
+    brio_tiles *tiles;
+    uint64_t count;
+    brio_status status;
+} intake;
+
+static brio_status add_block(intake *in, const brio_mesh *block) {
+    double *weights = NULL;
+    brio_status status = BRIO_OK;
+    weights_options options = *in->options;
+    options.estimate = in->count > 0; /* its words are said once */
+    if (options.exponent != NO_EXPONENT)
+        TRY(cli_modular_weights(in->r, options.exponent, in->count, block->num_vertices, &weights));
+    else
+        TRY(cli_weights(in->r, &options, block, &weights));
+    TRY(brio_tiles_add(in->r->ctx, in->tiles, block->vertices, weights, block->num_vertices));
+    in->count += block->num_vertices;
+done:
+    free(weights);
+    return status;
+}
+
+static int take_block(const brio_mesh *block, void *user) {
+    intake *in = user;
+    in->status = add_block(in, block);
+    return in->status != BRIO_OK;
+}
+
+static brio_status read_into(run *r, const weights_options *options, brio_tiles *tiles) {
+    intake in = {r, options, tiles, 0, BRIO_OK};
+    const char *path = r->operands[0];
+    brio_read_options how = cli_read_options(r);
+    brio_status status = brio_read_blocks(r->ctx, path, &how, take_block, &in, NULL);
+    FORWARD(in.status);
+    FORWARD(status);
+    cli_tell_input(r, path);
+    return BRIO_OK;
+}
+
+/* --- the key of a restart --- */
+
+static uint64_t mix(uint64_t hash, uint64_t value) {
+    hash ^= value + UINT64_C(0x9e3779b97f4a7c15) + (hash << 6) + (hash >> 2);
+    return (hash ^ hash >> 31) * UINT64_C(0xbf58476d1ce4e5b9);
+}
+
+static uint64_t mix_text(uint64_t hash, const char *text) {
+    for (; text && *text; text++) hash = mix(hash, (unsigned char)*text);
+    return mix(hash, text != NULL);
+}
+
+/* Returns a number for the input as it is now and the way in which it is read, or 0 if it cannot be read again. */
+static uint64_t key_of(const run *r, const weights_options *w) {
+    brio_place_facts file;
+    const common_options *c = &r->common;
+    const char *path = r->operands[0];
+    if (!strcmp(path, "-") || !brio_find_facts(path, &file) || file.kind != BRIO_IS_FILE) return 0;
+    uint64_t hash = mix_text(1, path);
+    hash = mix(mix(hash, file.number), file.volume);
+    hash = mix(mix(hash, file.size), (uint64_t)file.seconds);
+    hash = mix(hash, (uint64_t)file.nanoseconds);
+    hash = mix_text(mix_text(hash, c->input_format), c->columns);
+    hash = mix(hash, (uint64_t)c->drop_invalid << 2 | (uint64_t)c->salvage << 1 | w->unweighted);
+    hash = mix_text(mix(hash, (uint64_t)(int64_t)w->exponent), brio_version());
+    return hash ? hash : 1;
+}
+
+/* --- report --- */
+
+static brio_status report(run *r, brio_tiles *t, bool weighted) {
+    const brio_tiles_stats *s = brio_tiles_facts(t);
+    facts *f = &r->facts;
+    uint64_t checksum;
+    char text[20];
+    FORWARD(brio_tiles_checksum(r->ctx, t, &checksum));
+    cli_lap(r, "checksum");
+    snprintf(text, sizeof text, "%016" PRIx64, checksum);
+    cli_fact_bool(f, "weighted", weighted);
+    cli_fact_count(f, "points", s->points);
+    cli_fact_count(f, "vertices", s->vertices);
+    cli_fact_count(f, "duplicates", s->duplicates);
+    cli_fact_count(f, "hidden", s->hidden);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "tetrahedra", s->tetrahedra);
+    cli_fact_count(f, "hull_facets", s->hull_facets);
+    cli_fact_text(f, "checksum", text);
+    cli_fact_count(f, "tiles", s->tiles);
+    cli_fact_count(f, "resumed", s->resumed);
+    cli_fact_count(f, "largest_tile", s->most_points);
+    cli_fact_count(f, "scratch_bytes", s->scratch_bytes);
+    cli_fact_count(f, "asked", s->asked);
+    cli_fact_count(f, "found", s->found);
+    cli_fact_count(f, "sampled", s->sampled);
+    cli_fact_count(f, "blocks_read", s->read);
+    cli_fact_count(f, "triangulated", s->triangulated);
+    cli_fact_count(f, "most_rounds", s->most_rounds);
+    cli_fact_count(f, "most_tetrahedra", s->most_tetrahedra);
+    return BRIO_OK;
+}
+
+/* --- output --- */
+
+/* Writes a tile. Its vertices have the property `point`, the index in the input, and `weight`. */
+static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, const char *path) {
+    brio_tile_part part = {.size = sizeof part};
+    brio_mesh *mesh = NULL;
+    brio_write_options how = {.size = sizeof how, .ascii = r->common.ascii, .compress = r->common.compress};
+    double *values;
+    void *data;
+    brio_status status = BRIO_OK;
+    TRY(brio_tiles_part(r->ctx, t, tile, &part));
+    TRY(brio_mesh_new(r->ctx, &mesh));
+    TRY(brio_mesh_set_vertices(mesh, part.points, part.num_vertices));
+    TRY(brio_mesh_set_tetrahedra(mesh, *part.tetrahedra, 4, part.num_tetrahedra));
+    TRY(brio_mesh_add_property(mesh, "point", BRIO_SCALAR_FLOAT64, &data));
+    values = data;
+    for (size_t i = 0; i < part.num_vertices; i++) values[i] = (double)part.index[i];
+    if (part.weights) {
+        TRY(brio_mesh_add_property(mesh, "weight", BRIO_SCALAR_FLOAT64, &data));
+        memcpy(data, part.weights, part.num_vertices * sizeof *part.weights);
+    }
+    status = brio_write(r->ctx, path, mesh, &how);
+done:
+    brio_mesh_free(mesh);
+    brio_tile_part_free(r->ctx, &part);
+    return status;
+}
+
+static brio_status write_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
+    new_file f = {0};
+    brio_status status = BRIO_OK;
+    const char *name = strrchr(folder, '/') ? strrchr(folder, '/') + 1 : folder;
+    TRY(cli_new_file_open(r, r->common.output, &f));
+    fprintf(f.file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" "
+                    "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n"
+                    "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n"
+                    "<PPointData>\n<PDataArray type=\"Float64\" Name=\"point\"/>\n");
+    if (weighted) fprintf(f.file, "<PDataArray type=\"Float64\" Name=\"weight\"/>\n");
+    fprintf(f.file, "</PPointData>\n");
+    for (uint32_t i = 0; i < tiles; i++) fprintf(f.file, "<Piece Source=\"%s/%u.vtu\"/>\n", name, i);
+    fprintf(f.file, "</PUnstructuredGrid>\n</VTKFile>\n");
+    status = cli_new_file_publish(r, r->common.output, &f);
+done:
+    cli_new_file_close(&f);
+    return status;
+}
+
+/* Writes a file for each tile that has tetrahedra, then the index. Without the index there is no output: on failure the
+ * tiles are removed. */
+static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weighted) {
+    char folder[NAME_BYTES], path[NAME_BYTES + 32];
+    brio_status status = BRIO_OK;
+    uint32_t written = 0;
+    bool made;
+    size_t stem = strlen(r->common.output) - strlen(EXTENSION);
+    if (stem >= sizeof folder) return cli_fail_output(r, "%s: the name is too long", r->common.output);
+    snprintf(folder, sizeof folder, "%.*s", (int)stem, r->common.output);
+    if (!brio_make_folder(folder, false, &made))
+        return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", folder, strerror(errno));
+    for (; written < tiles; written++) {
+        snprintf(path, sizeof path, "%s/%u.vtu", folder, written);
+        TRY(write_tile(r, t, written, path));
+    }
+    status = write_index(r, folder, tiles, weighted);
+done:
+    for (uint32_t i = 0; status != BRIO_OK && i < written; i++) {
+        snprintf(path, sizeof path, "%s/%u.vtu", folder, i);
+        brio_remove_file(path);
+    }
+    if (status != BRIO_OK && made) brio_remove_folder(folder);
+    cli_lap(r, "write");
+    return status;
+}
+
+/* --- the run --- */
+
+brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles};
+    brio_tiles *t = NULL;
+    brio_status status = BRIO_OK;
+    o.key = key_of(r, weights);
+    TRY(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
+    TRY(brio_tiles_new(r->ctx, &o, &t));
+    if (!brio_tiles_has_points(t)) TRY(read_into(r, weights, t));
+    cli_lap(r, "read");
+    TRY(brio_tiles_run(r->ctx, t));
+    const brio_tiles_stats *s = brio_tiles_facts(t);
+    cli_stage(r, "divide", s->divide_seconds);
+    cli_stage(r, "insert", s->triangulate_seconds);
+    r->lap = cli_clock();
+    TRY(report(r, t, s->weighted));
+    if (r->common.output) TRY(write_tiles(r, t, o.tiles, s->weighted));
+done:
+    brio_tiles_free(t);
+    return status;
+}

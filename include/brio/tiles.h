@@ -1,0 +1,114 @@
+/* brio/tiles.h: Delaunay and regular triangulations of more points than fit in memory, tile after tile on a disk.
+ *
+ * Points are added in blocks and go to files of a scratch folder. A k-d tree over a sample divides them into tiles of
+ * about as many points. Each tile is triangulated with those points of other tiles that its tetrahedra need, which its
+ * spheres tell. The tetrahedra are those that brio_delaunay makes of all points, ties and hidden points included.
+ * docs/tiles.md says what it costs; docs/decisions/017-tiles.md why it is right.
+ *
+ *     brio_tiles_options o = {.size = sizeof o, .scratch = "/var/tmp", .tiles = 16};
+ *     brio_tiles *t;
+ *     brio_tiles_new(ctx, &o, &t);
+ *     while (...) brio_tiles_add(ctx, t, points, NULL, count);
+ *     brio_tiles_run(ctx, t);
+ *     brio_tiles_checksum(ctx, t, &checksum);
+ *     brio_tiles_free(t);
+ */
+#ifndef BRIO_TILES_H
+#define BRIO_TILES_H
+
+#include "triangulation.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct brio_tiles brio_tiles;
+
+typedef struct brio_tiles_options {
+    size_t size;
+    const char *scratch; /* a folder with room for about 40 bytes a point twice, and 18 a tetrahedron */
+    uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
+    int reserved_int;
+    uint64_t key; /* 0: a run that ends, in whatever way, leaves no file. Else a number that tells this input and
+                            this way to read it from others: the files of a process that was killed are then gone on
+                            with, by the next run in the same folder that has the same key and number of tiles */
+} brio_tiles_options;
+
+/** Facts of a triangulation in tiles. The first ones are those of brio_delaunay_stats. */
+typedef struct brio_tiles_stats {
+    size_t size;
+    uint64_t points, vertices, duplicates, hidden;
+    int dimension, weighted;
+    uint32_t tiles; /* that hold points */
+    uint64_t tetrahedra, hull_facets;
+    uint64_t asked;           /* spheres and half-spaces for which a tile asked others */
+    uint64_t found;           /* points that a tile got from others because they were inside such a sphere */
+    uint64_t sampled;         /* points of the coarse samples that tiles begin with */
+    uint64_t read;            /* blocks of points that a tile read from others */
+    uint64_t triangulated;    /* points in all triangulations of all rounds */
+    uint32_t most_rounds;     /* of a tile */
+    uint32_t resumed;         /* tiles that a run before had finished */
+    uint64_t most_points;     /* in one triangulation */
+    uint64_t most_tetrahedra; /* in one triangulation */
+    uint64_t scratch_bytes;   /* the most that were in the scratch folder */
+    double divide_seconds, triangulate_seconds, rank_seconds;
+} brio_tiles_stats;
+
+/** The tetrahedra that belong to one tile: those whose lexicographically least vertex is one of its points. */
+typedef struct brio_tile_part {
+    size_t size;
+    size_t num_vertices;       /* those of the tetrahedra */
+    double *points;            /* #V by 3 */
+    double *weights;           /* #V, or NULL */
+    uint64_t *index;           /* #V: in the order in which points were added */
+    uint32_t (*tetrahedra)[4]; /* #T: rows of points; positive */
+    size_t num_tetrahedra;
+} brio_tile_part;
+
+/** Makes an empty set of points, and a folder in the scratch folder.
+ *  out  owned by the caller: brio_tiles_free; NULL on error.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, or in use by another process),
+ *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options, brio_tiles **out);
+
+/** Returns 1 if a run before left all points in the folder, so that none are to be added; else 0. */
+BRIO_API int brio_tiles_has_points(const brio_tiles *t);
+
+/** Appends points.
+ *  points  num_points by 3.   weights  num_points, or NULL: in all calls, or in none.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_WRITE (the disk is full), BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const double *points, const double *weights,
+                                    size_t num_points);
+
+/** Divides the points into tiles, and triangulates these. Call once, after all points were added. Where all points are
+ *  in a plane there are no tetrahedra; the counts are those of brio_delaunay. With weights such points are refused.
+ *  Memory: about 400 bytes a point of the largest tile, and one byte for each two of all points. Points whose
+ *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE,
+ *  BRIO_ERR_OPEN (a scratch file was cut or removed), BRIO_ERR_NO_MEMORY (also where the memory limit of the context
+ *  is too low for the largest tile; the sentence says how many tiles would do), BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t);
+
+/** Returns the facts. The view is valid until brio_tiles_free. */
+BRIO_API const brio_tiles_stats *brio_tiles_facts(const brio_tiles *t);
+
+/** Computes what brio_triangulation_checksum returns for the triangulation of all points.
+ *  Cost: sorts all vertices, tile by tile, and merges them; 40 bytes a vertex of disk.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (brio_tiles_run did not end well), BRIO_ERR_WRITE, BRIO_ERR_OPEN,
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_tiles_checksum(brio_context *ctx, brio_tiles *t, uint64_t *checksum);
+
+/** Reads the tetrahedra of a tile. All parts together are the triangulation; each tetrahedron is in one of them.
+ *  tile  below the number of tiles that was asked for.   out  freed with brio_tile_part_free.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_tiles_part(brio_context *ctx, brio_tiles *t, uint32_t tile, brio_tile_part *out);
+BRIO_API void brio_tile_part_free(brio_context *ctx, brio_tile_part *part);
+
+/** Frees everything, and removes all files; NULL is accepted. */
+BRIO_API void brio_tiles_free(brio_tiles *t);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,28 @@
+/* Folders of files with names, for what must outlive a process: made, locked, emptied, removed. Functions that return
+ * bool or a descriptor leave the reason of a failure in errno. */
+#ifndef BRIO_PLATFORM_FOLDER_H
+#define BRIO_PLATFORM_FOLDER_H
+
+#include <stdbool.h>
+
+/** Makes a folder that only its owner may read (`ours`) or one with the usual rights. A folder that is there already is
+ *  no failure.   made  receives whether there was none. */
+bool brio_make_folder(const char *path, bool ours, bool *made);
+
+/** Opens a file, makes it if there is none, and locks it until it is closed or the process ends, in whatever way.
+ *  Returns the descriptor, or -1; errno is EWOULDBLOCK if another process has it. Does not follow links. */
+int brio_lock_file(const char *path);
+
+/** Makes an empty file, to read and to write, in place of one of that name. Does not follow links. Returns -1 if it
+ *  cannot. */
+int brio_make_file(const char *path);
+
+/** Gives a file another name, in place of a file that has it. */
+bool brio_rename_file(const char *from, const char *to);
+
+/** Removes a file; the next two functions all files of a folder but the one named `kept`, and an empty folder. */
+bool brio_remove_file(const char *path);
+void brio_empty_folder(const char *path, const char *kept);
+bool brio_remove_folder(const char *path);
+
+#endif

@@ -1,0 +1,177 @@
+/* The points of each tile come to their places: those that stand for their position, along a Hilbert curve, in blocks,
+ * each of them shuffled. Extreme points and a basis are found on the way. */
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/sort.h"
+#include "order/order.h"
+#include "tiles/work.h"
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- one point for each position --- */
+
+/* Orders by position, then the point that stands for it first. */
+static int compare_rows(uint32_t i, uint32_t j, const void *user) {
+    const brio_set_point *p = (const brio_set_point *)user + i, *q = (const brio_set_point *)user + j;
+    int sign = brio_lexicographic(p->record, q->record);
+    if (sign) return sign;
+    if (p->record[3] != q->record[3]) return p->record[3] > q->record[3] ? -1 : 1;
+    return p->name < q->name ? -1 : p->name > q->name;
+}
+
+_Static_assert(sizeof(brio_set_point) == 5 * sizeof(double), "rows of five doubles");
+
+/* Drops the points that do not stand for their position. */
+static brio_status drop_twins(brio_tiles *t, brio_set_point *points, size_t *count) {
+    uint32_t *row = NULL;
+    uint8_t *stands = NULL;
+    brio_status status = BRIO_OK;
+    size_t n = *count, left = 0;
+    BRIO_TRY(BRIO_ALLOC(t->ctx, row, n + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, stands, n + 1));
+    for (size_t i = 0; i < n; i++) row[i] = (uint32_t)i;
+    BRIO_TRY(brio_sort_rows(t->ctx, &(brio_row_order){points->record, 5, compare_rows, points}, row, n));
+    for (size_t i = 0; i < n; i++)
+        stands[row[i]] = i == 0 || !brio_same_position(points[row[i - 1]].record, points[row[i]].record);
+    for (size_t i = 0; i < n; i++)
+        if (stands[i]) points[left++] = points[i];
+    t->stats.duplicates += n - left;
+    *count = left;
+done:
+    brio_release(t->ctx, row);
+    brio_release(t->ctx, stands);
+    return status;
+}
+
+/* --- places --- */
+
+static void shuffle_blocks(brio_set_point *points, size_t n, uint64_t seed) {
+    brio_rng rng = brio_rng_new(seed);
+    for (size_t begin = 0; begin < n; begin += TILE_BLOCK) {
+        size_t size = n - begin < TILE_BLOCK ? n - begin : TILE_BLOCK;
+        for (size_t i = size; i > 1; i--) {
+            size_t j = brio_rng_below(&rng, (uint32_t)i);
+            brio_set_point swap = points[begin + i - 1];
+            points[begin + i - 1] = points[begin + j], points[begin + j] = swap;
+        }
+    }
+}
+
+/* Brings points into the order of a Hilbert curve. */
+static brio_status follow_curve(brio_tiles *t, brio_set_point **points, size_t n) {
+    double *positions = NULL;
+    uint32_t *order = NULL;
+    brio_set_point *sorted = NULL;
+    brio_status status = BRIO_OK;
+    brio_delaunay_options o = {.size = sizeof o, .order = BRIO_ORDER_HILBERT, .seed = BRIO_SEED};
+    BRIO_TRY(BRIO_ALLOC(t->ctx, positions, 3 * n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, order, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, sorted, n + 1));
+    for (size_t i = 0; i < n; i++) memcpy(positions + 3 * i, (*points)[i].record, 3 * sizeof *positions);
+    BRIO_TRY(brio_order_points(t->ctx, &(brio_input){positions, NULL, n}, &o, order, NULL, NULL, NULL));
+    for (size_t i = 0; i < n; i++) sorted[i] = (*points)[order[i]];
+    brio_set_point *swap = *points;
+    *points = sorted, sorted = swap;
+done:
+    brio_release(t->ctx, positions);
+    brio_release(t->ctx, order);
+    brio_release(t->ctx, sorted);
+    return status;
+}
+
+/* --- extreme points, and points that span space --- */
+
+static double along(int direction, const double *x) {
+    int d = direction < 13 ? direction : direction + 1; /* 13 is no direction */
+    return (d % 3 - 1) * x[0] + (d / 3 % 3 - 1) * x[1] + (d / 9 - 1) * x[2];
+}
+
+static bool spans_more(const brio_tiles *t, brio_filter *f, const double *p) {
+    const brio_set_point *b = t->basis;
+    switch (t->num_basis) {
+    case 0:
+        return true;
+    case 1:
+        return !brio_same_position(b[0].record, p);
+    case 2:
+        return !brio_collinear(b[0].record, b[1].record, p);
+    case 3:
+        return brio_orient3d_sign(f, b[0].record, b[1].record, b[2].record, p) != 0;
+    default:
+        return false;
+    }
+}
+
+static void note_points(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
+    brio_filter f;
+    brio_tiles_filter(t, &f);
+    for (size_t i = 0; i < n; i++) {
+        brio_set_point p = points[i];
+        p.name = place + i;
+        for (int d = 0; d < TILE_DIRECTIONS; d++)
+            if (place + i == 0 || along(d, p.record) > along(d, t->extreme[d].record)) t->extreme[d] = p;
+        if (spans_more(t, &f, p.record)) t->basis[t->num_basis++] = p;
+    }
+}
+
+/* --- tiles --- */
+
+static brio_status read_divided(brio_tiles *t, uint32_t tile, brio_set_point **points) {
+    brio_store_file file = {.file = -1};
+    brio_status status = BRIO_OK;
+    char name[32];
+    size_t n = t->tile[tile].raw;
+    snprintf(name, sizeof name, "divided-%u", tile);
+    BRIO_REQUIRE(t->ctx, n < (UINT32_C(1) << 31) - 16, BRIO_ERR_TOO_LARGE,
+                 "tile %u has %zu points; at most 2^31 - 17: take more tiles", tile, n);
+    BRIO_TRY(BRIO_ALLOC(t->ctx, *points, n + 1));
+    BRIO_TRY(brio_store_open(&t->folder, name, &file));
+    BRIO_TRY(brio_store_read(&file, 0, *points, n * sizeof **points));
+    brio_store_close(&file);
+    brio_store_remove(&t->folder, name);
+done:
+    brio_store_close(&file);
+    return status;
+}
+
+static brio_status arrange_tile(brio_tiles *t, uint32_t tile, brio_store_file *out, uint64_t *place) {
+    brio_set_point *points = NULL;
+    brio_status status = BRIO_OK;
+    brio_tile *facts = &t->tile[tile];
+    size_t n = facts->raw;
+    BRIO_TRY(read_divided(t, tile, &points));
+    BRIO_TRY(drop_twins(t, points, &n));
+    BRIO_TRY(follow_curve(t, &points, n));
+    shuffle_blocks(points, n, tile);
+    facts->place = *place;
+    facts->points = (uint32_t)n;
+    note_points(t, points, n, *place);
+    BRIO_TRY(brio_store_append(out, points, n * sizeof *points));
+    BRIO_TRY(brio_tile_tree_add(t, tile, points));
+    t->stats.tiles += n > 0;
+    *place += n;
+done:
+    brio_release(t->ctx, points);
+    return status;
+}
+
+brio_status brio_tiles_arrange(brio_tiles *t) {
+    brio_store_file out = {.file = -1};
+    brio_status status = BRIO_OK;
+    brio_bar bar = brio_progress_bar(t->ctx);
+    uint64_t place = 0;
+    BRIO_TRY(brio_store_create(&t->folder, "points.new", &out));
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        brio_progress_part(t->ctx, bar, (double)i / t->num_tiles, (i + 1.0) / t->num_tiles);
+        BRIO_TRY(brio_progress(t->ctx, "arrange", 0));
+        BRIO_TRY(arrange_tile(t, i, &out, &place));
+    }
+    t->stats.dimension = t->num_basis - 1;
+    BRIO_TRY(brio_tile_tree_close(t));
+    status = brio_store_publish(&out, "points", t->key != 0);
+done:
+    brio_store_close(&out);
+    brio_progress_part(t->ctx, bar, 0, 1);
+    return status;
+}

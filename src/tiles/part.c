@@ -1,0 +1,116 @@
+/* The tetrahedra of one tile for the caller: their vertices, with positions and indices. */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include "base/versioned.h"
+#include "tiles/work.h"
+#include <string.h>
+
+static int compare_places(uint32_t i, uint32_t j, const void *user) {
+    const uint64_t *place = user;
+    return place[i] < place[j] ? -1 : place[i] > place[j];
+}
+
+/* Reads the points of the halo, in its order. */
+static brio_status read_halo(brio_tiles *t, const uint64_t *halo, size_t n, brio_set_point *points) {
+    brio_store_file f = {.file = -1};
+    uint32_t *order = NULL;
+    uint64_t *place = NULL;
+    brio_set_point *sorted = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_store_open(&t->folder, "points", &f));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, order, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, place, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, sorted, n + 1));
+    for (uint32_t i = 0; i < n; i++) order[i] = i;
+    BRIO_TRY(brio_sort_many_indices(t->ctx, order, n, compare_places, halo));
+    for (size_t i = 0; i < n; i++) place[i] = halo[order[i]];
+    BRIO_TRY(brio_tile_rows(&f, place, n, sizeof *sorted, sorted));
+    for (size_t i = 0; i < n; i++) points[order[i]] = sorted[i];
+done:
+    brio_store_close(&f);
+    brio_release(t->ctx, order);
+    brio_release(t->ctx, place);
+    brio_release(t->ctx, sorted);
+    return status;
+}
+
+/* Gives the vertices of the tetrahedra consecutive numbers, in the order of the points. Returns how many there are. */
+static size_t number_vertices(brio_tile_result *r, size_t num_tetrahedra, size_t n, uint32_t *number) {
+    size_t used = 0;
+    memset(number, 0, n * sizeof *number);
+    for (size_t i = 0; i < num_tetrahedra; i++)
+        for (int k = 0; k < 4; k++) number[r->tetrahedra[i][k]] = 1;
+    for (size_t p = 0; p < n; p++) number[p] = number[p] ? (uint32_t)used++ : UINT32_MAX;
+    for (size_t i = 0; i < num_tetrahedra; i++)
+        for (int k = 0; k < 4; k++) r->tetrahedra[i][k] = number[r->tetrahedra[i][k]];
+    return used;
+}
+
+static brio_status fill(brio_tiles *t, const brio_set_point *points, const uint32_t *number, size_t n,
+                        brio_tile_part *p) {
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, p->points, 3 * p->num_vertices + 1));
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, p->index, p->num_vertices + 1));
+    if (t->weighted) BRIO_FORWARD(BRIO_ALLOC(t->ctx, p->weights, p->num_vertices + 1));
+    for (size_t i = 0; i < n; i++) {
+        size_t v = number[i];
+        if (number[i] == UINT32_MAX) continue;
+        memcpy(p->points + 3 * v, points[i].record, 3 * sizeof *p->points);
+        p->index[v] = points[i].name;
+        if (t->weighted) p->weights[v] = points[i].record[3];
+    }
+    return BRIO_OK;
+}
+
+static brio_status read_part(brio_tiles *t, uint32_t tile, brio_tile_part *p) {
+    const brio_tile *facts = &t->tile[tile];
+    brio_tile_result result = {0};
+    brio_set_point *points = NULL;
+    uint32_t *number = NULL;
+    brio_status status = BRIO_OK;
+    size_t n = facts->points + facts->halo;
+    if (!facts->tetrahedra) return BRIO_OK;
+    BRIO_TRY(brio_tile_result_read(t, tile, &result));
+    for (size_t i = 0; i < facts->tetrahedra; i++)
+        for (int k = 0; k < 4; k++)
+            BRIO_REQUIRE(t->ctx, result.tetrahedra[i][k] < n, BRIO_ERR_OPEN, "%s/tile-%u was changed from outside",
+                         t->folder.path, tile);
+    BRIO_TRY(BRIO_ALLOC(t->ctx, points, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, number, n + 1));
+    BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
+    BRIO_TRY(read_halo(t, result.halo, facts->halo, points + facts->points));
+    p->num_tetrahedra = facts->tetrahedra;
+    p->num_vertices = number_vertices(&result, facts->tetrahedra, n, number);
+    BRIO_TRY(fill(t, points, number, n, p));
+    p->tetrahedra = result.tetrahedra;
+    result.tetrahedra = NULL;
+done:
+    brio_tile_result_free(t, &result);
+    brio_release(t->ctx, points);
+    brio_release(t->ctx, number);
+    return status;
+}
+
+brio_status brio_tiles_part(brio_context *ctx, brio_tiles *t, uint32_t tile, brio_tile_part *out) {
+    BRIO_DOOR;
+    brio_tile_part p = {.size = sizeof p};
+    BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_tile_part, out));
+    BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
+    BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    BRIO_EXPECT(ctx, tile < t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, t->num_tiles);
+    brio_status status = read_part(t, tile, &p);
+    if (status != BRIO_OK)
+        brio_tile_part_free(ctx, &p);
+    else
+        BRIO_GIVE(brio_tile_part, out, &p);
+    return status;
+}
+
+void brio_tile_part_free(brio_context *ctx, brio_tile_part *part) {
+    brio_release(ctx, part->points);
+    brio_release(ctx, part->weights);
+    brio_release(ctx, part->index);
+    brio_release(ctx, part->tetrahedra);
+    part->points = part->weights = NULL, part->index = NULL, part->tetrahedra = NULL;
+    part->num_vertices = part->num_tetrahedra = 0;
+}

@@ -1,0 +1,311 @@
+/* Points of other tiles in conflict with tetrahedra of one tile.
+ *
+ * A ball goes down the tree of boxes, level by level. At each level the samples of the nodes that it meets are tested:
+ * where ENOUGH of them are in conflict the search ends, so that a ball far too large for want of points gets points all
+ * over it, and the balls of the next round are smaller by a factor. Else it comes to blocks, and these are read.
+ *
+ * Where many points lie nearly on spheres, as the points of a rounded sphere do, blocks are met by ball after ball, and
+ * their points compared exactly without being in conflict. A block that wasted PATIENCE comparisons a point is added
+ * as a whole; then its points are known, and known points are never in conflict. So the number of these comparisons is
+ * in proportion to the points.
+ *
+ * A block in memory has a reader for each coordinate, so that comparisons with a ball run in vector lanes. */
+#include "base/memory.h"
+#include "base/team.h"
+#include "platform/thread.h"
+#include "tiles/work.h"
+#include <assert.h>
+#include <string.h>
+
+enum {
+    ENOUGH = 12,         /* points in conflict that end a search. Chosen: tiles.md */
+    ENOUGH_OF_BLOCK = 4, /* of one block */
+    PATIENCE = 2,
+    BALLS_A_THREAD = 64
+};
+
+static const double SLACK = 0x1p-46;
+static const double NEAR = 0.6; /* a node is as far away as it is large, divided by this: then its sample suffices */
+
+enum { BLOCK_NEW, BLOCK_ADDED, BLOCK_KNOWN }; /* ADDED: in this round; the completion does not know it yet */
+
+typedef struct {
+    double x[TILE_BLOCK], y[TILE_BLOCK], z[TILE_BLOCK], w[TILE_BLOCK];
+    uint64_t place;
+    uint32_t points;
+    uint32_t wasted; /* comparisons; atomic */
+    int state;       /* atomic */
+} block;
+
+/* One thread's search. */
+typedef struct {
+    brio_filter filter;
+    brio_found found;
+    uint32_t *now, *next; /* nodes */
+    size_t now_capacity, next_capacity, num_now, num_next;
+} search;
+
+struct brio_tile_source {
+    brio_tiles *t;
+    uint32_t tile;
+    brio_store_file points;
+    block **cache; /* of each node that is a block; atomic */
+    uint64_t num_read;
+    uint32_t *read; /* nodes whose blocks are in memory */
+    size_t read_capacity;
+    brio_mutex lock; /* of what is above */
+    search *search;
+    int threads;
+    brio_status status; /* of the threads; atomic */
+    brio_ball *balls;
+};
+
+void brio_tiles_filter(const brio_tiles *t, brio_filter *f) {
+    double extent[3], heaviest = fabs(t->all.weight), lightest = t->stats.points ? t->lightest : 0;
+    for (int k = 0; k < 3; k++) extent[k] = t->all.high[k] - t->all.low[k];
+    brio_filter_set(f, extent, t->weighted ? heaviest + fabs(lightest) : 0, t->weighted);
+}
+
+brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, brio_tile_source **out) {
+    brio_tile_source *s = NULL;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s, 1));
+    s->t = t;
+    s->tile = tile;
+    s->points.file = -1;
+    brio_mutex_new(&s->lock);
+    s->threads = brio_threads(t->ctx, 1 << 20, BALLS_A_THREAD);
+    BRIO_TRY(brio_store_open(&t->folder, "points", &s->points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->cache, t->num_nodes + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->search, s->threads));
+    for (int i = 0; i < s->threads; i++) {
+        brio_tiles_filter(t, &s->search[i].filter);
+        s->search[i].found.ctx = t->ctx;
+    }
+    *out = s;
+    s = NULL;
+done:
+    brio_tile_source_free(s);
+    return status;
+}
+
+void brio_tile_source_free(brio_tile_source *s) {
+    if (!s) return;
+    brio_context *ctx = s->t->ctx;
+    for (uint64_t i = 0; i < s->num_read; i++) brio_release(ctx, s->cache[s->read[i]]);
+    for (int i = 0; s->search && i < s->threads; i++) {
+        brio_release(ctx, s->search[i].found.point);
+        brio_release(ctx, s->search[i].now);
+        brio_release(ctx, s->search[i].next);
+    }
+    brio_store_close(&s->points);
+    brio_mutex_free(&s->lock);
+    brio_release(ctx, s->search);
+    brio_release(ctx, s->read);
+    brio_release(ctx, s->cache);
+    brio_release(ctx, s);
+}
+
+uint64_t brio_tile_source_read(const brio_tile_source *s) {
+    return s->num_read;
+}
+
+/* --- blocks --- */
+
+static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, block **out) {
+    brio_set_point some[TILE_BLOCK];
+    BRIO_FORWARD(BRIO_ALLOC(s->t->ctx, *out, 1));
+    block *b = *out;
+    b->place = node->place;
+    b->points = node->points;
+    b->wasted = 0;
+    b->state = BLOCK_NEW;
+    brio_status status = brio_store_read(&s->points, node->place * sizeof *some, some, node->points * sizeof *some);
+    for (uint32_t i = 0; status == BRIO_OK && i < node->points; i++) {
+        b->x[i] = some[i].record[0], b->y[i] = some[i].record[1];
+        b->z[i] = some[i].record[2], b->w[i] = some[i].record[3];
+    }
+    if (status != BRIO_OK) brio_release(s->t->ctx, b);
+    return status;
+}
+
+/* Finds the block of a node; reads it if no thread has. */
+static brio_status find_block(brio_tile_source *s, uint32_t node, block **out) {
+    *out = __atomic_load_n(&s->cache[node], __ATOMIC_ACQUIRE);
+    if (*out) return BRIO_OK;
+    brio_mutex_lock(&s->lock);
+    brio_status status = BRIO_OK;
+    *out = s->cache[node];
+    if (!*out) status = BRIO_RESERVE(s->t->ctx, s->read, s->read_capacity, s->num_read + 1);
+    if (!*out && status == BRIO_OK) status = read_block(s, &s->t->node[node], out);
+    if (status == BRIO_OK && !s->cache[node]) {
+        s->read[s->num_read++] = node;
+        __atomic_store_n(&s->cache[node], *out, __ATOMIC_RELEASE);
+    }
+    brio_mutex_unlock(&s->lock);
+    return status;
+}
+
+static brio_set_point point_of(const block *b, uint32_t i) {
+    return (brio_set_point){{b->x[i], b->y[i], b->z[i], b->w[i]}, b->place + i};
+}
+
+/* Lists the points that a ball may take. Returns their number. */
+static uint32_t list_near(const brio_ball *ball, const block *b, uint32_t list[TILE_BLOCK]) {
+    double limit = ball->square + fabs(ball->square) * SLACK;
+    const double *c = ball->centre;
+    uint32_t n = 0;
+    if (ball->infinite || !(ball->square < INFINITY)) {
+        for (uint32_t i = 0; i < b->points; i++) list[i] = i;
+        return b->points;
+    }
+    for (uint32_t i = 0; i < b->points; i++) {
+        double x = b->x[i] - c[0], y = b->y[i] - c[1], z = b->z[i] - c[2], w = b->w[i];
+        list[n] = i;
+        n += !((x * x + y * y + z * z) * (1 - SLACK) > limit + w + fabs(w) * SLACK);
+    }
+    return n;
+}
+
+static brio_status add_whole(search *se, block *b) {
+    int expected = BLOCK_NEW;
+    if (!__atomic_compare_exchange_n(&b->state, &expected, BLOCK_ADDED, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+        return BRIO_OK;
+    for (uint32_t i = 0; i < b->points; i++) {
+        brio_set_point p = point_of(b, i);
+        BRIO_FORWARD(brio_found_add(&se->found, &p));
+    }
+    return BRIO_OK;
+}
+
+static bool is_vertex(const brio_ball *ball, const double *record) {
+    for (int i = 0; i < (ball->infinite ? 3 : 4); i++)
+        if (brio_same_position(ball->vertex[i], record)) return true;
+    return false;
+}
+
+/* Adds points of a block.   *hits  grows by those in conflict.   *unsure  becomes true if the block has points that
+ * were added in this round and not compared: they end no search, for none need be in conflict. */
+static brio_status search_block(search *se, const brio_ball *ball, block *b, int *hits, bool *unsure) {
+    uint32_t list[TILE_BLOCK], wasted = 0;
+    int state = __atomic_load_n(&b->state, __ATOMIC_RELAXED), before = *hits;
+    *unsure |= state == BLOCK_ADDED;
+    if (state != BLOCK_NEW) return BRIO_OK;
+    uint32_t n = list_near(ball, b, list);
+    for (uint32_t i = 0; i < n && *hits < before + ENOUGH_OF_BLOCK; i++) {
+        brio_set_point p = point_of(b, list[i]);
+        if (!brio_ball_takes(&se->filter, ball, p.record)) {
+            wasted += !is_vertex(ball, p.record);
+            continue;
+        }
+        ++*hits;
+        BRIO_FORWARD(brio_found_add(&se->found, &p));
+    }
+    if (!wasted || __atomic_add_fetch(&b->wasted, wasted, __ATOMIC_RELAXED) <= PATIENCE * b->points) return BRIO_OK;
+    *unsure = true;
+    return add_whole(se, b);
+}
+
+/* --- one ball --- */
+
+/* Goes from a node that the ball meets to its children. */
+static brio_status descend(brio_tile_source *s, search *se, const brio_ball *ball, const brio_tile_node *node,
+                           int *hits) {
+    for (uint32_t c = node->first; c < node->first + node->children; c++) {
+        const brio_tile_node *child = &s->t->node[c];
+        if (child->tile == s->tile || !brio_ball_meets(&se->filter, ball, &child->box)) continue;
+        BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->next, se->next_capacity, se->num_next + 1));
+        se->next[se->num_next++] = c;
+        if (*hits >= ENOUGH || !brio_ball_takes(&se->filter, ball, child->sample.record)) continue;
+        ++*hits;
+        BRIO_FORWARD(brio_found_add(&se->found, &child->sample));
+    }
+    return BRIO_OK;
+}
+
+static brio_status search_ball(brio_tile_source *s, search *se, brio_ball *ball) {
+    int hits = 0;
+    bool unsure = false;
+    se->num_next = 0;
+    BRIO_FORWARD(descend(s, se, ball, &(brio_tile_node){.first = (uint32_t)s->t->num_nodes - 1, .children = 1}, &hits));
+    while (se->num_next > 0 && hits < ENOUGH) {
+        uint32_t *swap = se->now;
+        size_t capacity = se->now_capacity;
+        se->now = se->next, se->now_capacity = se->next_capacity, se->num_now = se->num_next;
+        se->next = swap, se->next_capacity = capacity, se->num_next = 0;
+        for (size_t i = 0; i < se->num_now && hits < ENOUGH; i++) {
+            const brio_tile_node *node = &s->t->node[se->now[i]];
+            block *b;
+            if (node->children) {
+                BRIO_FORWARD(descend(s, se, ball, node, &hits));
+            } else {
+                BRIO_FORWARD(find_block(s, se->now[i], &b));
+                BRIO_FORWARD(search_block(se, ball, b, &hits, &unsure));
+            }
+        }
+    }
+    ball->is_free = hits == 0 && !unsure;
+    return BRIO_OK;
+}
+
+static void search_some(void *user, size_t begin, size_t end, int thread) {
+    brio_tile_source *s = user;
+    for (size_t i = begin; i < end; i++)
+        if (__atomic_load_n(&s->status, __ATOMIC_RELAXED) == BRIO_OK)
+            brio_report(&s->status, search_ball(s, &s->search[thread], &s->balls[i]));
+}
+
+brio_status brio_tile_conflicts(void *user, brio_ball *balls, size_t count, brio_found *found) {
+    brio_tile_source *s = user;
+    int threads = brio_threads(s->t->ctx, count, BALLS_A_THREAD);
+    if (!found->count) /* what was added before is known to the completion */
+        for (uint64_t i = 0; i < s->num_read; i++) {
+            block *b = s->cache[s->read[i]];
+            if (b->state == BLOCK_ADDED) b->state = BLOCK_KNOWN;
+        }
+    s->balls = balls;
+    s->status = BRIO_OK;
+    BRIO_FORWARD(brio_for_chunks(s->t->ctx, threads < s->threads ? threads : s->threads, count, 32, search_some, s));
+    BRIO_FORWARD(s->status);
+    for (int i = 0; i < s->threads; i++) {
+        brio_found *f = &s->search[i].found;
+        for (size_t k = 0; k < f->count; k++) BRIO_FORWARD(brio_found_add(found, &f->point[k]));
+        f->count = 0;
+    }
+    return BRIO_OK;
+}
+
+/* --- coarse sample --- */
+
+/* Returns the square of a box's diagonal, and sets *apart to the square of its distance to another. */
+static double size_and_distance(const brio_ball_box *box, const brio_ball_box *other, double *apart) {
+    double size = 0;
+    *apart = 0;
+    for (int k = 0; k < 3; k++) {
+        double side = box->high[k] - box->low[k];
+        double gap = fmax(0, fmax(box->low[k] - other->high[k], other->low[k] - box->high[k]));
+        size += side * side;
+        *apart += gap * gap;
+    }
+    return size;
+}
+
+brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found) {
+    search *se = &s->search[0];
+    const brio_ball_box *own = &s->t->node[s->t->tile[s->tile].root].box;
+    BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->next, se->next_capacity, 1));
+    se->next[0] = (uint32_t)s->t->num_nodes - 1;
+    for (se->num_next = 1; se->num_next > 0;) {
+        const brio_tile_node *node = &s->t->node[se->next[--se->num_next]];
+        double apart, size = size_and_distance(&node->box, own, &apart);
+        if (node->tile == s->tile) continue;
+        if (!node->children || size < NEAR * NEAR * apart) {
+            BRIO_FORWARD(brio_found_add(found, &node->sample));
+            continue;
+        }
+        BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->next, se->next_capacity, se->num_next + node->children));
+        for (uint32_t c = 0; c < node->children; c++) se->next[se->num_next++] = node->first + c;
+    }
+    return BRIO_OK;
+}

@@ -1,0 +1,140 @@
+/* Files by system calls: see store.h. A process that is killed leaves the folder, and its lock is gone with it. */
+#include "tiles/store.h"
+#include "base/memory.h"
+#include "platform/disk.h"
+#include "platform/file.h"
+#include "platform/folder.h"
+#include <assert.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { AT_ONCE = 1 << 22 };
+
+static const char LOCK[] = "lock";
+
+static void path_of(const brio_store_folder *f, const char *name, char path[BRIO_PATH_MOST]) {
+    snprintf(path, BRIO_PATH_MOST, "%s/%s", f->path, name);
+}
+
+brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out) {
+    char path[BRIO_PATH_MOST];
+    size_t size = strlen(parent) + strlen(name) + 2;
+    *out = (brio_store_folder){.ctx = ctx, .lock = -1};
+    BRIO_EXPECT(ctx, *parent && size < BRIO_PATH_MOST - 64, BRIO_ERR_OPEN, "%s: not a writable folder: %s",
+                *parent ? parent : "\"\"", strerror(*parent ? ENAMETOOLONG : ENOENT));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->path, size));
+    snprintf(out->path, size, "%s/%s", parent, name);
+    bool made = false, there = brio_make_folder(out->path, true, &made);
+    path_of(out, LOCK, path);
+    if (there) out->lock = brio_lock_file(path);
+    if (out->lock >= 0) return BRIO_OK;
+    brio_fail(ctx, BRIO_ERR_OPEN, "%s: %s", out->path,
+              errno == EWOULDBLOCK ? "in use by another process" : strerror(errno));
+    if (made) brio_remove_folder(out->path);
+    brio_release(ctx, out->path);
+    out->path = NULL;
+    return BRIO_ERR_OPEN;
+}
+
+/* Removes all files but the lock. */
+void brio_store_clear(brio_store_folder *f) {
+    if (f->path) brio_empty_folder(f->path, LOCK);
+}
+
+void brio_store_end(brio_store_folder *f) {
+    char path[BRIO_PATH_MOST];
+    if (!f->path) return;
+    brio_store_clear(f);
+    path_of(f, LOCK, path);
+    brio_close(f->lock);
+    brio_remove_file(path);
+    brio_remove_folder(f->path);
+    brio_release(f->ctx, f->path);
+    f->path = NULL;
+}
+
+static brio_status fail_file(const brio_store_file *f, brio_status status, const char *verb, int error) {
+    return brio_fail(f->folder->ctx, status, "%s/%s: cannot %s: %s", f->folder->path, f->name, verb,
+                     error ? strerror(error) : "the file ends early");
+}
+
+static brio_status open_file(brio_store_folder *folder, const char *name, bool makes, brio_store_file *out) {
+    char path[BRIO_PATH_MOST];
+    brio_place_facts facts;
+    *out = (brio_store_file){.folder = folder, .file = -1};
+    snprintf(out->name, sizeof out->name, "%s", name);
+    path_of(folder, name, path);
+    out->file = makes ? brio_make_file(path) : brio_open_input(path);
+    if (out->file < 0)
+        return fail_file(out, makes ? BRIO_ERR_WRITE : BRIO_ERR_OPEN, makes ? "make it" : "open it", errno);
+    if (brio_find_facts_open(out->file, &facts)) out->size = facts.size;
+    return BRIO_OK;
+}
+
+brio_status brio_store_create(brio_store_folder *folder, const char *name, brio_store_file *out) {
+    return open_file(folder, name, true, out);
+}
+
+brio_status brio_store_open(brio_store_folder *folder, const char *name, brio_store_file *out) {
+    return open_file(folder, name, false, out);
+}
+
+bool brio_store_has(const brio_store_folder *folder, const char *name) {
+    char path[BRIO_PATH_MOST];
+    path_of(folder, name, path);
+    return brio_is_there(path);
+}
+
+brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts) {
+    char from[BRIO_PATH_MOST], to[BRIO_PATH_MOST];
+    path_of(f->folder, f->name, from);
+    path_of(f->folder, name, to);
+    if (lasts && !brio_flush_to_disk(f->file)) return fail_file(f, BRIO_ERR_WRITE, "write", errno);
+    if (!brio_rename_file(from, to)) return fail_file(f, BRIO_ERR_WRITE, "rename it", errno);
+    snprintf(f->name, sizeof f->name, "%s", name);
+    return BRIO_OK;
+}
+
+void brio_store_remove(brio_store_folder *folder, const char *name) {
+    char path[BRIO_PATH_MOST];
+    brio_place_facts facts;
+    path_of(folder, name, path);
+    if (brio_find_facts(path, &facts) && facts.size <= folder->bytes) folder->bytes -= facts.size;
+    brio_remove_file(path);
+}
+
+void brio_store_close(brio_store_file *f) {
+    if (f->folder && f->file >= 0) brio_close(f->file);
+    *f = (brio_store_file){.file = -1};
+}
+
+brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *bytes, size_t size) {
+    brio_store_folder *folder = f->folder;
+    const char *from = bytes;
+    while (size > 0) {
+        int64_t n = brio_write_bytes_at(f->file, from, size < AT_ONCE ? size : AT_ONCE, offset);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return fail_file(f, BRIO_ERR_WRITE, "write", n < 0 ? errno : ENOSPC);
+        from += n, size -= (size_t)n, offset += (uint64_t)n;
+        if (offset > f->size) folder->bytes += offset - f->size, f->size = offset;
+        if (folder->bytes > folder->most) folder->most = folder->bytes;
+        BRIO_FORWARD(brio_look(folder->ctx, (size_t)n / 1024 + 1));
+    }
+    return BRIO_OK;
+}
+
+brio_status brio_store_append(brio_store_file *f, const void *bytes, size_t size) {
+    return brio_store_write(f, f->size, bytes, size);
+}
+
+brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *bytes, size_t size) {
+    char *to = bytes;
+    while (size > 0) {
+        int64_t n = brio_read_bytes_at(f->file, to, size < AT_ONCE ? size : AT_ONCE, offset);
+        if (n < 0 && errno == EINTR) continue;
+        if (n <= 0) return fail_file(f, BRIO_ERR_OPEN, "read", n < 0 ? errno : 0);
+        to += n, size -= (size_t)n, offset += (uint64_t)n;
+    }
+    return BRIO_OK;
+}

@@ -1,0 +1,48 @@
+/* Files with names in a folder of their own: what has to be there when another process goes on. */
+#ifndef BRIO_TILES_STORE_H
+#define BRIO_TILES_STORE_H
+
+#include "base/context.h"
+
+/** A folder, locked against other processes. */
+typedef struct {
+    brio_context *ctx;
+    char *path;           /* NULL: none */
+    int lock;             /* descriptor */
+    uint64_t bytes, most; /* in all files, as far as this process wrote them */
+} brio_store_folder;
+
+typedef struct {
+    brio_store_folder *folder;
+    char name[32];
+    int file; /* descriptor, or -1 */
+    uint64_t size;
+} brio_store_file;
+
+/** Makes a folder, or opens one that a process left.   name  of the folder in `parent`.
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY. */
+brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out);
+/** Removes the folder and all its files. */
+void brio_store_end(brio_store_folder *f);
+/** Removes all files. */
+void brio_store_clear(brio_store_folder *f);
+
+/** Makes an empty file. Returns BRIO_OK or BRIO_ERR_WRITE. */
+brio_status brio_store_create(brio_store_folder *folder, const char *name, brio_store_file *out);
+/** Opens a file to read it. Returns BRIO_OK or BRIO_ERR_OPEN. */
+brio_status brio_store_open(brio_store_folder *folder, const char *name, brio_store_file *out);
+/** Returns whether a file is there. */
+bool brio_store_has(const brio_store_folder *folder, const char *name);
+/** Gives a complete file its name; *f stays open.   lasts  whether its bytes are on the disk before it has the name, so
+ *  that a machine that fails leaves no file that is not whole. Returns BRIO_OK or BRIO_ERR_WRITE. */
+brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts);
+void brio_store_remove(brio_store_folder *folder, const char *name);
+void brio_store_close(brio_store_file *f);
+
+/** Appends bytes; the next two functions write over and read bytes. Returns BRIO_OK, BRIO_ERR_WRITE (full),
+ *  BRIO_ERR_OPEN (cannot be read, or ends early), BRIO_ERR_CANCELLED. */
+brio_status brio_store_append(brio_store_file *f, const void *bytes, size_t size);
+brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *bytes, size_t size);
+brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *bytes, size_t size);
+
+#endif

@@ -1,0 +1,306 @@
+/* Triangulations in tiles: the public functions, and the order of the stages. */
+#include "brio/tiles.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/versioned.h"
+#include "platform/thread.h"
+#include "tiles/work.h"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { TILES = 8, MOST_TILES = 1 << 16 };
+
+/* Bytes of memory for each point of the largest tile: its triangulation with a halo. Measured: tiles.md. */
+static const double BYTES_A_POINT = 520;
+
+/* --- life --- */
+
+static brio_status begin_folder(brio_tiles *t, const char *scratch) {
+    char name[64];
+    if (t->key)
+        snprintf(name, sizeof name, "brio-tiles-%016" PRIx64, t->key);
+    else
+        snprintf(name, sizeof name, "brio-tiles-%ld-%" PRIxPTR, brio_process_number(),
+                 (uintptr_t)t); /* no two at a time */
+    return brio_store_begin(t->ctx, scratch, name, &t->folder);
+}
+
+brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options, brio_tiles **out) {
+    BRIO_DOOR;
+    brio_tiles_options o = {0};
+    brio_tiles *t = NULL;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_tiles_options, options, &o));
+    BRIO_REQUIRE(ctx, o.scratch, BRIO_ERR_ARGUMENT, "tiles need a scratch folder");
+    BRIO_REQUIRE(ctx, o.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles; at most %d", o.tiles, MOST_TILES);
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
+    t->ctx = ctx;
+    t->raw.file = -1;
+    t->folder.lock = -1;
+    t->num_tiles = o.tiles ? o.tiles : TILES;
+    t->key = o.key ? brio_hash(o.key, t->num_tiles) : 0;
+    t->stats.size = sizeof t->stats;
+    t->stats.dimension = -1;
+    BRIO_TRY(begin_folder(t, o.scratch));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->tile, t->num_tiles));
+    if (t->key) BRIO_TRY(brio_tiles_restore(t, &t->has_points));
+    if (!t->has_points) brio_store_clear(&t->folder);
+    *out = t;
+    t = NULL;
+done:
+    brio_tiles_free(t);
+    return status;
+}
+
+void brio_tiles_free(brio_tiles *t) {
+    if (!t) return;
+    brio_store_close(&t->raw);
+    brio_store_end(&t->folder);
+    brio_release(t->ctx, t->some);
+    brio_release(t->ctx, t->sample);
+    brio_release(t->ctx, t->sample_hash);
+    brio_release(t->ctx, t->cut);
+    brio_release(t->ctx, t->tile);
+    brio_release(t->ctx, t->node);
+    brio_release(t->ctx, t);
+}
+
+int brio_tiles_has_points(const brio_tiles *t) {
+    return t->has_points;
+}
+
+const brio_tiles_stats *brio_tiles_facts(const brio_tiles *t) {
+    return &t->stats;
+}
+
+brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const double *points, const double *weights,
+                           size_t num_points) {
+    BRIO_DOOR;
+    BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
+    BRIO_EXPECT(ctx, !t->has_points, BRIO_ERR_ARGUMENT, "the tiles have all their points already");
+    if (!t->stats.points) t->weighted = weights != NULL;
+    BRIO_EXPECT(ctx, !num_points || !weights == !t->weighted, BRIO_ERR_ARGUMENT,
+                "earlier points have %s weights, and these have %s", t->weighted ? "" : "no",
+                weights ? "some" : "none");
+    return brio_tiles_take(t, points, weights, num_points);
+}
+
+/* --- points by place --- */
+
+brio_status brio_tile_points(brio_tiles *t, uint64_t place, size_t count, brio_set_point *points) {
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_store_open(&t->folder, "points", &f));
+    BRIO_TRY(brio_store_read(&f, place * sizeof *points, points, count * sizeof *points));
+done:
+    brio_store_close(&f);
+    return status;
+}
+
+brio_status brio_tile_rows(const brio_store_file *f, const uint64_t *places, size_t count, size_t size, void *rows) {
+    enum { WINDOW = 1 << 14 };
+    char window[WINDOW];
+    size_t in_window = WINDOW / size;
+    for (size_t i = 0, end; i < count; i = end) {
+        uint64_t first = places[i];
+        for (end = i; end < count && places[end] - first < in_window; end++) {}
+        BRIO_FORWARD(brio_store_read(f, first * size, window, (places[end - 1] - first + 1) * size));
+        for (size_t k = i; k < end; k++) memcpy((char *)rows + k * size, window + (places[k] - first) * size, size);
+    }
+    return BRIO_OK;
+}
+
+/* --- saved state --- */
+
+typedef struct {
+    char magic[8];
+    uint64_t key, num_nodes;
+    size_t sizes[3];
+    brio_tiles_stats stats;
+    brio_ball_box all;
+    double lightest;
+    uint64_t weighted;
+    brio_set_point extreme[TILE_DIRECTIONS], basis[4];
+    int num_basis;
+    uint64_t hash; /* of tiles and nodes */
+} saved_head;
+
+static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'l', 's', '1'};
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size) {
+    for (size_t i = 0; i < size; i += 8) {
+        uint64_t word = 0;
+        memcpy(&word, (const char *)bytes + i, size - i < 8 ? size - i : 8);
+        hash = brio_mix(hash ^ word);
+    }
+    return hash;
+}
+
+static saved_head head_of(const brio_tiles *t) {
+    saved_head h;
+    memset(&h, 0, sizeof h);
+    memcpy(h.magic, MAGIC, sizeof MAGIC);
+    h.key = t->key;
+    h.num_nodes = t->num_nodes;
+    h.sizes[0] = sizeof h, h.sizes[1] = sizeof *t->tile, h.sizes[2] = sizeof *t->node;
+    h.stats = t->stats;
+    h.all = t->all;
+    h.lightest = t->lightest;
+    h.weighted = t->weighted;
+    memcpy(h.extreme, t->extreme, sizeof h.extreme);
+    memcpy(h.basis, t->basis, sizeof h.basis);
+    h.num_basis = t->num_basis;
+    return h;
+}
+
+brio_status brio_tiles_save(brio_tiles *t) {
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    saved_head h = head_of(t);
+    h.hash = hash_bytes(hash_bytes(t->key, t->tile, t->num_tiles * sizeof *t->tile), t->node,
+                        t->num_nodes * sizeof *t->node);
+    BRIO_TRY(brio_store_create(&t->folder, "state.new", &f));
+    BRIO_TRY(brio_store_append(&f, &h, sizeof h));
+    BRIO_TRY(brio_store_append(&f, t->tile, t->num_tiles * sizeof *t->tile));
+    BRIO_TRY(brio_store_append(&f, t->node, t->num_nodes * sizeof *t->node));
+    status = brio_store_publish(&f, "state", true);
+done:
+    brio_store_close(&f);
+    return status;
+}
+
+/* Reads what brio_tiles_save wrote. A file that is not whole, or of another version, is as none. */
+static brio_status restore(brio_tiles *t, brio_store_file *f, bool *found) {
+    saved_head h, expected = head_of(t);
+    BRIO_FORWARD(brio_store_open(&t->folder, "state", f));
+    if (f->size < sizeof h) return BRIO_OK;
+    BRIO_FORWARD(brio_store_read(f, 0, &h, sizeof h));
+    size_t tiles = t->num_tiles * sizeof *t->tile, nodes = h.num_nodes * sizeof *t->node;
+    if (memcmp(h.magic, MAGIC, sizeof MAGIC) || h.key != t->key || memcmp(h.sizes, expected.sizes, sizeof h.sizes) ||
+        f->size != sizeof h + tiles + nodes)
+        return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->node, h.num_nodes + 1));
+    BRIO_FORWARD(brio_store_read(f, sizeof h, t->tile, tiles));
+    BRIO_FORWARD(brio_store_read(f, sizeof h + tiles, t->node, nodes));
+    if (hash_bytes(hash_bytes(t->key, t->tile, tiles), t->node, nodes) != h.hash) return BRIO_OK;
+    t->num_nodes = h.num_nodes;
+    t->stats = h.stats;
+    t->all = h.all;
+    t->lightest = h.lightest;
+    t->weighted = h.weighted != 0;
+    memcpy(t->extreme, h.extreme, sizeof h.extreme);
+    memcpy(t->basis, h.basis, sizeof h.basis);
+    t->num_basis = h.num_basis;
+    *found = true;
+    return BRIO_OK;
+}
+
+brio_status brio_tiles_restore(brio_tiles *t, bool *found) {
+    brio_store_file f = {.file = -1};
+    *found = false;
+    if (!brio_store_has(&t->folder, "state")) return BRIO_OK;
+    brio_status status = restore(t, &f, found);
+    brio_store_close(&f);
+    if (*found || status != BRIO_OK) return status;
+    memset(t->tile, 0, t->num_tiles * sizeof *t->tile);
+    brio_release(t->ctx, t->node);
+    t->node = NULL;
+    return BRIO_OK;
+}
+
+/* --- all stages --- */
+
+/* Refuses tiles that do not fit in the memory that the context may have. */
+static brio_status require_memory(brio_tiles *t) {
+    double most = 0, index = (double)t->num_nodes * (sizeof *t->node + 8), limit = (double)brio_memory_limit(t->ctx);
+    for (uint32_t i = 0; i < t->num_tiles; i++) most = fmax(most, t->tile[i].points);
+    double need = most * BYTES_A_POINT + index;
+    BRIO_EXPECT(
+        t->ctx, need <= limit, BRIO_ERR_NO_MEMORY,
+        "the largest of %u tiles has %.0f points, and needs about %.0f MB of the %.0f MB that are allowed: take "
+        "about %.0f tiles",
+        t->num_tiles, most, need / 1e6, limit / 1e6,
+        limit > index ? ceil(1.2 * t->num_tiles * most * BYTES_A_POINT / (limit - index)) : MOST_TILES);
+    return BRIO_OK;
+}
+
+static void add_facts(brio_tiles *t) {
+    brio_tiles_stats *s = &t->stats;
+    uint64_t positions = 0;
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        const brio_tile *f = &t->tile[i];
+        positions += f->points;
+        s->vertices += f->vertices;
+        s->tetrahedra += f->tetrahedra;
+        s->hull_facets += f->hull_facets;
+        s->asked += f->asked;
+        s->found += f->found;
+        s->sampled += f->sampled;
+        s->read += f->read;
+        s->triangulated += f->triangulated;
+        if (f->rounds > s->most_rounds) s->most_rounds = f->rounds;
+        if (f->most_points > s->most_points) s->most_points = f->most_points;
+        if (f->most_tetrahedra > s->most_tetrahedra) s->most_tetrahedra = f->most_tetrahedra;
+    }
+    if (s->dimension < 3) s->vertices = positions;
+    s->hidden = positions - s->vertices;
+    s->weighted = t->weighted;
+    s->scratch_bytes = t->folder.most;
+}
+
+static brio_status triangulate(brio_tiles *t, brio_bar bar) {
+    double done = 0, all = 0;
+    for (uint32_t i = 0; i < t->num_tiles; i++) all += t->tile[i].points;
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        double next = done + t->tile[i].points;
+        brio_progress_part(t->ctx, bar, 0.15 + 0.85 * done / all, 0.15 + 0.85 * next / all);
+        BRIO_FORWARD(brio_tiles_complete(t, i));
+        done = next;
+    }
+    return BRIO_OK;
+}
+
+brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_bar bar = brio_progress_bar(ctx);
+    double start = brio_seconds();
+    BRIO_REQUIRE(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
+    BRIO_REQUIRE(ctx, !t->has_result, BRIO_ERR_ARGUMENT, "the tiles are triangulated already");
+    if (!t->has_points) {
+        brio_progress_part(ctx, bar, 0, 0.05);
+        BRIO_TRY(brio_tiles_divide(t));
+        brio_progress_part(ctx, bar, 0.05, 0.15);
+        BRIO_TRY(brio_tiles_arrange(t));
+        t->has_points = true;
+        if (t->key) BRIO_TRY(brio_tiles_save(t));
+    }
+    t->stats.divide_seconds = brio_seconds() - start;
+    start = brio_seconds();
+    BRIO_REQUIRE(ctx, !t->weighted || t->stats.dimension == 3 || t->stats.points < 2, BRIO_ERR_NO_ANSWER,
+                 "all points are in a plane, and have weights: their hidden points are found without tiles only");
+    if (t->stats.dimension == 3) {
+        BRIO_TRY(require_memory(t));
+        BRIO_TRY(triangulate(t, bar));
+    }
+    add_facts(t);
+    t->has_result = true;
+    t->stats.triangulate_seconds = brio_seconds() - start;
+done:
+    brio_progress_part(ctx, bar, 0, 1);
+    return status;
+}
+
+brio_status brio_tiles_checksum(brio_context *ctx, brio_tiles *t, uint64_t *checksum) {
+    BRIO_DOOR;
+    double start = brio_seconds();
+    BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
+    BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    brio_status status = brio_tiles_sum(t, checksum);
+    t->stats.scratch_bytes = t->folder.most;
+    t->stats.rank_seconds = brio_seconds() - start;
+    return status;
+}

@@ -1,0 +1,73 @@
+/* The tree of boxes over the blocks of all tiles: see work.h. The children of a node follow each other in the array,
+ * and the last node is the root. */
+#include "base/memory.h"
+#include "base/rng.h"
+#include "tiles/work.h"
+#include <assert.h>
+#include <string.h>
+
+static const brio_ball_box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, -INFINITY};
+
+static void extend(brio_ball_box *box, const brio_ball_box *by) {
+    for (int k = 0; k < 3; k++) {
+        if (by->low[k] < box->low[k]) box->low[k] = by->low[k];
+        if (by->high[k] > box->high[k]) box->high[k] = by->high[k];
+    }
+    if (by->weight > box->weight) box->weight = by->weight;
+}
+
+static brio_status append(brio_tiles *t, const brio_tile_node *node) {
+    BRIO_EXPECT(t->ctx, t->num_nodes < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "more than 2^32 - 17 blocks of points");
+    BRIO_FORWARD(BRIO_RESERVE(t->ctx, t->node, t->node_capacity, t->num_nodes + 1));
+    t->node[t->num_nodes++] = *node;
+    return BRIO_OK;
+}
+
+static brio_status append_block(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
+    brio_tile_node node = {
+        .box = NOTHING, .sample = points[0], .place = place, .points = (uint32_t)n, .tile = TILE_NONE};
+    node.sample.name = place;
+    for (size_t i = 0; i < n; i++) {
+        const double *r = points[i].record;
+        extend(&node.box, &(brio_ball_box){{r[0], r[1], r[2]}, {r[0], r[1], r[2]}, r[3]});
+    }
+    return append(t, &node);
+}
+
+/* Appends nodes over the nodes from `begin` on, level by level, up to one. */
+static brio_status append_levels(brio_tiles *t, size_t begin) {
+    for (size_t end = t->num_nodes; end - begin > 1; begin = end, end = t->num_nodes)
+        for (size_t first = begin; first < end; first += TILE_FAN) {
+            size_t n = end - first < TILE_FAN ? end - first : TILE_FAN;
+            brio_tile_node node = {
+                .box = NOTHING, .first = (uint32_t)first, .children = (uint32_t)n, .tile = TILE_NONE};
+            node.sample = t->node[first + brio_mix(first) % n].sample;
+            for (size_t i = 0; i < n; i++) extend(&node.box, &t->node[first + i].box);
+            BRIO_FORWARD(append(t, &node));
+        }
+    return BRIO_OK;
+}
+
+brio_status brio_tile_tree_add(brio_tiles *t, uint32_t tile, const brio_set_point *points) {
+    brio_tile *facts = &t->tile[tile];
+    size_t begin = t->num_nodes, n = facts->points;
+    facts->root = TILE_NONE;
+    if (!n) return BRIO_OK;
+    for (size_t i = 0; i < n; i += TILE_BLOCK)
+        BRIO_FORWARD(append_block(t, points + i, n - i < TILE_BLOCK ? n - i : TILE_BLOCK, facts->place + i));
+    BRIO_FORWARD(append_levels(t, begin));
+    facts->root = (uint32_t)t->num_nodes - 1;
+    return BRIO_OK;
+}
+
+brio_status brio_tile_tree_close(brio_tiles *t) {
+    size_t begin = t->num_nodes;
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        if (t->tile[i].root == TILE_NONE) continue;
+        brio_tile_node root = t->node[t->tile[i].root]; /* a copy: roots follow each other */
+        root.tile = i;
+        t->tile[i].root = (uint32_t)t->num_nodes;
+        BRIO_FORWARD(append(t, &root));
+    }
+    return append_levels(t, begin);
+}

@@ -1,0 +1,136 @@
+/* A triangulation in tiles: what all its stages share.
+ *
+ * A point has two names. Its index is the caller's. Its place is where it lies in the file of points: tile after tile,
+ * in a tile block after block along a Hilbert curve, in a block at random, so that the beginning of a block is a sample
+ * of it. Of points at one position only the one that stands for it has a place. */
+#ifndef BRIO_TILES_WORK_H
+#define BRIO_TILES_WORK_H
+
+#include "brio/tiles.h"
+#include "completion/completion.h"
+#include "tiles/store.h"
+
+enum {
+    TILE_BLOCK = 128,    /* points in a block, at most. Chosen: tiles.md */
+    TILE_FAN = 8,        /* blocks, or nodes, below a node */
+    TILE_DIRECTIONS = 26 /* in which extreme points are found */
+};
+
+#define TILE_NONE UINT32_MAX
+
+/** A node of the tree of boxes over all blocks. */
+typedef struct {
+    brio_ball_box box;
+    brio_set_point sample;    /* one of its points; the name is its place */
+    uint64_t place;           /* of a block: its first point */
+    uint32_t first, children; /* 0 children: a block */
+    uint32_t points;          /* of a block */
+    uint32_t tile;            /* of the root of a tile; else TILE_NONE */
+} brio_tile_node;
+
+/** A cut of the k-d tree. Points with x[axis] < at go to `below`. */
+typedef struct {
+    double at;
+    int32_t axis;
+    int32_t below, above; /* a cut, or -1 - tile */
+} brio_tile_cut;
+
+typedef struct {
+    brio_ball_box home; /* sides may be infinite; the weight is the heaviest of all points */
+    uint64_t raw;       /* points, those at equal positions included */
+    uint64_t place;     /* of its first point */
+    uint32_t points;    /* that have a place */
+    uint32_t root;      /* node; TILE_NONE if there are no points */
+    uint64_t vertices, tetrahedra, hull_facets, halo; /* of the finished tile; halo: vertices of other tiles */
+    uint64_t asked, found, sampled, read, triangulated, most_points, most_tetrahedra;
+    uint32_t rounds, finished; /* finished: 1 */
+} brio_tile;
+
+struct brio_tiles {
+    brio_context *ctx;
+    brio_store_folder folder;
+    brio_tiles_stats stats;
+    bool weighted, has_points, has_result, has_ranks;
+    uint64_t key;
+    uint32_t num_tiles;
+    /* while points are added */
+    brio_store_file raw;
+    brio_set_point *some; /* that are not written yet */
+    size_t num_some;
+    double (*sample)[3];
+    uint64_t *sample_hash;
+    size_t num_sample;
+    uint64_t most_hash; /* of points of the sample */
+    brio_ball_box all;  /* of all points, with the heaviest */
+    double lightest;
+    /* then */
+    brio_tile_cut *cut;
+    size_t num_cuts;
+    brio_tile *tile;
+    brio_tile_node *node;
+    size_t num_nodes, node_capacity;
+    brio_set_point extreme[TILE_DIRECTIONS]; /* names are places */
+    brio_set_point basis[4];                 /* points that span what all of them span */
+    int num_basis;
+};
+
+/** --- stages, in their order; each returns BRIO_OK or what its public function promises --- */
+
+/** Appends points to the raw file, and samples them. */
+brio_status brio_tiles_take(brio_tiles *t, const double *points, const double *weights, size_t num_points);
+/** Cuts space by the sample, and makes a file of points for each tile. */
+brio_status brio_tiles_divide(brio_tiles *t);
+/** Brings the points of all tiles to their places, and makes the tree of boxes. */
+brio_status brio_tiles_arrange(brio_tiles *t);
+/** Triangulates one tile, and writes its file. */
+brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
+
+/** Saves or finds what the stages before brio_tiles_complete made. *found tells whether it was there. */
+brio_status brio_tiles_save(brio_tiles *t);
+brio_status brio_tiles_restore(brio_tiles *t, bool *found);
+
+/** --- tree of boxes --- */
+
+/** Appends nodes for a tile's blocks.   points  the tile's, in their places. */
+brio_status brio_tile_tree_add(brio_tiles *t, uint32_t tile, const brio_set_point *points);
+/** Appends the nodes over the roots of the tiles. The last node is then the root of all. */
+brio_status brio_tile_tree_close(brio_tiles *t);
+
+/** Sets a filter for all points. */
+void brio_tiles_filter(const brio_tiles *t, brio_filter *f);
+
+/** Points of other tiles that a tile asks for: reads their blocks, and keeps those that it read. */
+typedef struct brio_tile_source brio_tile_source;
+
+brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, brio_tile_source **out);
+void brio_tile_source_free(brio_tile_source *s);
+/** Finds points in conflict, as a brio_conflicts_fn.   user  a brio_tile_source. */
+brio_status brio_tile_conflicts(void *user, brio_ball *balls, size_t count, brio_found *found);
+/** Adds a sample of the other tiles: the denser the nearer they are. */
+brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found);
+/** Returns the number of blocks that were read. */
+uint64_t brio_tile_source_read(const brio_tile_source *s);
+
+/** --- results --- */
+
+/** The file of a finished tile: its tetrahedra, the places of vertices of other tiles, and a byte for each of its
+ *  points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the tile's number
+ *  of points subtracted, rows of the halo. */
+typedef struct {
+    uint32_t (*tetrahedra)[4];
+    uint64_t *halo;
+    uint8_t *is_vertex;
+} brio_tile_result;
+
+brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, brio_tile_result *out);
+void brio_tile_result_free(brio_tiles *t, brio_tile_result *r);
+
+/** Sums the hashes of all tetrahedra: the checksum. */
+brio_status brio_tiles_sum(brio_tiles *t, uint64_t *checksum);
+
+/** Reads points by their places.   points  their names become `count` of their indices. */
+brio_status brio_tile_points(brio_tiles *t, uint64_t place, size_t count, brio_set_point *points);
+/** Reads rows of `size` bytes of a file that has one for each place.   places  in ascending order. */
+brio_status brio_tile_rows(const brio_store_file *f, const uint64_t *places, size_t count, size_t size, void *rows);
+
+#endif

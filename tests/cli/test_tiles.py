@@ -1,0 +1,115 @@
+"""brio delaunay --tiles: the same report as without, files for each tile, runs that are killed and resumed."""
+
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+
+from brio_cli import BRIO, CliTest, main
+
+SAME = "points vertices duplicates hidden dimension tetrahedra hull_facets checksum weighted".split()
+
+
+class Tiles(CliTest):
+    def rows(self, name, count, weight=False):
+        rng = random.Random(5)
+        with open(self.path(name), "w", encoding="ascii") as f:
+            f.write("x,y,z" + (",weight" if weight else "") + "\n")
+            for _ in range(count):
+                row = [round(rng.gauss(0, 1), 3) for _ in range(3)] + ([rng.randrange(3) / 100] if weight else [])
+                f.write(",".join(map(str, row)) + "\n")
+        return self.path(name)
+
+    def scratch(self):
+        os.makedirs(self.path("scratch"), exist_ok=True)
+        return self.path("scratch")
+
+    def same(self, *arguments, tiles=3):
+        plain = self.facts("delaunay", *arguments)
+        tiled = self.facts("delaunay", *arguments, "--tiles", str(tiles), "--scratch", self.scratch())
+        self.assertEqual({key: plain[key] for key in SAME}, {key: tiled[key] for key in SAME})
+        self.assertEqual(os.listdir(self.scratch()), [])
+        return tiled
+
+    def test_reports_are_those_without_tiles(self):
+        facts = self.same(self.rows("a.csv", 3000), tiles=5)
+        self.assertEqual(facts["tiles"], 5)
+        self.assertGreater(facts["found"], 0)
+        self.assertGreater(self.same(self.rows("w.csv", 3000, weight=True), tiles=4)["hidden"], 0)
+        self.same(self.path("w.csv"), "--unweighted")
+        self.same(self.path("a.csv"), "--weights-mod", "-9")
+
+    def test_standard_input(self):
+        with open(self.rows("a.csv", 500), "rb") as f:
+            data = f.read()
+        run = subprocess.run([BRIO, "delaunay", "-", "--tiles", "2", "--scratch", self.scratch(), "--json"], input=data,
+                             capture_output=True, check=True)
+        self.assertIn(self.facts("delaunay", self.path("a.csv"))["checksum"], run.stdout.decode())
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_files_of_tiles(self):
+        cloud = self.rows("a.csv", 800)
+        facts = self.facts("delaunay", cloud, "--tiles", "3", "--scratch", self.scratch(), "-o", self.path("out.pvtu"))
+        with open(self.path("out.pvtu"), encoding="utf-8") as f:
+            pieces = re.findall(r'<Piece Source="(.*?)"/>', f.read())
+        self.assertEqual(pieces, ["out/%d.vtu" % i for i in range(3)])
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.vtu", "1.vtu", "2.vtu"])
+        self.assertEqual(sum(self.facts("info", self.path(piece))["tetrahedra"] for piece in pieces), facts["tetrahedra"])
+
+    def test_a_killed_run_is_resumed(self):
+        cloud, command = self.rows("a.csv", 20000), ("--tiles", "8", "--scratch", self.scratch())
+        plain = self.facts("delaunay", cloud)["checksum"]
+        process = subprocess.Popen([BRIO, "delaunay", cloud, *command, "--quiet"], stdout=subprocess.DEVNULL)
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and process.poll() is None:
+            folders = os.listdir(self.scratch())
+            if folders and "tile-2" in os.listdir(os.path.join(self.scratch(), folders[0])):
+                break
+            time.sleep(0.002)
+        process.send_signal(signal.SIGKILL)
+        if process.wait() != -signal.SIGKILL:
+            self.skipTest("the run was over before it could be killed")
+        facts = self.facts("delaunay", cloud, *command)
+        self.assertEqual(facts["checksum"], plain)
+        self.assertGreaterEqual(facts["resumed"], 3)
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_an_interrupted_run_leaves_nothing(self):
+        cloud = self.rows("a.csv", 20000)
+        process = subprocess.Popen([BRIO, "delaunay", cloud, "--tiles", "8", "--scratch", self.scratch(), "--quiet"],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        process.wait()
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_too_little_memory_is_said_before_the_work(self):
+        run = self.expect(2, "delaunay", self.rows("a.csv", 30000), "--tiles", "2", "--scratch", self.scratch(),
+                          "--max-memory", "4M")
+        self.assertRegex(run.err, r"the largest of 2 tiles has \d+ points.*take about \d+ tiles|memory")
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_flat_points(self):
+        with open(self.path("flat.xyz"), "w", encoding="ascii") as f:
+            f.writelines("%d %d 2\n" % (i % 20, i // 20) for i in range(400))
+        self.same(self.path("flat.xyz"))
+        run = self.expect(3, "delaunay", self.path("flat.xyz"), "--weights-mod", "-9", "--tiles", "2", "--scratch",
+                          self.scratch())
+        self.assertIn("in a plane", run.err)
+
+
+class Usage(CliTest):
+    def test_wrong_usage(self):
+        cloud, folder = self.cloud("a.xyz", 50), self.folder
+        self.usage("--tiles needs --scratch", "delaunay", cloud, "--tiles", "2")
+        self.usage("not with --weights FILE", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--weights", "w")
+        self.usage("writes .pvtu", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path("x.vtu"))
+        self.usage("--tiles goes with", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--verify")
+        self.usage("--tiles goes with", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--plane", "xy")
+        self.usage("70000", "delaunay", cloud, "--tiles", "70000", "--scratch", folder)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,297 @@
+/* Triangulations in tiles: the same checksum and counts as without, whatever the points and the number of tiles. */
+#include "base/memory.h"
+#include "brio/tiles.h"
+#include "harness.h"
+#include "points.h"
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST = 20000, KINDS = 10 };
+
+static double points[3 * MOST], weights[MOST];
+static char folder[64];
+
+/* Fills points of a kind; returns their number, at most n. */
+static size_t make_points(uint64_t seed, size_t n, int kind) {
+    size_t side = (size_t)cbrt((double)n);
+    brio_rng rng = brio_rng_new(seed);
+    switch (kind) {
+    case 0:
+        uniform_points(seed, n, points);
+        return n;
+    case 1:
+        clustered_points(seed, n, points);
+        return n;
+    case 2:
+        sphere_points(seed, n, points);
+        return n;
+    case 3:
+        integer_points(seed, n, 9, points);
+        return n;
+    case 4: /* a grid */
+        n = side * side * side;
+        for (size_t i = 0; i < n; i++) {
+            points[3 * i] = (double)(i % side), points[3 * i + 1] = (double)(i / side % side);
+            points[3 * i + 2] = (double)(i / side / side);
+        }
+        return n;
+    case 5: /* a scan */
+        side = (size_t)sqrt((double)n);
+        depth_points(seed, side, points);
+        return side * side;
+    case 6: /* ground, with a few points above */
+        for (size_t i = 0; i < n; i++) {
+            double *p = points + 3 * i;
+            p[0] = brio_rng_double(&rng) * 100, p[1] = brio_rng_double(&rng) * 100;
+            p[2] = sin(p[0] / 9) + cos(p[1] / 7) + (i % 50 ? 0 : 10 * brio_rng_double(&rng));
+        }
+        return n;
+    case 7: /* most in a plane */
+        uniform_points(seed, n, points);
+        for (size_t i = 0; i < n; i++)
+            if (i % 97) points[3 * i + 2] = points[3 * i];
+        return n;
+    case 8: /* most on a line */
+        integer_points(seed, n, 1000, points);
+        for (size_t i = 0; i < n; i++)
+            if (i % 31) points[3 * i + 1] = 2 * points[3 * i], points[3 * i + 2] = 5;
+        return n;
+    default: /* two skew circles */
+        for (size_t i = 0; i < n; i++) {
+            double a = brio_rng_double(&rng) * 6.283185307179586;
+            points[3 * i] = cos(a), points[3 * i + 1] = i % 2 ? sin(a) : 0, points[3 * i + 2] = i % 2 ? 0 : 2 + sin(a);
+        }
+        return n;
+    }
+}
+
+static brio_tiles *tiles_of(brio_context *ctx, uint32_t tiles, size_t n, bool weighted, uint64_t key) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = tiles, .key = key};
+    brio_tiles *t;
+    EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    for (size_t i = 0; !brio_tiles_has_points(t) && i < n; i += 777) {
+        size_t some = n - i < 777 ? n - i : 777;
+        EXPECT(brio_tiles_add(ctx, t, points + 3 * i, weighted ? weights + i : NULL, some) == BRIO_OK);
+    }
+    return t;
+}
+
+static size_t files_left(void) {
+    DIR *d = opendir(folder);
+    size_t n = 0;
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;) n += e->d_name[0] != '.';
+    if (d) closedir(d);
+    return n;
+}
+
+typedef struct {
+    brio_delaunay_stats stats;
+    uint64_t checksum;
+} expected;
+
+static expected without_tiles(brio_context *ctx, size_t n, bool weighted) {
+    brio_triangulation *t;
+    expected e;
+    brio_delaunay_options o = {.size = sizeof o, .leave_hidden = 1};
+    EXPECT(brio_delaunay(ctx, points, weighted ? weights : NULL, n, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_triangulation_checksum(ctx, t, points, &e.checksum) == BRIO_OK);
+    e.stats = *brio_triangulation_stats(t);
+    brio_triangulation_free(t);
+    return e;
+}
+
+static void compare(brio_context *ctx, brio_tiles *t, const expected *e, int kind, uint32_t tiles) {
+    const brio_tiles_stats *s = brio_tiles_facts(t);
+    const brio_delaunay_stats *d = &e->stats;
+    uint64_t checksum = 0;
+    brio_status status = brio_tiles_run(ctx, t);
+    EXPECT(status == BRIO_OK, "kind %d, %u tiles: %s", kind, tiles, brio_message(ctx));
+    if (status != BRIO_OK) return;
+    EXPECT(brio_tiles_checksum(ctx, t, &checksum) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(checksum == e->checksum && s->tetrahedra == d->tetrahedra && s->hull_facets == d->hull_facets,
+           "kind %d, %u tiles, %zu points: %llu tetrahedra, not %zu", kind, tiles, d->points,
+           (unsigned long long)s->tetrahedra, d->tetrahedra);
+    EXPECT(s->points == d->points && s->vertices == d->vertices && s->duplicates == d->duplicates &&
+               s->hidden == d->hidden && s->dimension == d->dimension,
+           "kind %d, %u tiles: %llu vertices, %llu duplicates, %llu hidden, not %zu, %zu, %zu", kind, tiles,
+           (unsigned long long)s->vertices, (unsigned long long)s->duplicates, (unsigned long long)s->hidden,
+           d->vertices, d->duplicates, d->hidden);
+}
+
+static void compare_once(uint64_t seed, size_t n, int kind, bool weighted, uint32_t tiles) {
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, n < 2000 ? 1 : 2);
+    n = make_points(seed, n, kind);
+    if (weighted) integer_weights(seed, n, kind == 3 || kind == 4 ? 5 : 2, weights);
+    expected e = without_tiles(ctx, n, weighted);
+    if (e.stats.dimension == 3 || !weighted) {
+        brio_tiles *t = tiles_of(ctx, tiles, n, weighted, 0);
+        compare(ctx, t, &e, kind, tiles);
+        brio_tiles_free(t);
+    }
+    EXPECT(files_left() == 0, "%zu files are left", files_left());
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void small_sets(void) {
+    brio_rng rng = brio_rng_new(3);
+    for (int i = 0; i < (BRIEF_TESTS ? 40 : SHORT_TESTS ? 120 : 1000); i++)
+        compare_once(brio_rng_next(&rng), 1 + brio_rng_below(&rng, i % 4 ? 300 : 1500), i % KINDS, i / KINDS % 2,
+                     1 + brio_rng_below(&rng, 12));
+}
+
+static void larger_sets(void) {
+    static const uint32_t tiles[] = {1, 2, 3, 5, 8, 16, 64};
+    for (int kind = 0; kind < KINDS; kind++)
+        for (int weighted = 0; weighted < 2; weighted++)
+            for (size_t i = 0; i < sizeof tiles / sizeof *tiles; i++)
+                if (!SHORT_TESTS || (i + (size_t)kind + (size_t)weighted) % 7 == 0)
+                    compare_once(9, BRIEF_TESTS ? 1500 : SHORT_TESTS ? 3000 : MOST, kind, weighted, tiles[i]);
+}
+
+/* Blocks that are added as a whole once ended the search of balls whose own points in conflict were elsewhere. */
+static void points_nearly_on_a_sphere(void) {
+    compare_once(1, BRIEF_TESTS ? 3000 : 8000, 2, false, 3);
+}
+
+/* A run goes on with what one before left: all points, and the tiles that it had finished. */
+static void a_run_is_resumed(void) {
+    brio_context *ctx = new_context();
+    char left[128], kept[128];
+    size_t n = make_points(4, 3000, 1);
+    expected e = without_tiles(ctx, n, false);
+    brio_tiles *t = tiles_of(ctx, 4, n, false, 99);
+    compare(ctx, t, &e, 1, 4);
+    EXPECT(brio_tiles_facts(t)->resumed == 0);
+    DIR *d = opendir(folder);
+    for (struct dirent *f; d && (f = readdir(d)) != NULL;)
+        if (f->d_name[0] != '.') snprintf(left, sizeof left, "%s/%.60s", folder, f->d_name);
+    if (d) closedir(d);
+    snprintf(kept, sizeof kept, "%s-kept", folder);
+    EXPECT(rename(left, kept) == 0); /* as if the process were killed: nothing is removed */
+    brio_tiles_free(t);
+    EXPECT(rename(kept, left) == 0);
+    snprintf(kept, sizeof kept, "%s/tile-2", left);
+    EXPECT(truncate(kept, 100) == 0); /* not whole: made again */
+    t = tiles_of(ctx, 4, n, false, 99);
+    EXPECT(brio_tiles_has_points(t));
+    compare(ctx, t, &e, 1, 4);
+    EXPECT(brio_tiles_facts(t)->resumed == 3, "%u tiles", brio_tiles_facts(t)->resumed);
+    brio_tiles_free(t);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* All parts together have each tetrahedron once, and name the points by their indices. */
+static void parts_are_the_whole(void) {
+    brio_context *ctx = new_context();
+    size_t n = make_points(4, 2000, 0), count = 0;
+    expected e = without_tiles(ctx, n, false);
+    brio_tiles *t = tiles_of(ctx, 5, n, false, 0);
+    uint64_t sum = 0;
+    compare(ctx, t, &e, 0, 5);
+    for (uint32_t i = 0; i < 5; i++) {
+        brio_tile_part p = {.size = sizeof p};
+        EXPECT(brio_tiles_part(ctx, t, i, &p) == BRIO_OK, "%s", brio_message(ctx));
+        for (size_t v = 0; v < p.num_vertices; v++)
+            EXPECT(p.index[v] < n && !memcmp(p.points + 3 * v, points + 3 * p.index[v], 3 * sizeof *points));
+        for (size_t k = 0; k < p.num_tetrahedra; k++) {
+            uint64_t product = 1;
+            for (int c = 0; c < 4; c++) product += brio_mix(p.index[p.tetrahedra[k][c]]);
+            sum += brio_mix(product);
+        }
+        count += p.num_tetrahedra;
+        brio_tile_part_free(ctx, &p);
+    }
+    brio_triangulation *whole;
+    EXPECT(brio_delaunay(ctx, points, NULL, n, NULL, &whole) == BRIO_OK);
+    for (size_t k = 0; k < e.stats.tetrahedra; k++) {
+        uint64_t product = 1;
+        for (int c = 0; c < 4; c++) product += brio_mix(brio_triangulation_tetrahedra(whole)[k].vertex[c]);
+        sum -= brio_mix(product);
+    }
+    EXPECT(count == e.stats.tetrahedra && sum == 0, "%zu tetrahedra", count);
+    brio_triangulation_free(whole);
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
+static void wrong_calls_are_refused(void) {
+    brio_context *ctx = new_context();
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 2, .key = 5};
+    brio_tiles *t, *again;
+    double p[6] = {0, 0, 0, 1, NAN, 0}, w[2] = {0, 1};
+    uint64_t sum;
+    EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_OK);
+    EXPECT(brio_tiles_new(ctx, &o, &again) == BRIO_ERR_OPEN && strstr(brio_message(ctx), "in use"));
+    EXPECT(brio_tiles_add(ctx, t, p, NULL, 2) == BRIO_ERR_NOT_FINITE && strstr(brio_message(ctx), "point 1: y is NaN"));
+    EXPECT(brio_tiles_add(ctx, t, p, w, 1) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_tiles_checksum(ctx, t, &sum) == BRIO_ERR_ARGUMENT);
+    brio_tiles_free(t);
+    o.scratch = "/nowhere/at/all";
+    EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_ERR_OPEN && !t);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* Flat inputs: as without tiles; with weights, refused. */
+static void flat_points(void) {
+    brio_context *ctx = new_context();
+    size_t n = 500;
+    integer_points(5, n, 20, points);
+    integer_weights(5, n, 3, weights);
+    for (size_t i = 0; i < n; i++) points[3 * i + 1] = 7;
+    expected e = without_tiles(ctx, n, false);
+    brio_tiles *t = tiles_of(ctx, 3, n, false, 0);
+    compare(ctx, t, &e, -1, 3);
+    brio_tiles_free(t);
+    t = tiles_of(ctx, 3, n, true, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_ERR_NO_ANSWER && strstr(brio_message(ctx), "in a plane"));
+    brio_tiles_free(t);
+    for (size_t i = 0; i < 3 * n; i++) points[i] = 1; /* one position */
+    e = without_tiles(ctx, n, false);
+    t = tiles_of(ctx, 3, n, false, 0);
+    compare(ctx, t, &e, -2, 3);
+    brio_tiles_free(t);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static int stop_late(const char *stage, double fraction, void *user) {
+    int *calls = user;
+    (void)stage, (void)fraction;
+    return --*calls < 0;
+}
+
+static void cancelled_runs_leave_nothing(void) {
+    for (int calls = 1; calls < 400; calls += calls / 3 + 1) {
+        brio_context *ctx = new_context();
+        int left = calls;
+        size_t n = make_points(6, 4000, 0);
+        brio_tiles *t = tiles_of(ctx, 3, n, false, 7);
+        brio_context_set_progress(ctx, stop_late, &left);
+        brio_status status = brio_tiles_run(ctx, t);
+        EXPECT(status == BRIO_ERR_CANCELLED || (status == BRIO_OK && left >= 0), "%s", brio_message(ctx));
+        brio_tiles_free(t);
+        EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+        brio_context_free(ctx);
+    }
+}
+
+SUITE(test_tiles) {
+    snprintf(folder, sizeof folder, "/tmp/brio-test-tiles-%ld", (long)getpid());
+    EXPECT(mkdir(folder, 0700) == 0);
+    RUN(small_sets);
+    RUN(larger_sets);
+    RUN(points_nearly_on_a_sphere);
+    RUN(a_run_is_resumed);
+    RUN(parts_are_the_whole);
+    RUN(wrong_calls_are_refused);
+    RUN(flat_points);
+    RUN(cancelled_runs_leave_nothing);
+    rmdir(folder);
+    return harness_end();
+}
