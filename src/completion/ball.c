@@ -1,0 +1,94 @@
+/* Regions of conflict: see completion.h.
+ *
+ * Let c be the centre of a tetrahedron's orthosphere and c' the one that was computed, with |c - c'| <= d. For a point
+ * x of weight w and a vertex p of weight v,
+ *     |x - c'|^2 - w - (|p - c'|^2 - v) = (|x - c|^2 - w) - (|p - c|^2 - v) + 2 (x - p)(c - c').
+ * If x is in conflict, the first two terms on the right are at most 0 together, so the left side is at most
+ * 2 d |x - p|. So `square` is |p - c'|^2 - v + 2 d D, where D is the diagonal of the box of all points. All roundings
+ * together stay below a factor of 1 +- 2^-46, and TINY stands for what underflows. */
+#include "completion/completion.h"
+
+static const double SLACK = 0x1p-46, TINY = 1e-290;
+
+void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all) {
+    double diagonal = 0, most = -INFINITY, terms = 0;
+    ball->square = INFINITY;
+    if (ball->infinite || isnan(ball->centre[0])) return;
+    for (int k = 0; k < 3; k++) diagonal += fabs(all->high[k] - all->low[k]);
+    for (int i = 0; i < 4; i++) {
+        double square = 0, w = ball->vertex[i][3];
+        for (int k = 0; k < 3; k++) {
+            double d = ball->vertex[i][k] - ball->centre[k];
+            square += d * d;
+        }
+        terms = fmax(terms, square + fabs(w));
+        most = fmax(most, square - w);
+    }
+    double square = most + terms * SLACK + 4 * error * diagonal + TINY;
+    if (!isnan(square)) ball->square = square; /* else differences of infinities */
+}
+
+/* Returns a lower bound of the squared distance of a position to a box. */
+static double square_to(const double *x, const brio_ball_box *box) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        double d = x[k] < box->low[k] ? box->low[k] - x[k] : x[k] > box->high[k] ? x[k] - box->high[k] : 0;
+        square += d * d;
+    }
+    return square * (1 - SLACK);
+}
+
+/* Returns whether a corner of the box may be behind the facet: the corners at which the facet's normal n is greatest.
+ * Where the sign of a coordinate of n is not sure, both sides of the box count. */
+static bool may_be_behind(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
+    const double *a = ball->vertex[0], *b = ball->vertex[1], *c = ball->vertex[2];
+    double u[3], v[3], value = 0, margin = 0;
+    int first[3], last[3]; /* sides of the box to try: 0 low, 1 high */
+    for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k];
+    for (int k = 0; k < 3; k++) {
+        int i = (k + 1) % 3, j = (k + 2) % 3;
+        double n = u[i] * v[j] - u[j] * v[i], error = (fabs(u[i] * v[j]) + fabs(u[j] * v[i])) * SLACK + TINY;
+        double low = box->low[k] - a[k], high = box->high[k] - a[k], far = fmax(fabs(low), fabs(high));
+        value += fmax(n * low, n * high);
+        margin += (error + fabs(n) * SLACK) * far + TINY;
+        first[k] = n > error ? 1 : 0;
+        last[k] = n < -error ? 0 : 1;
+    }
+    if (value > margin) return true;
+    if (value < -margin) return false;
+    for (int x = first[0]; x <= last[0]; x++)
+        for (int y = first[1]; y <= last[1]; y++)
+            for (int z = first[2]; z <= last[2]; z++) {
+                double corner[4] = {x ? box->high[0] : box->low[0], y ? box->high[1] : box->low[1],
+                                    z ? box->high[2] : box->low[2], 0};
+                if (brio_orient3d_sign(f, a, b, c, corner) > 0) return true;
+            }
+    return false;
+}
+
+bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
+    if (ball->infinite) return may_be_behind(f, ball, box);
+    double most = ball->square + fabs(ball->square) * SLACK + box->weight + fabs(box->weight) * SLACK;
+    return !(square_to(ball->centre, box) > most); /* true for NaN */
+}
+
+bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box) {
+    if (ball->infinite || !(ball->square < INFINITY)) return false;
+    double square = ball->square + fabs(ball->square) * SLACK + box->weight + fabs(box->weight) * SLACK;
+    if (square < 0) return true; /* no point of the set is as heavy */
+    double radius = sqrt(square) * (1 + SLACK);
+    for (int k = 0; k < 3; k++) {
+        double slack = fabs(ball->centre[k]) * SLACK;
+        if (!(ball->centre[k] - radius - slack > box->low[k] && ball->centre[k] + radius + slack < box->high[k]))
+            return false;
+    }
+    return true;
+}
+
+bool brio_ball_takes(brio_filter *f, const brio_ball *ball, const double *record) {
+    const double *a = ball->vertex[0], *b = ball->vertex[1], *c = ball->vertex[2], *d = ball->vertex[3];
+    if (ball->infinite) return brio_orient3d_sign(f, a, b, c, record) > 0;
+    for (int i = 0; i < 4; i++)
+        if (brio_same_position(ball->vertex[i], record)) return f->weighted && record[3] > ball->vertex[i][3];
+    return brio_conflict(f, a, b, c, d, record, f->weighted);
+}

@@ -1,0 +1,387 @@
+/* Completion: see completion.h; docs/decisions/017-tiles.md proves it.
+ *
+ * A round triangulates some points. Each tetrahedron at an own point whose star is not final yet is judged: it is
+ * final if it was asked for in an earlier round and is still there, or if its ball lies in the home box, where all
+ * points are own ones. The source is asked for the others. A star is final when all its tetrahedra are. The next
+ * round triangulates the points whose stars are not final, the vertices of these stars, and what the source found.
+ * Other known points may be left out: the star of a point in a triangulation is the lower side of the cone from the
+ * lifted point over the others, so points that are not in the star stay outside it, whatever is added.
+ *
+ * Rounds end, for each adds points of a finite set.
+ *
+ * Based on: Peterka, Morozov, Phillips. High-performance computation of distributed-memory parallel 3D Voronoi and
+ *           Delaunay tessellation. SC 2014 (neighbours are asked until balls are known).
+ *           Funke, Sanders. Parallel d-D Delaunay triangulations in shared and distributed memory. ALENEX 2017.
+ * Differs from the papers: what is asked for is points in conflict, a bounded number at a time, with exact ties and
+ * weights; half-spaces are asked for, too; later rounds triangulate the borders only. */
+#include "completion/completion.h"
+#include "base/memory.h"
+#include "base/team.h"
+#include "completion/known.h"
+#include "predicates/circumcentre.h"
+#include <assert.h>
+#include <string.h>
+
+enum {
+    BALLS_AT_ONCE = 4096,  /* asked for in one call */
+    FINALS_AT_ONCE = 1024, /* handed on in one call */
+    TETS_A_THREAD = 1 << 12
+};
+
+enum { STAR_OPEN, STAR_FINAL, NO_VERTEX }; /* of an own point */
+
+typedef struct {
+    brio_context *ctx;
+    const brio_completion_task *task;
+    brio_completion_stats *stats;
+    brio_bar bar;
+    brio_set_point *known; /* own points first */
+    size_t num_known, capacity;
+    brio_names_met names;
+    uint8_t *state;  /* of each own point */
+    size_t num_open; /* own points whose state is STAR_OPEN */
+    brio_tet_set asked, next_asked;
+    brio_found found;
+    /* of the round */
+    uint32_t *local; /* of each point that is triangulated, its index among the known ones */
+    size_t num_local, local_capacity;
+    double *points, *weights;
+    size_t points_capacity, weights_capacity;
+    brio_triangulation *t;
+    const brio_tetrahedron *tet;
+    size_t num_finite, num_tets;
+    uint8_t *open;      /* of each local point: 1 if it is an own point whose star is open */
+    uint8_t *not_final; /* of each local point: 1 if a tetrahedron at it is not final */
+    uint8_t *to_ask;    /* of each tetrahedron */
+    brio_ball *ball;
+    uint32_t *ball_tet; /* the tetrahedron of each ball */
+    size_t num_balls;
+} completion;
+
+/* --- a round's triangulation --- */
+
+static void end_round(completion *c) {
+    brio_triangulation_free(c->t);
+    brio_release(c->ctx, c->open);
+    brio_release(c->ctx, c->not_final);
+    brio_release(c->ctx, c->to_ask);
+    c->t = NULL;
+    c->open = c->not_final = c->to_ask = NULL;
+}
+
+static brio_status gather(completion *c) {
+    size_t n = c->num_local;
+    BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->points, c->points_capacity, 3 * n + 1));
+    if (c->task->weighted) BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->weights, c->weights_capacity, n + 1));
+    for (size_t i = 0; i < n; i++) {
+        const double *r = c->known[c->local[i]].record;
+        memcpy(c->points + 3 * i, r, 3 * sizeof *r);
+        if (c->task->weighted) c->weights[i] = r[3];
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+    }
+    return BRIO_OK;
+}
+
+static brio_status triangulate(completion *c) {
+    brio_completion_stats *s = c->stats;
+    brio_delaunay_options o = {.size = sizeof o, .leave_hidden = 1};
+    size_t n = c->num_local;
+    double done = 1 - 1.0 / (1 + s->rounds); /* the first round takes most of the time */
+    brio_progress_part(c->ctx, c->bar, done, 1 - 1.0 / (2 + s->rounds));
+    BRIO_FORWARD(gather(c));
+    BRIO_FORWARD(brio_delaunay(c->ctx, c->points, c->task->weighted ? c->weights : NULL, n, &o, &c->t));
+    const brio_delaunay_stats *facts = brio_triangulation_stats(c->t);
+    c->tet = brio_triangulation_tetrahedra(c->t);
+    c->num_finite = facts->tetrahedra;
+    c->num_tets = facts->tetrahedra + facts->hull_facets;
+    s->dimension = facts->dimension;
+    s->rounds++;
+    s->triangulated += n;
+    if (n > s->most_points) s->most_points = n;
+    if (c->num_tets > s->most_tetrahedra) s->most_tetrahedra = c->num_tets;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->open, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->not_final, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->to_ask, c->num_tets + 1));
+    const uint32_t *representative = brio_triangulation_representatives(c->t);
+    for (size_t i = 0; i < n; i++) {
+        uint32_t p = c->local[i];
+        if (p >= c->task->num_own || c->state[p] != STAR_OPEN) continue;
+        if (representative[i] == i)
+            c->open[i] = 1;
+        else /* what hides it stays */
+            c->state[p] = NO_VERTEX, c->num_open--;
+    }
+    return BRIO_OK;
+}
+
+/* --- judging --- */
+
+static inline bool is_finite_tet(const brio_tetrahedron *t) {
+    return t->vertex[3] != BRIO_INFINITE;
+}
+
+static bool at_open_star(const completion *c, const brio_tetrahedron *t) {
+    return c->open[t->vertex[0]] | c->open[t->vertex[1]] | c->open[t->vertex[2]] |
+           (is_finite_tet(t) && c->open[t->vertex[3]]);
+}
+
+static brio_tet_key key_of(const completion *c, const brio_tetrahedron *t) {
+    uint32_t v[4];
+    for (int i = 0; i < 4; i++) v[i] = t->vertex[i] == BRIO_INFINITE ? BRIO_INFINITE : c->local[t->vertex[i]];
+    return brio_tet_key_of(v);
+}
+
+/* Sets the balls of some tetrahedra. */
+static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_ball *balls) {
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    double centre[BRIO_CENTRE_BATCH][3], error[BRIO_CENTRE_BATCH];
+    size_t finite = 0;
+    assert(n <= BRIO_CENTRE_BATCH);
+    for (size_t i = 0; i < n; i++)
+        if (tets[i] < c->num_finite) memcpy(vertex[finite++], c->tet[tets[i]].vertex, sizeof *vertex);
+    brio_centre_batch batch = {c->points, c->task->weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, finite};
+    if (finite) brio_centres(&batch, *centre, error);
+    for (size_t i = 0, f = 0; i < n; i++) {
+        brio_ball *b = &balls[i];
+        const uint32_t *v = c->tet[tets[i]].vertex;
+        *b = (brio_ball){.infinite = tets[i] >= c->num_finite};
+        for (int k = 0; k < (b->infinite ? 3 : 4); k++)
+            memcpy(b->vertex[k], c->known[c->local[v[k]]].record, sizeof *b->vertex);
+        if (!b->infinite) memcpy(b->centre, centre[f], sizeof b->centre);
+        brio_ball_set_square(b, b->infinite ? 0 : error[f], &c->task->all);
+        f += !b->infinite;
+    }
+}
+
+/* Marks those of a batch whose balls leave the home box. */
+static void judge_batch(completion *c, const uint32_t *tets, size_t n) {
+    brio_ball ball[BRIO_CENTRE_BATCH];
+    set_balls(c, tets, n, ball);
+    for (size_t i = 0; i < n; i++) c->to_ask[tets[i]] = !c->task->home || !brio_ball_inside(&ball[i], c->task->home);
+}
+
+static void judge_some(void *user, size_t begin, size_t end, int thread) {
+    completion *c = user;
+    uint32_t some[BRIO_CENTRE_BATCH];
+    size_t n = 0;
+    (void)thread;
+    for (size_t t = begin; t < end; t++) {
+        if (!at_open_star(c, &c->tet[t])) continue;
+        brio_tet_key key = key_of(c, &c->tet[t]);
+        if (brio_tet_set_has(&c->asked, &key)) continue;
+        some[n++] = (uint32_t)t;
+        if (n == BRIO_CENTRE_BATCH) judge_batch(c, some, n), n = 0;
+    }
+    if (n) judge_batch(c, some, n);
+}
+
+/* --- asking --- */
+
+static brio_status ask_some(completion *c) {
+    if (!c->num_balls) return BRIO_OK;
+    for (size_t i = 0; i < c->num_balls; i += BRIO_CENTRE_BATCH) {
+        size_t n = c->num_balls - i < BRIO_CENTRE_BATCH ? c->num_balls - i : BRIO_CENTRE_BATCH;
+        set_balls(c, c->ball_tet + i, n, c->ball + i);
+    }
+    c->stats->asked += c->num_balls;
+    BRIO_FORWARD(c->task->source(c->task->source_user, c->ball, c->num_balls, &c->found));
+    for (size_t i = 0; i < c->num_balls; i++) {
+        const brio_tetrahedron *t = &c->tet[c->ball_tet[i]];
+        c->to_ask[c->ball_tet[i]] = !c->ball[i].is_free;
+        if (!c->ball[i].is_free)
+            for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) c->not_final[t->vertex[k]] = 1;
+    }
+    c->num_balls = 0;
+    return BRIO_OK;
+}
+
+/* Makes the found points known that are new.   *any  receives whether there are any. */
+static brio_status take_found(completion *c, bool *any) {
+    size_t before = c->num_known;
+    for (size_t i = 0; i < c->found.count; i++) {
+        bool is_new;
+        BRIO_FORWARD(brio_names_enter(c->ctx, &c->names, c->found.point[i].name, &is_new));
+        if (!is_new) continue;
+        BRIO_EXPECT(c->ctx, c->num_known < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE,
+                    "more than 2^32 - 17 points are needed to complete %zu", c->task->num_own);
+        BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->known, c->capacity, c->num_known + 1));
+        c->known[c->num_known++] = c->found.point[i];
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+    }
+    c->found.count = 0;
+    c->stats->found += c->num_known - before;
+    *any = c->num_known > before;
+    return BRIO_OK;
+}
+
+/* Judges the tetrahedra at open stars, and asks for those that are not final.   *any  receives whether points were
+ * found. */
+static brio_status ask(completion *c, bool *any) {
+    int threads = brio_threads(c->ctx, c->num_tets, TETS_A_THREAD);
+    BRIO_FORWARD(brio_for(c->ctx, threads, c->num_tets, judge_some, c));
+    c->next_asked.count = 0;
+    for (size_t t = 0; t < c->num_tets; t++) {
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+        if (!c->to_ask[t]) continue;
+        c->ball_tet[c->num_balls++] = (uint32_t)t;
+        if (c->num_balls == BALLS_AT_ONCE) BRIO_FORWARD(ask_some(c));
+    }
+    BRIO_FORWARD(ask_some(c));
+    BRIO_FORWARD(take_found(c, any));
+    if (!*any) memset(c->not_final, 0, c->num_local); /* no asked ball has a point in conflict */
+    return BRIO_OK;
+}
+
+/* --- final stars --- */
+
+/* Returns the own vertex of a tetrahedron that is known first, as a local point; BRIO_INFINITE if there is none. */
+static uint32_t leader_of(const completion *c, const brio_tetrahedron *t) {
+    uint32_t leader = BRIO_INFINITE;
+    for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) {
+        uint32_t v = t->vertex[k];
+        if (c->local[v] < c->task->num_own && (leader == BRIO_INFINITE || c->local[v] < c->local[leader])) leader = v;
+    }
+    return leader;
+}
+
+/* Hands on the tetrahedra whose leader's star became final: each tetrahedron once. */
+static brio_status hand_on(completion *c) {
+    uint32_t some[FINALS_AT_ONCE][4];
+    size_t n = 0;
+    for (size_t i = 0; i < c->num_tets; i++) {
+        const brio_tetrahedron *t = &c->tet[i];
+        uint32_t leader = leader_of(c, t);
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+        if (leader == BRIO_INFINITE || !c->open[leader] || c->not_final[leader]) continue;
+        for (int k = 0; k < 4; k++) some[n][k] = t->vertex[k] == BRIO_INFINITE ? BRIO_INFINITE : c->local[t->vertex[k]];
+        n++;
+        if (is_finite_tet(t))
+            c->stats->tetrahedra++;
+        else
+            c->stats->infinite++;
+        if (n < FINALS_AT_ONCE) continue;
+        BRIO_FORWARD(c->task->final(c->task->final_user, c->known, (const uint32_t(*)[4])some, n));
+        n = 0;
+    }
+    return n ? c->task->final(c->task->final_user, c->known, (const uint32_t(*)[4])some, n) : BRIO_OK;
+}
+
+static brio_status finish_stars(completion *c) {
+    BRIO_FORWARD(hand_on(c));
+    for (size_t i = 0; i < c->num_local; i++) {
+        if (!c->open[i] || c->not_final[i]) continue;
+        c->state[c->local[i]] = STAR_FINAL;
+        c->open[i] = 0;
+        c->num_open--;
+        c->stats->vertices++;
+    }
+    return BRIO_OK;
+}
+
+/* --- the next round --- */
+
+/* Chooses the points of the next round: the vertices of open stars, and the known points from `before` on. Lists what
+ * was asked for at these stars: what of it is still there in the next round is final. */
+static brio_status choose_points(completion *c, size_t before) {
+    brio_status status = BRIO_OK;
+    uint8_t *needed = NULL;
+    size_t n = 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, needed, c->num_local + 1));
+    for (size_t i = 0; i < c->num_tets; i++) {
+        const brio_tetrahedron *t = &c->tet[i];
+        BRIO_TRY(brio_look(c->ctx, 1));
+        if (!at_open_star(c, t)) continue;
+        for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) needed[t->vertex[k]] = 1;
+        brio_tet_key key = key_of(c, t);
+        if (c->to_ask[i] || brio_tet_set_has(&c->asked, &key))
+            BRIO_TRY(brio_tet_list_add(c->ctx, &c->next_asked, &key));
+    }
+    for (size_t i = 0; i < c->num_local; i++)
+        if (needed[i]) c->local[n++] = c->local[i];
+    BRIO_TRY(BRIO_RESERVE(c->ctx, c->local, c->local_capacity, n + c->num_known - before));
+    for (size_t p = before; p < c->num_known; p++) c->local[n++] = (uint32_t)p;
+    c->num_local = n;
+    brio_tet_set old = c->asked;
+    c->asked = c->next_asked;
+    c->next_asked = old;
+    status = brio_tet_set_index(c->ctx, &c->asked);
+done:
+    brio_release(c->ctx, needed);
+    return status;
+}
+
+static brio_status run_round(completion *c, bool *goes_on) {
+    size_t before = c->num_known;
+    bool any;
+    *goes_on = false;
+    BRIO_FORWARD(triangulate(c));
+    if (c->stats->dimension < 3) return BRIO_OK;
+    BRIO_FORWARD(ask(c, &any));
+    BRIO_FORWARD(finish_stars(c));
+    assert(any || c->num_open == 0);
+    *goes_on = any && c->num_open > 0;
+    return *goes_on ? choose_points(c, before) : BRIO_OK;
+}
+
+/* --- all rounds --- */
+
+static brio_status begin(completion *c) {
+    const brio_completion_task *task = c->task;
+    size_t n = task->num_points;
+    BRIO_EXPECT(c->ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points at a time; at most 2^32 - 17", n);
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->known, n + 1));
+    c->capacity = n + 1;
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->local, n + 1));
+    c->local_capacity = n + 1;
+    for (size_t i = 0; i < n; i++) {
+        bool is_new;
+        BRIO_FORWARD(brio_names_enter(c->ctx, &c->names, task->points[i].name, &is_new));
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+        if (!is_new && i >= task->num_own) continue;
+        c->local[c->num_known] = (uint32_t)c->num_known;
+        c->known[c->num_known++] = task->points[i];
+    }
+    c->num_local = c->num_known;
+    c->num_open = task->num_own;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->state, task->num_own + 1));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->ball, BALLS_AT_ONCE));
+    return BRIO_ALLOC(c->ctx, c->ball_tet, BALLS_AT_ONCE);
+}
+
+static void end(completion *c) {
+    end_round(c);
+    brio_names_met_free(c->ctx, &c->names);
+    brio_tet_set_free(c->ctx, &c->asked);
+    brio_tet_set_free(c->ctx, &c->next_asked);
+    brio_release(c->ctx, c->known);
+    brio_release(c->ctx, c->state);
+    brio_release(c->ctx, c->found.point);
+    brio_release(c->ctx, c->local);
+    brio_release(c->ctx, c->points);
+    brio_release(c->ctx, c->weights);
+    brio_release(c->ctx, c->ball);
+    brio_release(c->ctx, c->ball_tet);
+}
+
+brio_status brio_complete(brio_context *ctx, const brio_completion_task *task, uint8_t *is_vertex,
+                          brio_completion_stats *stats) {
+    brio_status status = BRIO_OK;
+    completion c = {.ctx = ctx, .task = task, .stats = stats, .bar = brio_progress_bar(ctx), .found = {.ctx = ctx}};
+    *stats = (brio_completion_stats){.dimension = -1};
+    BRIO_TRY(begin(&c));
+    for (bool goes_on = task->num_own > 0; goes_on; end_round(&c)) BRIO_TRY(run_round(&c, &goes_on));
+    stats->known = c.num_known;
+    stats->not_vertices = stats->dimension < 3 ? 0 : task->num_own - stats->vertices;
+    if (is_vertex)
+        for (size_t p = 0; p < task->num_own; p++) is_vertex[p] = c.state[p] == STAR_FINAL;
+done:
+    end(&c);
+    brio_progress_part(ctx, c.bar, 0, 1);
+    return status;
+}
+
+brio_status brio_found_add(brio_found *found, const brio_set_point *point) {
+    BRIO_FORWARD(BRIO_RESERVE(found->ctx, found->point, found->capacity, found->count + 1));
+    found->point[found->count++] = *point;
+    return BRIO_OK;
+}

@@ -1,0 +1,122 @@
+/* Completion: the stars of some points in the triangulation of a set that is not at hand as a whole.
+ *
+ * The caller has its own points, some other points of the set, and a source that finds points of the set that conflict
+ * with given tetrahedra. The result is every tetrahedron of the set's triangulation that has an own point for a vertex:
+ * those of brio_delaunay for the whole set, ties included. docs/decisions/017-tiles.md has the proof.
+ *
+ * The room knows nothing of tiles, files or periods: a source is two pointers. */
+#ifndef BRIO_COMPLETION_COMPLETION_H
+#define BRIO_COMPLETION_COMPLETION_H
+
+#include "base/context.h"
+#include "predicates/predicates.h"
+
+/* --- regions of conflict --- */
+
+/* The region of space in which a point conflicts with a tetrahedron: the ball of its (ortho)sphere, or, for an infinite
+ * tetrahedron, the open half-space behind its facet. A box is tested in floating point, with a margin: the answer may
+ * be yes where it ought to be no. A point is tested exactly, with ties broken as the triangulation breaks them. */
+
+/** The region of one tetrahedron. Points are records: x, y, z, weight. */
+typedef struct {
+    double vertex[4]
+                 [4]; /* of the positive tetrahedron; of an infinite one three, and (a, b, c, x) is positive outside */
+    double centre[3]; /* of a finite one: a point x of weight w in conflict has |x - centre|^2 - w at most */
+    double square;    /* this; INFINITY where the tetrahedron is too flat to say */
+    bool infinite;
+    bool is_free; /* a source sets it if no point of the set conflicts with the tetrahedron; it need not */
+} brio_ball;
+
+/** A box that holds points, none of which is heavier than `weight`. */
+typedef struct {
+    double low[3], high[3];
+    double weight;
+} brio_ball_box;
+
+/** Sets a ball's `square` from its vertices, its centre, and a bound of the error of each of the centre's coordinates.
+ *  all  a box that holds all points that will ever be compared with the ball. */
+void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all);
+
+/** Returns whether a point in the box may be in conflict. Never false where one is.   f  as in brio_ball_takes. */
+bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box);
+
+/** Returns whether every point in conflict lies strictly inside the box, whose weight is that of the heaviest point.
+ *  May be false where they do. Always false for a half-space. */
+bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box);
+
+/** Returns whether a point conflicts with the tetrahedron, exactly. A point at the position of a vertex does if it is
+ *  heavier.
+ *  f  a filter whose extents hold the vertices and the point; each thread has its own. */
+bool brio_ball_takes(brio_filter *f, const brio_ball *ball, const double *record);
+
+/* --- completion --- */
+
+/** A point of the set. */
+typedef struct {
+    double record[4]; /* x, y, z, weight; -0 is not used */
+    uint64_t name;    /* by which points are told apart; the caller's choice */
+} brio_set_point;
+
+/** Points that a source finds: a list that brio_found_add lets grow. */
+typedef struct {
+    brio_context *ctx;
+    brio_set_point *point;
+    size_t count, capacity;
+} brio_found;
+
+/** Appends a point. Points may be there twice, or be known: the completion takes each name once.
+ *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_found_add(brio_found *found, const brio_set_point *point);
+
+/** Finds points of the set for the regions of `count` tetrahedra.
+ *  Must add, for each ball with which any point of the set conflicts, at least one such point. May leave out the
+ *  others, and may add points that conflict with nothing. Should set ball.is_free where no point conflicts: the
+ *  completion then ends a round earlier. Where the set has several points at one position, the source knows only the
+ *  heaviest, and of equally heavy ones one. Returns BRIO_OK or an error, which ends the completion. */
+typedef brio_status (*brio_conflicts_fn)(void *user, brio_ball *balls, size_t count, brio_found *found);
+
+/** Receives tetrahedra that are final, positive, with indices of `known` for vertices. An infinite tetrahedron has
+ *  BRIO_INFINITE last. Each comes once, in no particular order.
+ *  Returns BRIO_OK or an error, which ends the completion. */
+typedef brio_status (*brio_final_fn)(void *user, const brio_set_point *known, const uint32_t (*vertex)[4],
+                                     size_t count);
+
+typedef struct {
+    const brio_set_point *points; /* own points first, at distinct positions or of one position the heaviest first */
+    size_t num_own, num_points;   /* the others are known from the beginning: a coarse sample of the whole set, its
+                                     extreme points, and four that span space if any do; they may be none */
+    bool weighted;
+    brio_ball_box all;         /* holds all points of the set */
+    const brio_ball_box *home; /* NULL, or a box in whose interior every point of the set is an own one. Sides may be
+                                  infinite */
+    brio_conflicts_fn source;
+    void *source_user;
+    brio_final_fn final;
+    void *final_user;
+} brio_completion_task;
+
+enum { BRIO_COMPLETION_ROUNDS = 64 };
+
+/** Facts of a completion. */
+typedef struct {
+    int dimension;               /* below 3: the points known span no space; there are no tetrahedra */
+    size_t vertices;             /* own points that are vertices of the whole triangulation */
+    size_t not_vertices;         /* own points that are none: hidden, or at the position of another */
+    size_t tetrahedra, infinite; /* handed on */
+    size_t known;                /* own points, those of the task, and those that the source found */
+    int rounds;
+    uint64_t asked;                      /* balls */
+    uint64_t found;                      /* points that were new */
+    uint64_t triangulated;               /* points, all rounds together */
+    size_t most_points, most_tetrahedra; /* of one round */
+} brio_completion_stats;
+
+/** Completes the stars of the own points.
+ *  is_vertex  NULL, or receives for each own point whether it is a vertex of the whole triangulation.
+ *  Memory: a triangulation of the own points and those around them, and 60 bytes a known point.
+ *  Cost: the first round triangulates all known points; later ones only those about unfinished stars.
+ *  Returns what brio_delaunay, the source and `final` return. */
+brio_status brio_complete(brio_context *ctx, const brio_completion_task *task, uint8_t *is_vertex,
+                          brio_completion_stats *stats);
+
+#endif
