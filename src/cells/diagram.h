@@ -57,6 +57,7 @@ typedef struct brio_diagram {
     const double *at;               /* #P by 3: the points, relative to the origin and scaled */
     const double *square;           /* #P: the weights, scaled; NULL without weights */
     size_t num_points;              /* the caller's; the triangulation can have up to three more (cells.c) */
+    size_t num_sites;               /* points before it have cells; others are translates of them (complex.h) */
     double origin[3];               /* each difference points - origin is exact */
     double scale;                   /* a power of two: at = scale * (points - origin) */
     bool flat;                      /* the points have dimension 2 or less: centres say nothing */
