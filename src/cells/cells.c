@@ -16,7 +16,6 @@
 #include "base/team.h"
 #include "base/versioned.h"
 #include "cells/cell_record.h"
-#include "cells/complex.h"
 #include "predicates/predicates.h"
 #include "triangulation/view.h"
 #include <limits.h>

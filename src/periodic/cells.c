@@ -1,13 +1,13 @@
 /* Cells of a periodic triangulation.
  *
- * The tetrahedra with a vertex in the domain are unfolded (unfold.c), and the cells of the points there are computed from
- * their stars (cells/complex.h). Then neighbours become points and shifts, and each cell is moved to where its point was
- * given: a vertex of cells that move differently becomes several. */
+ * The tetrahedra with a vertex in the domain are unfolded (unfold.c), and the cells of the points there are computed
+ * from their stars (brio_cells_of_complex). Then neighbours become points and shifts, and each cell is moved to where
+ * its point was given: a vertex of cells that move differently becomes several. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/versioned.h"
-#include "cells/complex.h"
+#include "cells/diagram.h"
 #include "periodic/periodic.h"
 #include <math.h>
 #include <string.h>
@@ -28,7 +28,8 @@ typedef struct {
 static brio_status copy_images(periodic_call *c) {
     const brio_images *from = &c->t->images;
     brio_images *to = &c->images;
-    BRIO_FORWARD(brio_images_new(c->ctx, &c->t->lattice, (const double(*)[3])from->x, from->weight, from->num_points, to));
+    BRIO_FORWARD(
+        brio_images_new(c->ctx, &c->t->lattice, (const double(*)[3])from->x, from->weight, from->num_points, to));
     for (size_t i = from->num_points; i < from->count; i++)
         BRIO_FORWARD(brio_images_add(to, from->list[i].point, from->list[i].shift));
     return BRIO_OK;
@@ -79,8 +80,9 @@ static brio_status take_box(periodic_call *c, brio_cells_options *o) {
 /* --- what the caller sees --- */
 
 /* Returns how far the cell of a point is moved, along coordinate k: from the domain to where the point was given. */
-static double move_of(const brio_periodic *t, uint32_t point, int k) {
+static inline double move_of(const brio_periodic *t, uint32_t point, int k) {
     double sum = 0;
+    if (t->stays) return 0;
     for (int j = 0; j < t->lattice.rank; j++) sum -= t->home[point][j] * t->lattice.used[j][k];
     return sum;
 }
@@ -94,6 +96,7 @@ static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
     for (size_t n = 0; n < cells->num_cells; n++)
         for (uint64_t f = cells->face_offsets[n]; f < cells->face_offsets[n + 1]; f++) {
             if (cells->face_neighbours[f] < 0) continue;
+            if (t->stays && (size_t)cells->face_neighbours[f] < c->images.num_points) continue;
             const brio_image *image = &c->images.list[cells->face_neighbours[f]];
             cells->face_neighbours[f] = image->point;
             for (int j = 0; j < l->rank; j++) {
@@ -108,7 +111,9 @@ static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
 static void move_centroids(const periodic_call *c, brio_cells *cells) {
     for (size_t n = 0; n < cells->num_cells && cells->centroid; n++)
         for (int k = 0; k < 3; k++)
-            cells->centroid[3 * n + (size_t)k] += c->t->lattice.origin[k] + move_of(c->t, cells->site[n], k);
+            cells->centroid[3 * n + (size_t)k] =
+                brio_lattice_shown(&c->t->lattice, cells->centroid[3 * n + (size_t)k], k) +
+                move_of(c->t, cells->site[n], k);
 }
 
 /* A vertex of cells that move by one shift. */
@@ -133,8 +138,9 @@ static brio_status move_vertices(const periodic_call *c, brio_cells *cells) {
             for (uint64_t at = cells->corner_offsets[f]; at < cells->corner_offsets[f + 1]; at++) {
                 moved_vertex v = {.vertex = cells->face_vertices[at]};
                 memcpy(v.move, t->home[cells->site[n]], sizeof v.move);
-                uint64_t hash = brio_mix(v.vertex + brio_mix((uint64_t)(uint32_t)v.move[0] << 32 | (uint32_t)v.move[1]) +
-                                         (uint32_t)v.move[2] * UINT64_C(0x9e3779b97f4a7c15));
+                uint64_t hash =
+                    brio_mix(v.vertex + brio_mix((uint64_t)(uint32_t)v.move[0] << 32 | (uint32_t)v.move[1]) +
+                             (uint32_t)v.move[2] * UINT64_C(0x9e3779b97f4a7c15));
                 size_t place = hash & (size - 1);
                 while (slot[place] && memcmp(&list[slot[place] - 1], &v, sizeof v)) place = (place + 1) & (size - 1);
                 if (!slot[place]) {
@@ -142,8 +148,9 @@ static brio_status move_vertices(const periodic_call *c, brio_cells *cells) {
                     BRIO_TRY(BRIO_RESERVE(ctx, list, capacity, count + 1));
                     BRIO_TRY(BRIO_RESERVE(ctx, x, x_capacity, 3 * (count + 1)));
                     for (int k = 0; k < 3; k++)
-                        x[3 * count + (size_t)k] = cells->vertices[3 * (size_t)v.vertex + (size_t)k] + t->lattice.origin[k] +
-                                                   move_of(t, cells->site[n], k);
+                        x[3 * count + (size_t)k] =
+                            brio_lattice_shown(&t->lattice, cells->vertices[3 * (size_t)v.vertex + (size_t)k], k) +
+                            move_of(t, cells->site[n], k);
                     list[count++] = v;
                     slot[place] = (uint32_t)count;
                 }

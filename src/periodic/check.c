@@ -5,8 +5,8 @@
  * lexicographic order. The colour of a vertex is a hash of the names of its tetrahedra, twice more of the colours about
  * it; the checksum is the sum of hashes of tetrahedra with the colours of their vertices.
  *
- * The check: a complex of positive tetrahedra, each facet of which has a mate on its other side, covers space evenly; its
- * volume tells how often. Once: then it is a triangulation of space, and if no vertex behind a facet conflicts with the
+ * The check: a complex of positive tetrahedra, each facet of which has a mate on its other side, covers space evenly;
+ * its volume tells how often. Once: then it is a triangulation of space. If no vertex behind a facet conflicts with the
  * tetrahedron before it, the lifted complex is convex along every line, so no vertex at all does. This holds where all
  * directions repeat. With fewer, hull facets and their mates must be convex, too.
  *
@@ -58,7 +58,8 @@ brio_status brio_periodic_checksum(brio_context *ctx, const brio_periodic *t, ui
             int n;
             uint64_t name = name_of(m, t->tet[i].vertex, sorted, &n);
             for (int k = 0; k < n; k++) name = brio_mix(name + colour[m->list[sorted[k]].point]);
-            for (int k = 0; k < n && round < COLOUR_ROUNDS; k++) next[m->list[sorted[k]].point] += brio_mix(name + (uint64_t)k);
+            for (int k = 0; k < n && round < COLOUR_ROUNDS; k++)
+                next[m->list[sorted[k]].point] += brio_mix(name + (uint64_t)k);
             if (round == COLOUR_ROUNDS) sum += name;
             BRIO_TRY(brio_look(ctx, 1));
         }
@@ -108,7 +109,8 @@ static brio_status check_mate(const checking *c, size_t t, int i, const int32_t 
             found = m->list[v].point == m->list[w].point;
             for (int a = 0; a < 3; a++) found &= m->list[v].shift[a] == m->list[w].shift[a] + shift[a];
         }
-        BRIO_EXPECT(c->ctx, found, BRIO_ERR_CHECK, "tetrahedra %zu and %u are mates, but have no common facet", t, facet >> 2);
+        BRIO_EXPECT(c->ctx, found, BRIO_ERR_CHECK, "tetrahedra %zu and %u are mates, but have no common facet", t,
+                    facet >> 2);
     }
     return BRIO_OK;
 }
@@ -151,7 +153,8 @@ static double volume_sum(const brio_periodic *t) {
         double e[3][3], cross[3];
         for (int k = 0; k < 3; k++)
             for (int a = 0; a < 3; a++) e[k][a] = t->images.x[v[k + 1]][a] - t->images.x[v[0]][a];
-        for (int a = 0; a < 3; a++) cross[a] = e[1][(a + 1) % 3] * e[2][(a + 2) % 3] - e[1][(a + 2) % 3] * e[2][(a + 1) % 3];
+        for (int a = 0; a < 3; a++)
+            cross[a] = e[1][(a + 1) % 3] * e[2][(a + 2) % 3] - e[1][(a + 2) % 3] * e[2][(a + 1) % 3];
         double x = (e[0][0] * cross[0] + e[0][1] * cross[1] + e[0][2] * cross[2]) / 6, next = sum + x;
         lost += (sum - (next - (next - sum))) + (x - (next - sum));
         sum = next;
@@ -174,9 +177,11 @@ static brio_status check_points(const checking *c) {
         vertices += is_vertex;
         BRIO_REQUIRE(c->ctx, is_vertex == (used[p] != 0), BRIO_ERR_CHECK,
                      "point %zu is a vertex of tetrahedra or represents itself, but not both", p);
-        BRIO_REQUIRE(c->ctx, used[t->representative[p].point], BRIO_ERR_CHECK, "point %zu is represented by no vertex", p);
+        BRIO_REQUIRE(c->ctx, used[t->representative[p].point], BRIO_ERR_CHECK, "point %zu is represented by no vertex",
+                     p);
     }
-    BRIO_REQUIRE(c->ctx, vertices == t->stats.vertices && vertices + t->stats.duplicates + t->stats.hidden == t->stats.points,
+    BRIO_REQUIRE(c->ctx,
+                 vertices == t->stats.vertices && vertices + t->stats.duplicates + t->stats.hidden == t->stats.points,
                  BRIO_ERR_CHECK, "the numbers of vertices, duplicates and hidden points are wrong");
 done:
     brio_release(c->ctx, used);
@@ -207,8 +212,8 @@ brio_status brio_periodic_check(brio_context *ctx, const brio_periodic *t) {
         BRIO_FORWARD(check_tetrahedron(&c, i));
         BRIO_FORWARD(brio_look(ctx, 4));
     }
-    BRIO_EXPECT(ctx, t->stats.hull_facets == 0 || l->rank < 3, BRIO_ERR_CHECK, "%zu infinite tetrahedra in a space that repeats",
-                t->stats.hull_facets);
+    BRIO_EXPECT(ctx, t->stats.hull_facets == 0 || l->rank < 3, BRIO_ERR_CHECK,
+                "%zu infinite tetrahedra in a space that repeats", t->stats.hull_facets);
     if (l->rank == 3) {
         double filled = volume_sum(t) / l->volume;
         BRIO_EXPECT(ctx, fabs(filled - 1) < 0x1p-20, BRIO_ERR_CHECK, "the tetrahedra fill %.17g of the cell", filled);

@@ -113,8 +113,8 @@ static facet_key key_of(const brio_images *m, const uint32_t *v, int but) {
     for (int k = 0; k < 4; k++) {
         if (k == but) continue;
         int at = n++;
-        for (; at > 0 && (w[at - 1] == BRIO_INFINITE ||
-                          (v[k] != BRIO_INFINITE && brio_images_compare(m, v[k], w[at - 1]) < 0));
+        for (; at > 0 &&
+               (w[at - 1] == BRIO_INFINITE || (v[k] != BRIO_INFINITE && brio_images_compare(m, v[k], w[at - 1]) < 0));
              at--)
             w[at] = w[at - 1];
         w[at] = v[k];
@@ -187,7 +187,7 @@ static brio_status link_open(folding *f) {
         slot[at] = facet;
         waiting++;
     }
-    BRIO_REQUIRE(f->ctx, waiting == 0, BRIO_ERR_NO_ANSWER, "%zu facets of a periodic triangulation have no mates",
+    BRIO_REQUIRE(f->ctx, waiting == 0, BRIO_ERR_INTERNAL, "%zu facets of a periodic triangulation have no mates",
                  waiting);
 done:
     brio_release(f->ctx, slot);

@@ -51,7 +51,8 @@ static bool is_image(const brio_image *i, uint32_t point, const int32_t *shift) 
 }
 
 static size_t place_of(const brio_images *m, uint32_t point, const int32_t *shift) {
-    uint64_t low = (uint64_t)point << 32 | (uint32_t)shift[0], high = (uint64_t)(uint32_t)shift[1] << 32 | (uint32_t)shift[2];
+    uint64_t low = (uint64_t)point << 32 | (uint32_t)shift[0],
+             high = (uint64_t)(uint32_t)shift[1] << 32 | (uint32_t)shift[2];
     size_t at = brio_mix(brio_mix(low) + high) & (m->num_slots - 1);
     while (m->slot[at] && !is_image(&m->list[m->slot[at] - 1], point, shift)) at = (at + 1) & (m->num_slots - 1);
     return at;

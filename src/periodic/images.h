@@ -11,10 +11,10 @@ typedef struct brio_images {
     brio_context *ctx;
     const brio_lattice *lattice;
     size_t num_points, count, capacity, x_capacity, weight_capacity;
-    brio_image *list;  /* I1, I2 */
-    double (*x)[3];    /* #count: positions, relative to the lattice's origin */
-    double *weight;    /* #count, or NULL */
-    uint32_t *slot;    /* hash table of the images behind the points: one more than the image, 0 is empty */
+    brio_image *list; /* I1, I2 */
+    double (*x)[3];   /* #count: positions, relative to the lattice's origin */
+    double *weight;   /* #count, or NULL */
+    uint32_t *slot;   /* hash table of the images behind the points: one more than the image, 0 is empty */
     size_t num_slots, num_entered;
 } brio_images;
 

@@ -197,7 +197,8 @@ static void find_used(brio_lattice *l) {
     for (int j = 0; j < l->rank; j++)
         for (int k = 0; k < 3; k++) {
             double high = 0, low = 0;
-            for (int i = 0; i < l->rank; i++) add_product(&high, &low, det < 0 ? -inverse[j][i] : inverse[j][i], l->basis[i][k]);
+            for (int i = 0; i < l->rank; i++)
+                add_product(&high, &low, det < 0 ? -inverse[j][i] : inverse[j][i], l->basis[i][k]);
             l->used[j][k] = high + low + 0.0;
         }
 }
@@ -284,6 +285,7 @@ bool brio_lattice_home(const brio_lattice *l, const double *point, brio_home *ho
         home->x[k] = l->unit[k] > 0 ? rint(home->x[k] / l->unit[k]) * l->unit[k] : near[k];
         home->moved = fmax(home->moved, fabs(home->x[k] - near[k]));
     }
+    for (int k = 0; k < 3; k++) home->x[k] -= l->corner[k]; /* exact */
     double shift[3] = {-n[0], -n[1], -n[2]};
     for (int i = 0; i < l->rank; i++) {
         double m = cells_off(l, i, home->x);
@@ -323,25 +325,43 @@ static bool find_reach(const brio_lattice *l, const double *points, size_t n, do
     return true;
 }
 
-static brio_status take_vectors(brio_context *ctx, const double *cell, const int *periodic, brio_lattice *l) {
+/* Lets the domain begin where the points do, if they are in one cell already: then they stay where they are. */
+static void choose_corner(brio_lattice *l, const double *points, size_t n) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, x[3];
+    for (size_t p = 0; p < n; p++)
+        for (int i = 0; i < l->rank; i++) {
+            for (int k = 0; k < 3; k++) x[k] = points[3 * p + (size_t)k] - l->origin[k];
+            double share = brio_lattice_share(l, i, x);
+            low[i] = fmin(low[i], share), high[i] = fmax(high[i], share);
+        }
+    for (int i = 0; i < l->rank && n; i++)
+        if (!(high[i] - low[i] < 1 + 0x1p-30 && fabs(low[i]) < 1)) return;
+    for (int k = 0; k < 3 && n; k++) {
+        double sum = 0;
+        for (int i = 0; i < l->rank; i++) sum += (low[i] - 0x1p-40) * l->basis[i][k];
+        l->corner[k] = l->unit[k] > 0 ? rint(sum / l->unit[k]) * l->unit[k] : 0;
+    }
+}
+
+static brio_status take_vectors(brio_context *ctx, const brio_periodic_options *o, brio_lattice *l) {
     memset(l, 0, sizeof *l);
     for (int j = 0; j < 3; j++) {
-        if (!periodic[j]) continue;
-        BRIO_EXPECT(ctx, brio_all_finite(cell + 3 * j, 3), BRIO_ERR_ARGUMENT, "vector %c of the cell is not finite",
+        if (o->open[j]) continue;
+        BRIO_EXPECT(ctx, brio_all_finite(o->cell + 3 * j, 3), BRIO_ERR_ARGUMENT, "vector %c of the cell is not finite",
                     "abc"[j]);
-        memcpy(l->given[l->rank], cell + 3 * j, sizeof l->given[0]);
+        memcpy(l->given[l->rank], o->cell + 3 * j, sizeof l->given[0]);
         l->axis[l->rank++] = j;
     }
     BRIO_EXPECT(ctx, l->rank > 0, BRIO_ERR_ARGUMENT, "no direction is periodic: this is what brio_delaunay does");
     return BRIO_OK;
 }
 
-brio_status brio_lattice_new(brio_context *ctx, const double *cell, const int *periodic, const double *points,
+brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *options, const double *points,
                              size_t num_points, brio_lattice *l) {
     double reach[3];
     reduction r;
     const char *span;
-    BRIO_FORWARD(take_vectors(ctx, cell, periodic, l));
+    BRIO_FORWARD(take_vectors(ctx, options, l));
     span = l->rank == 3 ? "volume" : l->rank == 2 ? "area" : "length";
     choose_origin(l, points, num_points);
     BRIO_EXPECT(ctx, complete(l->given, l->rank, l->given_dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
@@ -363,6 +383,7 @@ brio_status brio_lattice_new(brio_context *ctx, const double *cell, const int *p
     find_used(l);
     BRIO_EXPECT(ctx, complete(l->basis, l->rank, l->dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
     find_range(l, reach);
+    choose_corner(l, points, num_points);
     l->volume = volume_of((const double(*)[3])l->basis, l->rank);
     return BRIO_OK;
 }

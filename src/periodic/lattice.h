@@ -25,11 +25,12 @@ typedef struct brio_lattice {
     int64_t change[3][3]; /* I1 */
     double used[3][3];    /* #rank: what the caller's vectors are then, rounded to doubles where they are long */
     double given_dual[3][3], near_dual[3][3], dual[3][3]; /* dual[i] . basis[j] is 1 for i = j, else 0 */
-    double unit[3];                      /* I2 */
-    double origin[3];                    /* positions are relative to it */
-    double range[3]; /* #rank: two points of one tetrahedron differ by at most this in each coordinate of the basis */
-    double volume;   /* of the cell of `used`: a volume, an area or a length */
-    double moved;    /* the largest move of a coordinate of a vector */
+    double unit[3];                                       /* I2 */
+    double origin[3]; /* the lexicographically least point: points are rounded relative to it */
+    double corner[3]; /* on the grid: positions are relative to origin + corner */
+    double range[3];  /* #rank: two points of one tetrahedron differ by at most this in each coordinate of the basis */
+    double volume;    /* of the cell of `used`: a volume, an area or a length */
+    double moved;     /* the largest move of a coordinate of a vector */
 } brio_lattice;
 
 /** A point's translate in the domain. */
@@ -39,10 +40,9 @@ typedef struct brio_home {
     double moved;     /* the largest move of a coordinate */
 } brio_home;
 
-/** Makes the lattice of the periodic vectors of a cell, and the grid.
- *  cell  three vectors; those that are not periodic are not read.
+/** Makes the lattice of the vectors of a cell that repeat, and the grid.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (vectors that are no numbers, that span no cell, or are too skewed). */
-brio_status brio_lattice_new(brio_context *ctx, const double *cell, const int *periodic, const double *points,
+brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *options, const double *points,
                              size_t num_points, brio_lattice *lattice);
 
 /** Finds the translate of a point in the domain.   Returns false if it is more than 2^30 cells away. */
@@ -60,6 +60,11 @@ static inline void brio_lattice_move(const brio_lattice *l, const double *x, con
 /** Returns coordinate i of a position in the basis. */
 static inline double brio_lattice_share(const brio_lattice *l, int i, const double *x) {
     return l->dual[i][0] * x[0] + l->dual[i][1] * x[1] + l->dual[i][2] * x[2];
+}
+
+/** Returns coordinate k of a position in the caller's space. */
+static inline double brio_lattice_shown(const brio_lattice *l, double x, int k) {
+    return (x + l->corner[k]) + l->origin[k];
 }
 
 #endif

@@ -1,7 +1,7 @@
 /* Periodic Delaunay and regular triangulations: the call, and what its result shows.
  *
- * The lattice is reduced and put on a grid with the points (lattice.c); the stars of the points are found (stars.c); one
- * tetrahedron of each class stays (fold.c).
+ * The lattice is reduced and put on a grid with the points (lattice.c); the stars of the points are found (stars.c);
+ * one tetrahedron of each class stays (fold.c).
  *
  * Based on: decision 018. */
 #include "periodic/periodic.h"
@@ -38,12 +38,14 @@ static brio_status bring_home(brio_periodic *t, const double *points, size_t n, 
     brio_status status = BRIO_OK;
     BRIO_TRY(BRIO_ALLOC(t->ctx, home, n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, t->home, n + 1));
+    t->stays = true;
     for (size_t p = 0; p < n; p++) {
         brio_home h;
         BRIO_REQUIRE(t->ctx, brio_lattice_home(&t->lattice, points + 3 * p, &h), BRIO_ERR_ARGUMENT,
                      "point %zu is more than 2^30 cells away from the others", p);
         memcpy(home[p], h.x, sizeof *home);
         for (int j = 0; j < 3; j++) t->home[p][j] = (int32_t)h.shift[j];
+        t->stays &= !h.shift[0] && !h.shift[1] && !h.shift[2];
         t->stats.moved = fmax(t->stats.moved, h.moved);
         BRIO_TRY(brio_look(t->ctx, 1));
     }
@@ -103,7 +105,7 @@ static brio_status show_images(brio_periodic *t) {
     BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->position, m->count + 1));
     for (size_t i = 0; i < m->count; i++) {
         t->shown[i] = show(t, &m->list[i], none);
-        for (int k = 0; k < 3; k++) t->position[i][k] = m->x[i][k] + t->lattice.origin[k];
+        for (int k = 0; k < 3; k++) t->position[i][k] = brio_lattice_shown(&t->lattice, m->x[i][k], k);
     }
     t->stats.images = m->count;
     return BRIO_OK;
@@ -195,8 +197,9 @@ static brio_status build(brio_periodic *t, const double *points, const double *w
     double(*home)[3] = NULL;
     brio_stars stars = {0};
     BRIO_TRY(bring_home(t, points, n, &home));
-    BRIO_TRY(brio_stars_new(ctx, &t->lattice, (const double(*)[3])home, weights, n, o->halo > 0 ? o->halo : HALO,
-                            o->seed ? o->seed : BRIO_SEED, &stars));
+    brio_stars_task task = {&t->lattice, (const double(*)[3])home,     weights,
+                            n,           o->halo > 0 ? o->halo : HALO, o->seed ? o->seed : BRIO_SEED};
+    BRIO_TRY(brio_stars_new(ctx, &task, &stars));
     describe(t, &stars);
     BRIO_TRY(brio_periodic_fold(ctx, &stars, &t->tet, &t->stats.tetrahedra, &t->stats.hull_facets));
     t->images = stars.images;
@@ -212,22 +215,21 @@ done:
 }
 
 brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                                   const double *cell, const int *periodic, const brio_periodic_options *options,
-                                   brio_periodic **out) {
+                                   const brio_periodic_options *options, brio_periodic **out) {
     BRIO_DOOR;
-    static const int all[3] = {1, 1, 1};
     brio_periodic_options o = {0};
     brio_status status = BRIO_OK;
     brio_periodic *t = NULL;
     double start = brio_seconds();
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_periodic_options, options, &o));
+    BRIO_REQUIRE(ctx, o.cell, BRIO_ERR_ARGUMENT, "the options have no cell");
     BRIO_REQUIRE(ctx, o.halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o.halo);
     BRIO_REQUIRE(ctx, num_points < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", num_points);
     BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
-    BRIO_TRY(brio_lattice_new(ctx, cell, periodic ? periodic : all, points, num_points, &t->lattice));
+    BRIO_TRY(brio_lattice_new(ctx, &o, points, num_points, &t->lattice));
     BRIO_TRY(build(t, points, weights, num_points, &o));
     t->images.lattice = &t->lattice;
     t->stats.seconds = brio_seconds() - start;

@@ -5,13 +5,13 @@
  * convex hull of the known ones, and the tetrahedra in conflict with it are joined across facets with an infinite one.
  * So a search from the hull, through tetrahedra whose balls leave K, meets all that can be wrong: a layer.
  *
- * Where one of the layer at a point of the domain is in conflict with a translate, its points are redone: completed from
- * their neighbours here, and from translates that are looked for (completion/completion.h). Only translates in the
+ * Where one of the layer at a point of the domain is in conflict with a translate, its points are redone: completed
+ * from their neighbours here, and from translates that are looked for (completion/completion.h). Only translates in the
  * lattice's range about the domain matter, by decision 018.
  *
  * Based on: decision 018; Caroli, Teillaud. Delaunay triangulations of closed Euclidean d-orbifolds. DCG 2016.
  * Differs from the paper: no covering of 27 or more sheets is made; copies are where balls need them. */
-#include "periodic/stars.h"
+#include "periodic/periodic.h"
 #include "base/memory.h"
 #include "base/vector.h"
 #include "periodic/translates.h"
@@ -179,8 +179,7 @@ static brio_status look_at(layer *y, uint32_t tet, const brio_ball *ball) {
     for (int i = 0; i < 4; i++) BRIO_FORWARD(push(y, t->mate[i] >> 2));
     if (!is_own(y, t->vertex)) return BRIO_OK;
     bool known = true;
-    for (int k = 0; k < 4; k++)
-        known &= t->vertex[k] >= y->num_points || y->s->redone[t->vertex[k]];
+    for (int k = 0; k < 4; k++) known &= t->vertex[k] >= y->num_points || y->s->redone[t->vertex[k]];
     if (known || !brio_translates_deepest(&y->translates, &y->translates.filter, ball, &found)) return BRIO_OK;
     for (int k = 0; k < 4; k++) {
         if (t->vertex[k] >= y->num_points || y->s->redone[t->vertex[k]]) continue;
@@ -275,8 +274,7 @@ static brio_status redo(layer *y) {
     task.points = list;
     BRIO_TRY(BRIO_ALLOC(y->ctx, is_vertex, task.num_own + 1));
     BRIO_TRY(brio_complete(y->ctx, &task, is_vertex, &facts));
-    for (size_t i = 0; i < task.num_own; i++)
-        y->s->is_vertex[brio_translate_of(list[i].name).point] = is_vertex[i];
+    for (size_t i = 0; i < task.num_own; i++) y->s->is_vertex[brio_translate_of(list[i].name).point] = is_vertex[i];
     y->s->rounds += facts.rounds;
     y->s->triangulated += facts.triangulated;
 done:
@@ -299,22 +297,24 @@ static brio_status complete(layer *y) {
 
 /* --- all --- */
 
-brio_status brio_stars_new(brio_context *ctx, const brio_lattice *lattice, const double (*home)[3],
-                           const double *weights, size_t num_points, double halo, uint64_t seed, brio_stars *s) {
+/* Triangulates the points and the translates in a margin about them. */
+static brio_status begin(layer *y, const brio_stars_task *task, double halo) {
+    *y = (layer){.ctx = y->ctx, .lattice = task->lattice, .s = y->s, .num_points = task->num_points};
+    BRIO_FORWARD(brio_images_new(y->ctx, task->lattice, task->home, task->weights, task->num_points, &y->s->images));
+    BRIO_FORWARD(add_margin(y, halo));
+    return triangulate(y, task->seed);
+}
+
+brio_status brio_stars_new(brio_context *ctx, const brio_stars_task *task, brio_stars *s) {
     brio_status status = BRIO_OK;
-    layer y = {.ctx = ctx, .lattice = lattice, .s = s, .num_points = num_points};
+    layer y = {.ctx = ctx, .s = s};
     *s = (brio_stars){.images = {.ctx = ctx}};
-    BRIO_TRY(brio_images_new(ctx, lattice, home, weights, num_points, &s->images));
-    BRIO_TRY(add_margin(&y, halo));
-    BRIO_TRY(triangulate(&y, seed));
+    BRIO_TRY(begin(&y, task, task->halo));
     if (brio_triangulation_stats(s->t)->dimension < 3 && !has_all(&y)) { /* of a plane or a line: all at once */
         brio_stars_free(s);
-        y = (layer){.ctx = ctx, .lattice = lattice, .s = s, .num_points = num_points};
-        BRIO_TRY(brio_images_new(ctx, lattice, home, weights, num_points, &s->images));
-        BRIO_TRY(add_margin(&y, INFINITY));
-        BRIO_TRY(triangulate(&y, seed));
+        BRIO_TRY(begin(&y, task, INFINITY));
     }
-    if (num_points && !has_all(&y)) BRIO_TRY(complete(&y));
+    if (task->num_points && !has_all(&y)) BRIO_TRY(complete(&y));
 done:
     brio_translates_free(&y.translates);
     brio_release(ctx, y.left_out);

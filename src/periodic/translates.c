@@ -59,7 +59,7 @@ static const brio_ball_box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY
 
 static brio_status make_boxes(brio_translates *t) {
     size_t size = (t->count + RUN - 1) / RUN, total = 0;
-    for (; size > 0 && t->levels < 15; size = size > 1 ? (size + FAN - 1) / FAN : 0) {
+    for (; size > 0 && t->levels<15; size = size> 1 ? (size + FAN - 1) / FAN : 0) {
         t->first[t->levels++] = total;
         total += size;
     }

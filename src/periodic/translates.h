@@ -10,12 +10,12 @@ typedef struct brio_translates {
     brio_context *ctx;
     const brio_lattice *lattice;
     size_t count;
-    double (*site)[4]; /* records, along a curve through the domain */
-    uint32_t *point;   /* of each site */
+    double (*site)[4];  /* records, along a curve through the domain */
+    uint32_t *point;    /* of each site */
     brio_ball_box *box; /* about runs of sites, then about runs of boxes, level after level */
     int levels;
-    size_t first[16]; /* of each level */
-    int32_t most[3];  /* shifts are at most this, either way */
+    size_t first[16];  /* of each level */
+    int32_t most[3];   /* shifts are at most this, either way */
     brio_ball_box all; /* holds all these translates */
     brio_filter filter;
 } brio_translates;
@@ -28,13 +28,12 @@ void brio_translates_free(brio_translates *t);
 
 /** Finds the translate deepest in conflict with a tetrahedron. Returns whether there is one.
  *  filter  a copy of t->filter; each thread has its own. */
-bool brio_translates_deepest(const brio_translates *t, brio_filter *filter, const brio_ball *ball,
-                             brio_set_point *out);
+bool brio_translates_deepest(const brio_translates *t, brio_filter *filter, const brio_ball *ball, brio_set_point *out);
 
 /** Finds the translate of least power distance from a position, ties by lexicographic order. There is a site. */
 void brio_translates_nearest(const brio_translates *t, const double *x, brio_image *nearest);
 
-/** The source: finds the deepest translate for each ball.   user  a brio_translates. */
+/** Finds, as the source of a completion, the deepest translate for each ball.   user  a brio_translates. */
 brio_status brio_translates_find(void *user, brio_ball *balls, size_t count, brio_found *found);
 
 /** Return the name of a translate, and the translate of a name. */

@@ -1,7 +1,8 @@
 /* All tetrahedra with a vertex in the domain, from one of each class.
  *
  * Cells and stars of the points are made of them. A class has as many of them as its vertices have different shifts:
- * each moved back by one. The first is the class itself, whose least vertex is in the domain; the others are appended. */
+ * each moved back by one. The first is the class itself, whose least vertex is in the domain; the others are
+ * appended. */
 #include "base/memory.h"
 #include "periodic/periodic.h"
 #include <assert.h>
@@ -12,11 +13,12 @@ typedef struct {
     const brio_periodic *t;
     brio_images *images;
     size_t num_classes, num_finite;
-    uint32_t *more;       /* #classes: where the further ones of a class begin in the lists below; 0 is none */
-    uint32_t *class_of;   /* of each further one, from 1 on */
-    int32_t (*shift)[3];  /* and how it was moved */
+    uint32_t *more;      /* #classes: where the further ones of a class begin in the lists below; 0 is none */
+    uint32_t *class_of;  /* of each further one, from 1 on */
+    int32_t (*shift)[3]; /* and how it was moved */
     size_t count, class_capacity, shift_capacity;
     uint32_t *place; /* of each further one: where it is among the tetrahedra */
+    uint8_t *inside; /* of each class: whether all its vertices are in the domain */
 } unfolding;
 
 static bool same_shift(const int32_t *a, const int32_t *b) {
@@ -37,6 +39,7 @@ static brio_status list_more(unfolding *u, size_t c) {
         memcpy(found[n++], list[v[k]].shift, sizeof *found);
     }
     u->more[c] = n > 1 ? (uint32_t)u->count : 0;
+    u->inside[c] = n == 1;
     for (int i = 1; i < n; i++) {
         BRIO_FORWARD(BRIO_RESERVE(u->ctx, u->class_of, u->class_capacity, u->count + 1));
         BRIO_FORWARD(BRIO_RESERVE(u->ctx, u->shift, u->shift_capacity, u->count + 1));
@@ -63,6 +66,11 @@ static void link(const unfolding *u, brio_tetrahedron *tet, uint32_t place, uint
     for (int i = 0; i < 4; i++) {
         uint32_t mate = class->mate[i], other = mate >> 2;
         int32_t way[3], own = 0;
+        if (u->inside[c] && u->inside[other]) { /* nearly all: they meet as they are */
+            tet[place].mate[i] =
+                4 * (other < u->num_finite ? other : u->place[0] + (other - (uint32_t)u->num_finite)) + (mate & 3);
+            continue;
+        }
         tet[place].mate[i] = 4 * place + (uint32_t)i;
         for (int k = 0; k < 4; k++) own += k != i && tet[place].vertex[k] < n;
         if (!own) continue;
@@ -123,6 +131,7 @@ brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, brio
     u.num_classes = t->stats.tetrahedra + t->stats.hull_facets;
     *out = (brio_unfolded){0};
     BRIO_TRY(BRIO_ALLOC(ctx, u.more, u.num_classes + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, u.inside, u.num_classes + 1));
     for (size_t c = 0; c < u.num_classes; c++) BRIO_TRY(list_more(&u, c));
     BRIO_TRY(place_all(&u, &out->num_finite));
     out->count = u.num_classes + u.count - 1;
@@ -130,6 +139,7 @@ brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, brio
     BRIO_TRY(fill(&u, out->tet));
 done:
     brio_release(ctx, u.more);
+    brio_release(ctx, u.inside);
     brio_release(ctx, u.class_of);
     brio_release(ctx, u.shift);
     brio_release(ctx, u.place);

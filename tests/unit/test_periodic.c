@@ -44,8 +44,9 @@ static crystal random_crystal(brio_rng *rng, const double *cell, size_t n, int g
 
 static brio_periodic *build(const crystal *c) {
     brio_periodic *t = NULL;
-    brio_status status = brio_delaunay_periodic(ctx, c->points, c->weighted ? c->weights : NULL, c->count, c->cell,
-                                                c->periodic, NULL, &t);
+    brio_periodic_options o = {.size = sizeof o, .cell = c->cell};
+    for (int k = 0; k < 3; k++) o.open[k] = !c->periodic[k];
+    brio_status status = brio_delaunay_periodic(ctx, c->points, c->weighted ? c->weights : NULL, c->count, &o, &t);
     EXPECT(status == BRIO_OK, "%s", brio_message(ctx));
     return t;
 }
@@ -175,9 +176,9 @@ static void check(const brio_periodic *t, const char *what) {
 /* --- cells of lattices and skewed ones --- */
 
 static const double CELLS[][9] = {
-    {1, 0, 0, 0, 1, 0, 0, 0, 1},       {4, 0, 0, 0, 2, 0, 0, 0, 1},      {0, 1, 1, 1, 0, 1, 1, 1, 0},
-    {-1, 1, 1, 1, -1, 1, 1, 1, -1},    {8, 0, 0, 3, 7, 0, 1, 2, 9},      {1, 0, 0, 50, 1, 0, 20, 30, 1},
-    {1, 0, 0, 0, 16, 0, 0, 0, 16},     {16, 0, 0, 0, 1, 0, 0, 0, 1},     {3, 1, 0, -1, 3, 1, 0, -1, 5},
+    {1, 0, 0, 0, 1, 0, 0, 0, 1},    {4, 0, 0, 0, 2, 0, 0, 0, 1},  {0, 1, 1, 1, 0, 1, 1, 1, 0},
+    {-1, 1, 1, 1, -1, 1, 1, 1, -1}, {8, 0, 0, 3, 7, 0, 1, 2, 9},  {1, 0, 0, 50, 1, 0, 20, 30, 1},
+    {1, 0, 0, 0, 16, 0, 0, 0, 16},  {16, 0, 0, 0, 1, 0, 0, 0, 1}, {3, 1, 0, -1, 3, 1, 0, -1, 5},
     {64, 1, 0, 63, 1, 1, 0, 1, 2},
 };
 enum { NUM_CELLS = sizeof CELLS / sizeof *CELLS };
@@ -213,7 +214,9 @@ static void any_cell_fills_its_volume(void) {
                 check(t, what);
                 EXPECT(brio_periodic_cells(ctx, t, NULL, &cells) == BRIO_OK, "%s: %s", what, brio_message(ctx));
                 double volume = brio_periodic_facts(t)->cell_volume;
-                if (cells) EXPECT(fabs(cells->volume_sum / volume - 1) < 1e-12, "%s: %.17g of %g", what, cells->volume_sum, volume);
+                if (cells)
+                    EXPECT(fabs(cells->volume_sum / volume - 1) < 1e-12, "%s: %.17g of %g", what, cells->volume_sum,
+                           volume);
                 brio_cells_free(cells);
                 brio_periodic_free(t);
             }
@@ -224,8 +227,10 @@ static void faces_of_lattices_are_right(void) {
         double cell[9];
         int faces;
     } lattices[] = {
-        {{1, 0, 0, 0, 1, 0, 0, 0, 1}, 6},     {{0, 1, 1, 1, 0, 1, 1, 1, 0}, 12},
-        {{-1, 1, 1, 1, -1, 1, 1, 1, -1}, 14}, {{0, 2.025, 2.025, 2.025, 0, 2.025, 2.025, 2.025, 0}, 12},
+        {{1, 0, 0, 0, 1, 0, 0, 0, 1}, 6},
+        {{0, 1, 1, 1, 0, 1, 1, 1, 0}, 12},
+        {{-1, 1, 1, 1, -1, 1, 1, 1, -1}, 14},
+        {{0, 2.025, 2.025, 2.025, 0, 2.025, 2.025, 2.025, 0}, 12},
     };
     static const double zero[3] = {0, 0, 0};
     for (size_t i = 0; i < sizeof lattices / sizeof *lattices; i++) {
@@ -236,7 +241,8 @@ static void faces_of_lattices_are_right(void) {
         brio_cells *cells = NULL;
         EXPECT(t && brio_periodic_cells(ctx, t, NULL, &cells) == BRIO_OK, "%s", brio_message(ctx));
         if (!cells) continue;
-        EXPECT((int)cells->face_offsets[1] == lattices[i].faces, "lattice %zu: %d faces", i, (int)cells->face_offsets[1]);
+        EXPECT((int)cells->face_offsets[1] == lattices[i].faces, "lattice %zu: %d faces", i,
+               (int)cells->face_offsets[1]);
         brio_cells_free(cells);
         brio_periodic_free(t);
     }
@@ -271,7 +277,8 @@ static void fractions_of_the_cell_stay_exact(void) {
 static void origins_and_representatives_do_not_matter(void) {
     brio_rng rng = brio_rng_new(7);
     for (int kind = 0; kind < 4; kind++) {
-        crystal c = random_crystal(&rng, CELLS[kind == 3 ? 8 : kind], kind < 2 ? 30 : 8, kind == 1 ? 4 : 1 << 20, kind == 2);
+        crystal c =
+            random_crystal(&rng, CELLS[kind == 3 ? 8 : kind], kind < 2 ? 30 : 8, kind == 1 ? 4 : 1 << 20, kind == 2);
         brio_periodic *t = build(&c);
         uint64_t first, sum;
         EXPECT(brio_periodic_checksum(ctx, t, &first) == BRIO_OK, "%s", brio_message(ctx));
@@ -321,7 +328,8 @@ static void slabs_and_wires_are_those_of_many_copies(void) {
                     brio_periodic *t = build(&c);
                     char what[64];
                     snprintf(what, sizeof what, "cell %d, directions %d, weights %d", i, directions, weighted);
-                    if (t && brio_periodic_facts(t)->dimension == 3) compare_with_copies(&c, t, 6, what), check(t, what);
+                    if (t && brio_periodic_facts(t)->dimension == 3)
+                        compare_with_copies(&c, t, 6, what), check(t, what);
                     brio_periodic_free(t);
                 }
 }
@@ -333,14 +341,15 @@ static void halos_do_not_matter(void) {
     double *points = malloc(3 * n * sizeof *points);
     for (int directions = 1; directions < 8; directions++)
         for (int clustered = 0; clustered < 2; clustered++) {
-            int periodic[3] = {directions & 1, directions >> 1 & 1, directions >> 2 & 1};
+            int open[3] = {!(directions & 1), !(directions >> 1 & 1), !(directions >> 2 & 1)};
             double cell[9] = {1, 0, 0, 0.25, 1, 0, 0, 0.125, 1};
             uint64_t sum[3];
             for (size_t i = 0; i < 3 * n; i++) points[i] = pow(brio_rng_double(&rng), clustered ? 4 : 1);
             for (int h = 0; h < 3; h++) {
-                brio_periodic_options o = {.size = sizeof o, .halo = h == 0 ? 0.5 : h == 1 ? 3.5 : 12};
+                brio_periodic_options o = {.size = sizeof o, .cell = cell, .halo = h == 0 ? 0.5 : h == 1 ? 3.5 : 12};
+                memcpy(o.open, open, sizeof open);
                 brio_periodic *t = NULL;
-                EXPECT(brio_delaunay_periodic(ctx, points, NULL, n, cell, periodic, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+                EXPECT(brio_delaunay_periodic(ctx, points, NULL, n, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
                 if (!t) continue;
                 EXPECT(brio_periodic_checksum(ctx, t, &sum[h]) == BRIO_OK, "%s", brio_message(ctx));
                 check(t, "halo");

@@ -206,6 +206,8 @@ ENDS_WITH(brio_curve_stats, curve_seconds);
 ENDS_WITH(brio_curve_certificate, length);
 ENDS_WITH(brio_planar_crust_stats, crust_seconds);
 ENDS_WITH(brio_spanning_tree_stats, tree_seconds);
+ENDS_WITH(brio_periodic_options, reserved_int);
+ENDS_WITH(brio_periodic_stats, seconds);
 
 static void statuses_have_words_of_their_own(void) {
     static const brio_status all[] = {BRIO_OK,        BRIO_ERR_ARGUMENT,  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER,
