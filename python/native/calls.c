@@ -207,8 +207,9 @@ int handle_has_points(module_state *state, PyObject *object, const input *points
     uint64_t own =
         h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t) : brio_triangulation_points_hash(t);
     if (own == brio_points_hash(points->data, weights->data, points->rows, (int)points->columns)) return 0;
-    return raise_argument(state, PyUnicode_FromString("the points are not those of the triangulation: they were changed "
-                                                      "since"));
+    return raise_argument(state,
+                          PyUnicode_FromString("the points are not those of the triangulation: they were changed "
+                                               "since"));
 }
 
 static PyType_Slot handle_slots[] = {
