@@ -5,6 +5,7 @@
 #include "cli/run/run.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/order.h"
+#include "cli/steps/periodic.h"
 #include "cli/steps/plane.h"
 #include "cli/steps/properties.h"
 #include "cli/steps/tiles.h"
@@ -83,6 +84,7 @@ done:
 
 typedef struct arguments {
     weights_options weights;
+    periodic_options periodic;
     order_options order;
     int locate, subgraph, plane;
     uint64_t record_every, tiles; /* 0: not given */
@@ -104,6 +106,7 @@ static const option options[] = {
     {"plane", 0, OPTION_CHOICE, FIELD(plane), "NAME", "triangles of two coordinates instead of tetrahedra", cli_planes},
     TILES_ROWS(arguments, tiles),
     {"verify", 0, OPTION_FLAG, FIELD(verify), NULL, "check the result exactly and completely", 0},
+    PERIODIC_ROWS(arguments, periodic),
     {"", 0, OPTION_TITLE, 0, NULL, "how points are inserted (the result is the same)", 0},
     ORDER_ROWS(arguments, order, "; for trace random"),
     {"locate", 0, OPTION_CHOICE, FIELD(locate), "NAME", "how a point finds its tetrahedron (default walk)", locations},
@@ -175,11 +178,24 @@ static brio_status check_beside_node(run *r, const arguments *a) {
     return BRIO_OK;
 }
 
+/* Refuses options that space that repeats has not. */
+static brio_status check_periodic(run *r, const arguments *a) {
+    FORWARD(cli_check_periodic(r, &a->periodic));
+    bool open = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
+                a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING ||
+                a->plane != NO_PLANE || a->order.order != FITTING_ORDER;
+    if (a->periodic.cell && open)
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--cell goes with --verify and weights, not with --plane, orders, locations or records");
+    return BRIO_OK;
+}
+
 static brio_status check_arguments(run *r, const arguments *a) {
     brio_status status = BRIO_OK;
     TRY(cli_check_order(r, &a->order, insertion_order(a)));
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(check_beside_node(r, a));
+    TRY(check_periodic(r, a));
     if (a->tiles) return check_tiles(r, a);
     if (a->plane != NO_PLANE) return check_plane(r, a);
     TRY(cli_require_output(r, true));
@@ -353,6 +369,65 @@ static brio_status write_output(run *r, brio_mesh *mesh, const double *weights, 
     return cli_write(r, mesh);
 }
 
+/* --- in space that repeats --- */
+
+/* Makes the mesh of the translates that tetrahedra name: properties say of which point, and which translate. */
+static brio_status fill_images(run *r, const brio_periodic *t, brio_mesh *mesh) {
+    static const char *const names[] = {"point", "shift_a", "shift_b", "shift_c"};
+    const brio_periodic_stats *s = brio_periodic_facts(t);
+    const brio_image *image = brio_periodic_images(t);
+    void *data;
+    FORWARD(brio_mesh_set_vertices(mesh, brio_periodic_positions(t), s->images));
+    FORWARD(brio_mesh_set_tetrahedra(mesh, (const uint32_t *)brio_periodic_tetrahedra(t), 8, s->tetrahedra));
+    for (int k = 0; k < 4; k++) {
+        FORWARD(brio_mesh_add_property(mesh, names[k], k ? BRIO_SCALAR_INT32 : BRIO_SCALAR_UINT32, &data));
+        for (size_t i = 0; i < s->images; i++) {
+            if (k)
+                ((int32_t *)data)[i] = image[i].shift[k - 1];
+            else
+                ((uint32_t *)data)[i] = image[i].point;
+        }
+    }
+    return cli_check_interrupt(r);
+}
+
+static brio_status report_periodic(run *r, const brio_periodic *t) {
+    const brio_periodic_stats *s = brio_periodic_facts(t);
+    uint64_t checksum;
+    char text[20];
+    FORWARD(brio_periodic_checksum(r->ctx, t, &checksum));
+    cli_lap(r, "checksum");
+    snprintf(text, sizeof text, "%016" PRIx64, checksum);
+    cli_fact_count(&r->facts, "vertices", s->vertices);
+    cli_fact_count(&r->facts, "tetrahedra", s->tetrahedra);
+    cli_fact_count(&r->facts, "hull_facets", s->hull_facets);
+    cli_fact_text(&r->facts, "checksum", text);
+    return BRIO_OK;
+}
+
+static brio_status triangulate_periodic(run *r, const brio_mesh *points, const double *weights) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    brio_periodic *t = NULL;
+    brio_mesh *mesh = NULL;
+    TRY(cli_periodic(r, &a->periodic, points, weights, &t));
+    TRY(report_periodic(r, t));
+    if (a->verify) {
+        status = brio_periodic_check(r->ctx, t);
+        cli_lap(r, "verify");
+        if (status == BRIO_OK || status == BRIO_ERR_CHECK) cli_fact_bool(&r->facts, "verified", status == BRIO_OK);
+        TRY(status);
+    }
+    if (!r->common.output) goto done;
+    TRY(brio_mesh_new(r->ctx, &mesh));
+    TRY(fill_images(r, t, mesh));
+    TRY(cli_write(r, mesh));
+done:
+    brio_mesh_free(mesh);
+    brio_periodic_free(t);
+    return status;
+}
+
 static brio_status delaunay(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *mesh = NULL;
@@ -373,6 +448,10 @@ static brio_status delaunay(run *r) {
     }
     if (cli_limits_memory(r)) TRY(require_memory(r, a, mesh, weights));
     cli_lap(r, "read");
+    if (a->periodic.cell) {
+        status = triangulate_periodic(r, mesh, weights);
+        goto done;
+    }
     TRY(triangulate(r, a, mesh, weights, &t));
     TRY(report_stats(r, mesh, t, weighted));
     report_pages(&r->facts, r->lab);
@@ -398,6 +477,7 @@ const command cli_delaunay = {
         "brio delaunay points.ply -o tetrahedra.vtu\ntetrahedra for ParaView\n"
         "brio delaunay points.xyz --verify\nchecks the result exactly; writes nothing\n"
         "brio delaunay lidar.las --plane xy -o terrain.ply\ntriangles over the ground: terrain\n"
+        "brio delaunay atoms.xyz --cell 20,20,20 -o periodic.vtu\natoms in a box that repeats\n"
         "brio delaunay atoms.xyz --weights radii2.txt -o regular.vtu\nregular triangulation, one weight a line\n",
     .has_output = true,
     .holds = CLI_TETRAHEDRA,

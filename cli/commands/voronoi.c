@@ -6,6 +6,7 @@
 #include "cli/run/interrupt.h"
 #include "cli/run/run.h"
 #include "cli/steps/estimate.h"
+#include "cli/steps/periodic.h"
 #include "cli/steps/weights.h"
 #include <math.h>
 #include <stdlib.h>
@@ -95,12 +96,14 @@ static brio_status cli_box_error(run *r, const boxed_diagram *d, const brio_cell
 
 typedef struct arguments {
     weights_options weights;
+    periodic_options periodic;
     const char *box, *faces;
 } arguments;
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
+    PERIODIC_ROWS(arguments, periodic),
     {"box", 0, OPTION_TEXT, FIELD(box), "B", "clip the cells to x0,y0,z0,x1,y1,z1", 0},
     {"faces", 0, OPTION_OUTPUT, FIELD(faces), "FILE",
      "write a row for each face of each cell (.csv): site,neighbour,area,nx,ny,nz; walls are -1 to -6", 0},
@@ -218,6 +221,30 @@ static brio_status compute(run *r, const brio_mesh *mesh, const double *weights,
     return BRIO_OK;
 }
 
+/* Reports cells of space that repeats. */
+static void report_periodic(run *r, const brio_cells *cells) {
+    size_t bounded = 0;
+    for (size_t c = 0; c < cells->num_cells; c++) bounded += cells->bounded[c];
+    cli_fact_count(&r->facts, "cells", cells->num_cells);
+    cli_fact_count(&r->facts, "bounded", bounded);
+    cli_fact_count(&r->facts, "faces", (size_t)cells->face_offsets[cells->num_cells]);
+    cli_fact_real(&r->facts, "volume", cells->volume_sum);
+}
+
+static brio_status compute_periodic(run *r, const brio_mesh *mesh, const double *weights, const brio_cells_options *o,
+                                    brio_cells **cells) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    brio_periodic *t = NULL;
+    TRY(cli_periodic(r, &a->periodic, mesh, weights, &t));
+    TRY(brio_periodic_cells(r->ctx, t, o, cells));
+    cli_lap(r, "cells");
+    report_periodic(r, *cells);
+done:
+    brio_periodic_free(t);
+    return status;
+}
+
 static brio_status voronoi(run *r) {
     const arguments *a = r->arguments;
     brio_cells_options o = {0};
@@ -229,6 +256,7 @@ static brio_status voronoi(run *r) {
     brio_cells *cells = NULL;
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(require_output(r, &format));
+    TRY(cli_check_periodic(r, &a->periodic));
     if (a->box) TRY(read_box(r, a->box, box));
     o.box = a->box ? box : NULL;
     o.vertices = format == BRIO_CELLS_FORMAT_VTU;
@@ -236,9 +264,13 @@ static brio_status voronoi(run *r) {
     bool weighted = cli_is_weighted(&a->weights, mesh);
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     if (cli_limits_memory(r)) TRY(require_memory(r, mesh, weights, o.vertices));
-    TRY(compute(r, mesh, weights, &o, &t, &cells));
-    report(r, cells, brio_triangulation_stats(t), weighted);
-    TRY(report_box(r, &(boxed_diagram){t, mesh, weights, &o}, cells));
+    if (a->periodic.cell) {
+        TRY(compute_periodic(r, mesh, weights, &o, &cells));
+    } else {
+        TRY(compute(r, mesh, weights, &o, &t, &cells));
+        report(r, cells, brio_triangulation_stats(t), weighted);
+        TRY(report_box(r, &(boxed_diagram){t, mesh, weights, &o}, cells));
+    }
     TRY(write_file(r, r->common.output, cells, format));
     TRY(write_file(r, a->faces, cells, BRIO_CELLS_FORMAT_FACES_CSV));
 done:
@@ -254,7 +286,8 @@ const command cli_voronoi = {
     .operands = "IN",
     .summary = "Voronoi cells of points, power cells with weights",
     .examples = "brio voronoi atoms.xyz --box 0,0,0,1,1,1 -o cells.vtu\ncells clipped to a box, for ParaView\n"
-                "brio voronoi atoms.xyz -o cells.csv\nvolume, area and centroid of each cell\n",
+                "brio voronoi atoms.xyz -o cells.csv\nvolume, area and centroid of each cell\n"
+                "brio voronoi atoms.xyz --cell 20,20,20 -o cells.csv\natoms in a box that repeats\n",
     .has_output = true,
     .outputs = ".vtu .npy .csv",
     .group = GROUP_TRIANGULATIONS,

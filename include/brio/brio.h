@@ -97,6 +97,7 @@
 #include "tiles.h"         /* triangulations of more points than fit in memory */
 #include "queries.h"       /* location, nearest vertices, interpolation */
 #include "cells.h"         /* Voronoi and power cells */
+#include "periodic.h"      /* triangulations and cells of space that repeats */
 #include "shapes.h"        /* convex hulls, alpha shapes, restricted triangulations */
 #include "balls.h"         /* unions of balls */
 #include "offset.h"        /* offsets of closed meshes */

@@ -43,7 +43,8 @@ typedef struct brio_cells {
     uint64_t *corner_offsets; /* #F + 1 */
     uint32_t *face_vertices;  /* of each corner */
     size_t num_vertices;
-    double *vertices; /* #vertices by 3 */
+    double *vertices;     /* #vertices by 3 */
+    int32_t *face_shifts; /* #F by 3, of brio_periodic_cells: which translate of the neighbour; else NULL */
 } brio_cells;
 
 /** Computes the Voronoi cell of every vertex or, with weights, the power cell: the points of space whose distance

@@ -1,7 +1,7 @@
 /* Voronoi and power cells of points in space. */
 #include "native.h"
 
-static void free_cells(void *cells) {
+void cells_release(void *cells) {
     brio_cells_free(cells);
 }
 
@@ -11,16 +11,17 @@ static PyObject *maybe(module_state *state, PyObject *owner, const void *data, l
     Py_RETURN_NONE;
 }
 
-static PyObject *views(module_state *state, PyObject *owner, const brio_cells *c) {
+PyObject *cells_views(module_state *state, PyObject *owner, const brio_cells *c) {
     size_t n = c->num_cells, faces = c->face_offsets ? c->face_offsets[n] : 0;
     size_t corners = c->corner_offsets ? c->corner_offsets[faces] : 0;
 #define VIEW(name, format, rows, columns) #name, maybe(state, owner, c->name, layout_of(c->name, format, rows, columns))
     return Py_BuildValue(
-        "{s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:d,s:d}", VIEW(site, 'I', n, 0), VIEW(volume, 'd', n, 0),
+        "{s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:d,s:d}", VIEW(site, 'I', n, 0), VIEW(volume, 'd', n, 0),
         VIEW(bounded, '?', n, 0), VIEW(area, 'd', n, 0), VIEW(centroid, 'd', n, 3), VIEW(face_offsets, 'L', n + 1, 0),
         VIEW(face_neighbours, 'l', faces, 0), VIEW(face_areas, 'd', faces, 0), VIEW(face_normals, 'd', faces, 3),
         VIEW(corner_offsets, 'L', faces + 1, 0), VIEW(face_vertices, 'I', corners, 0),
-        VIEW(vertices, 'd', c->num_vertices, 3), "volume_sum", c->volume_sum, "region_volume", c->region_volume);
+        VIEW(vertices, 'd', c->num_vertices, 3), VIEW(face_shifts, 'i', faces, 3), "volume_sum", c->volume_sum,
+        "region_volume", c->region_volume);
 #undef VIEW
 }
 
@@ -63,10 +64,10 @@ static PyObject *cells(PyObject *module, PyObject *args) {
         o.planes = a.planes.data;
         o.num_planes = a.planes.rows;
         CALL(c, status, brio_voronoi_cells(c.ctx, t, a.points.data, a.weights.data, a.points.rows, &o, &made));
-        owner = call_end_with(&c, status, KIND_CELLS, made, free_cells, NULL);
+        owner = call_end_with(&c, status, KIND_CELLS, made, cells_release, NULL);
     }
     close_arrays(&a);
-    if (owner) result = views(state, owner, made);
+    if (owner) result = cells_views(state, owner, made);
     Py_XDECREF(owner);
     return result;
 }

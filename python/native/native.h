@@ -125,6 +125,7 @@ typedef enum {
     KIND_INCIDENCES,
     KIND_CELLS,
     KIND_ALPHA,
+    KIND_PERIODIC,
     KIND_MESH
 } kind;
 
@@ -152,9 +153,13 @@ void *handle_object(module_state *state, PyObject *object, kind kind);
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights);
 extern PyType_Spec handle_spec;
 
+/** Returns a dict of the arrays of cells, which keep `owner` alive. */
+PyObject *cells_views(module_state *state, PyObject *owner, const brio_cells *c);
+void cells_release(void *cells);
+
 /* --- the functions of the module, by file --- */
 
 extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
-    mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[];
+    mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[];
 
 #endif

@@ -42,6 +42,7 @@
 #define BRIO_FIRST_brio_mesh_offset_stats     error
 #define BRIO_FIRST_brio_mesh_simplify_options reserved_int
 #define BRIO_FIRST_brio_outliers_options      factor
+#define BRIO_FIRST_brio_periodic_options      reserved_int
 #define BRIO_FIRST_brio_planar_crust_stats    crust_seconds
 #define BRIO_FIRST_brio_plane_frame           thickness
 #define BRIO_FIRST_brio_power_shape_options   redundancy

@@ -130,12 +130,14 @@ void brio_cells_free(brio_cells *cells) {
     brio_release(ctx, cells->corner_offsets);
     brio_release(ctx, cells->face_vertices);
     brio_release(ctx, cells->vertices);
+    brio_release(ctx, cells->face_shifts);
     brio_release(ctx, cells);
 }
 
 /* What a call works with, beside the job. */
 typedef struct {
     brio_context *ctx;
+    const brio_cell_complex *complex; /* of a space that repeats, or NULL */
     const double *points, *weights;
     size_t num_points;
     brio_cells_options options;
@@ -179,7 +181,12 @@ static brio_status copy_points(cell_call *c) {
 /* Finds the triangulation to work with. */
 static brio_status triangulate(cell_call *c, const brio_triangulation *t) {
     brio_bar bar = brio_progress_bar(c->ctx);
-    BRIO_FORWARD(copy_points(c));
+    if (c->complex && c->complex->tet) {
+        c->diagram.t = (brio_tetrahedra){.tet = c->complex->tet, .count = c->complex->count, .infinite = BRIO_INFINITE};
+        c->diagram.num_finite = c->complex->num_finite;
+        return BRIO_OK;
+    }
+    if (!c->complex) BRIO_FORWARD(copy_points(c));
     if (t) BRIO_FORWARD(brio_refuse_not_finite(c->ctx, c->points, c->weights, c->num_points, NULL));
     if (!t) {
         brio_progress_part(c->ctx, bar, 0, 0.6);
@@ -343,7 +350,7 @@ static brio_status make_cells(brio_cell_job *job) {
     const brio_diagram *d = job->d;
     brio_cells *out = job->out;
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, job->cell_of, d->num_points));
-    for (size_t p = 0; p < d->num_points; p++)
+    for (size_t p = 0; p < d->num_sites; p++)
         if (d->rank[p] != UINT32_MAX) job->cell_of[p] = (uint32_t)out->num_cells++;
     size_t n = out->num_cells;
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->site, n));
@@ -352,7 +359,7 @@ static brio_status make_cells(brio_cell_job *job) {
     if (job->areas) BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->area, n));
     if (job->centroids) BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->centroid, 3 * n));
     if (job->faces) BRIO_FORWARD(BRIO_ALLOC(d->ctx, job->place, n));
-    for (size_t p = 0; p < d->num_points; p++)
+    for (size_t p = 0; p < d->num_sites; p++)
         if (d->rank[p] != UINT32_MAX) out->site[job->cell_of[p]] = (uint32_t)p;
     return BRIO_OK;
 }
@@ -368,7 +375,7 @@ static void record_some(void *user, size_t from, size_t to, int thread) {
     for (size_t i = from; i < to && r->status == BRIO_OK; i++) {
         uint32_t site = s->job->d->order[s->first + i];
         if (s->job->d->marked && !s->job->d->marked[s->first + i]) continue; /* its volume is known */
-        if (site < s->job->d->num_points) r->status = brio_cell_record(s->job, r, site);
+        if (site < s->job->d->num_sites) r->status = brio_cell_record(s->job, r, site);
     }
 }
 
@@ -471,41 +478,59 @@ static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *ou
     job.faces = !o->no_faces || o->vertices;
     c->diagram.ctx = c->ctx;
     c->diagram.num_points = c->num_points;
+    c->diagram.num_sites = c->complex ? c->complex->num_sites : c->num_points;
     BRIO_FORWARD(check_region(c->ctx, o));
     BRIO_FORWARD(triangulate(c, t));
     BRIO_FORWARD(scale_points(c));
     BRIO_FORWARD(make_region(c));
     out->region_volume = c->region.num_planes ? c->region.volume : INFINITY;
     for (int k = 0; k < 3; k++) out->region_volume /= c->diagram.scale;
-    c->diagram.volumes_only = !job.areas && !job.centroids && !job.faces && !c->diagram.flat;
+    c->diagram.volumes_only = !job.areas && !job.centroids && !job.faces && !c->diagram.flat && !c->complex;
     BRIO_FORWARD(brio_diagram_fill(&c->diagram, &c->region));
     BRIO_FORWARD(compute(&job));
-    BRIO_FORWARD(check_filled(c->ctx, out));
+    if (!c->complex) BRIO_FORWARD(check_filled(c->ctx, out)); /* else the region is wider than the sites */
     return brio_progress(c->ctx, "cells", 1);
+}
+
+/* Makes the struct of the cells and computes them. */
+static brio_status make(cell_call *c, const brio_triangulation *t, brio_cells **out) {
+    brio_status status = BRIO_OK;
+    brio_cells *cells = NULL;
+    brio_bar bar = brio_progress_bar(c->ctx);
+    BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, cells, 1));
+    cells->size = sizeof *cells;
+    cells->context = c->ctx;
+    BRIO_TRY(run(c, t, cells));
+    *out = cells;
+    cells = NULL;
+done:
+    end_call(c);
+    brio_cells_free(cells);
+    brio_progress_part(c->ctx, bar, 0, 1);
+    return status;
+}
+
+brio_status brio_cells_of_complex(brio_context *ctx, const brio_cell_complex *complex,
+                                  const brio_cells_options *options, brio_cells **out) {
+    cell_call c = {.ctx = ctx,
+                   .complex = complex,
+                   .points = complex->points,
+                   .weights = complex->weights,
+                   .num_points = complex->num_points,
+                   .options = *options};
+    c.diagram.ctx = ctx;
+    return make(&c, NULL, out);
 }
 
 brio_status brio_voronoi_cells(brio_context *ctx, const brio_triangulation *t, const double *points,
                                const double *weights, size_t num_points, const brio_cells_options *options,
                                brio_cells **out) {
     BRIO_DOOR;
-    brio_status status = BRIO_OK;
-    brio_cells *cells = NULL;
     cell_call c = {.ctx = ctx, .points = points, .weights = weights, .num_points = num_points};
-    brio_bar bar = brio_progress_bar(ctx);
     *out = NULL;
     c.diagram.ctx = ctx;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_cells_options, options, &c.options));
-    BRIO_REQUIRE(ctx, !t || brio_triangulation_stats(t)->points == num_points, BRIO_ERR_ARGUMENT,
-                 "the triangulation has %zu points, not %zu", brio_triangulation_stats(t)->points, num_points);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, cells, 1));
-    cells->size = sizeof *cells;
-    cells->context = ctx;
-    BRIO_TRY(run(&c, t, cells));
-    *out = cells;
-    cells = NULL;
-done:
-    end_call(&c);
-    brio_cells_free(cells);
-    brio_progress_part(ctx, bar, 0, 1);
-    return status;
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_cells_options, options, &c.options));
+    BRIO_EXPECT(ctx, !t || brio_triangulation_stats(t)->points == num_points, BRIO_ERR_ARGUMENT,
+                "the triangulation has %zu points, not %zu", brio_triangulation_stats(t)->points, num_points);
+    return make(&c, t, out);
 }

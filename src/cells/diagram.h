@@ -57,6 +57,7 @@ typedef struct brio_diagram {
     const double *at;               /* #P by 3: the points, relative to the origin and scaled */
     const double *square;           /* #P: the weights, scaled; NULL without weights */
     size_t num_points;              /* the caller's; the triangulation can have up to three more (cells.c) */
+    size_t num_sites;               /* points before it have cells; others are translates of them (brio_cell_complex) */
     double origin[3];               /* each difference points - origin is exact */
     double scale;                   /* a power of two: at = scale * (points - origin) */
     bool flat;                      /* the points have dimension 2 or less: centres say nothing */
@@ -110,5 +111,22 @@ static inline uint32_t brio_same_centre(const brio_diagram *d, uint32_t t) {
     assert(!d->same || (d->same[t] <= t && d->same[d->same[t]] == d->same[t])); /* I2 */
     return d->same ? d->same[t] : t;
 }
+
+/* --- cells of a complex that is no triangulation of all its points: of a space that repeats --- */
+
+/** All tetrahedra that have a site for a vertex, finite ones first. Mates across facets that have one are right; the
+ *  others are the facet itself. */
+typedef struct brio_cell_complex {
+    brio_tetrahedron
+        *tet; /* NULL: points of dimension 2 or less, triangulated here; the sites' neighbours are all there */
+    size_t num_finite, count;
+    const double *points, *weights; /* #P by 3; #P, or NULL */
+    size_t num_points, num_sites;   /* the first points are the sites */
+} brio_cell_complex;
+
+/** Computes the cells of the sites, as brio_voronoi_cells does. Neighbours are indices of points.
+ *  options  all fields are known.   out  as brio_voronoi_cells; NULL before. */
+brio_status brio_cells_of_complex(brio_context *ctx, const brio_cell_complex *complex,
+                                  const brio_cells_options *options, brio_cells **out);
 
 #endif

@@ -34,13 +34,16 @@ static brio_status cells_csv_write(brio_output *out, const brio_cells *cells) {
 }
 
 static brio_status cells_faces_write(brio_output *out, const brio_cells *cells) {
-    BRIO_FORWARD(brio_output_string(out, "site,neighbour,area,nx,ny,nz\n"));
+    BRIO_FORWARD(brio_output_string(out, "site,neighbour,area,nx,ny,nz"));
+    BRIO_FORWARD(brio_output_string(out, cells->face_shifts ? ",shift_a,shift_b,shift_c\n" : "\n"));
     for (size_t c = 0; c < cells->num_cells; c++)
         for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
             BRIO_FORWARD(brio_output_integer(out, 0, cells->site[c]));
             BRIO_FORWARD(brio_output_integer(out, ',', cells->face_neighbours[f]));
             BRIO_FORWARD(brio_output_double(out, ',', cells->face_areas[f]));
             for (size_t k = 0; k < 3; k++) BRIO_FORWARD(brio_output_double(out, ',', cells->face_normals[3 * f + k]));
+            for (size_t k = 0; k < 3 && cells->face_shifts; k++)
+                BRIO_FORWARD(brio_output_integer(out, ',', cells->face_shifts[3 * f + k]));
             BRIO_FORWARD(brio_output_bytes(out, "\n", 1));
         }
     return BRIO_OK;

@@ -15,7 +15,7 @@ COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check",
 COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
-    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
+    "delaunay": ["--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
                  "--first-conflict", "--all-conflicts", "--subgraph", "--rounds", "--record-every", "--page-size", "--cache-size", "--verify", "--neighbors", "--faces",
                  "--edges", "--tiles"],
     "surface": ["--method", "--curves", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
@@ -38,7 +38,7 @@ OWN_OPTIONS = {
     "simplify": ["--faces", "--error"],
     "terrain": ["--class", "--max-edge", "--raster", "--cell"],
     "locate": ["--at", "--plane", "--weights", "--weights-mod", "--unweighted"],
-    "voronoi": ["--weights", "--weights-mod", "--unweighted", "--box", "--faces"],
+    "voronoi": ["--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--box", "--faces"],
     "interpolate": ["--at", "--plane", "--property", "--method"],
     "restricted": ["--surface"],
     "tree": ["--plane"],

@@ -26,7 +26,7 @@ VALUES = {
     "crust": ["c.ply"], "alpha": ["0.5"], "filtration": ["f.txt"], "distance": ["0.2"], "box": ["0,0,0,1,1,1"],
     "faces": ["f.csv", "20"], "samples": ["50", "cloud.ply"], "level": ["-3"], "resolution": ["9", "20"], "points": ["40"], "blobbiness": ["4"],
     "crop": ["0,0,0,0.5,1,1"], "drop-outliers": ["8"], "thin": ["0.4"], "merge": ["0.3"], "views": ["3"], "truth": ["t.ply"],
-    "truth-resolution": ["9"], "within": ["0.001"], "class": ["2"], "max-edge": ["0.3"], "raster": ["t.asc"], "cell": ["0.5"], "kind": ["machined"], "levels": ["2"], "at": ["p.csv"], "property": ["q"],
+    "truth-resolution": ["9"], "within": ["0.001"], "class": ["2"], "max-edge": ["0.3"], "raster": ["t.asc"], "cell": ["0.5", "3,3,3"], "periodic": ["xy"], "kind": ["machined"], "levels": ["2"], "at": ["p.csv"], "property": ["q"],
 }
 
 # Lines without `brio`.

@@ -9,6 +9,7 @@ from ._halfspaces import HalfspaceIntersection
 from ._hull import ConvexHull
 from ._interpolate import LinearNDInterpolator, NaturalNeighbourInterpolator, griddata
 from ._mesh import Certificate, Coverage, Distance, Mesh, simplify
+from ._periodic import PeriodicDelaunay, PeriodicVoronoi
 from ._points import outliers, thin
 from ._reconstruct import BallUnion, Surface, ball_union, medial_axis, offset, oriented_normals, reconstruct
 from ._spherical import SphericalVoronoi
@@ -18,7 +19,8 @@ from .errors import *  # noqa: F403
 
 __all__ = [
     "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Curve", "Delaunay", "Distance",
-    "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "SphericalVoronoi", "Surface",
+    "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "PeriodicDelaunay", "PeriodicVoronoi",
+    "SphericalVoronoi", "Surface",
     "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
     "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "spanning_tree", "thin", "write",
     *errors.__all__,

@@ -44,6 +44,8 @@ class Delaunay:
     progress : bool or callable, optional
         True shows a bar (of tqdm, where it is installed). A function is called with the name of the stage and the share
         that is done, up to 50 times a second; if it returns something true, the work ends with CancelledError.
+    cell : array_like, optional
+        Makes a PeriodicDelaunay, of space that repeats; `periodic` and `radii` go with it.
     incremental : bool
         Taken for scipy's sake: add_points works in any case.
     furthest_site, qhull_options
@@ -96,6 +98,10 @@ class Delaunay:
     _handle: Any
 
     def __new__(cls, points: Any, weights: Any = None, *, fallback: str | None = None, **options: Any) -> Any:
+        if options.get("cell") is not None:
+            from ._periodic import PeriodicDelaunay
+
+            return PeriodicDelaunay(points, weights, **options)
         usual = type(points) is np.ndarray and points.ndim == 2 and points.shape[1] in (2, 3)
         if not usual or options or fallback is not None:
             wanted = ("furthest_site", "incremental", "qhull_options")

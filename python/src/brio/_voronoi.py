@@ -36,6 +36,8 @@ class Voronoi:
     weights : array_like, shape (n,), optional
     box : array_like, shape (2, ndim) or (2 ndim,), optional
         Low and high corner of a box that clips the cells.
+    cell : array_like, optional
+        Makes a PeriodicVoronoi, of space that repeats; `periodic`, `radii` and `vertices` go with it.
     threads, progress, incremental, furthest_site, qhull_options, fallback
         As for Delaunay.
 
@@ -75,6 +77,10 @@ class Voronoi:
     cells: dict[str, Any]
 
     def __new__(cls, points: Any, weights: Any = None, *, fallback: str | None = None, **options: Any) -> Any:
+        if options.get("cell") is not None:
+            from ._periodic import PeriodicVoronoi
+
+            return PeriodicVoronoi(points, weights, **options)
         wanted = ("furthest_site", "incremental", "qhull_options")
         scipys: dict[str, Any] = {key: options[key] for key in wanted if key in options}
         other = other_class("Voronoi", points, fallback, scipys)

@@ -1,0 +1,70 @@
+/* Points in space that repeats: see periodic.h. */
+#include "cli/steps/periodic.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Reads 9 numbers with commas between them, or 3, which are the diagonal. */
+static bool read_cell(const char *text, double cell[9]) {
+    double numbers[9];
+    int count = 0;
+    for (const char *rest = text; count < 9;) {
+        char *end;
+        numbers[count] = strtod(rest, &end);
+        if (end == rest || !isfinite(numbers[count]) || (*end != ',' && *end != 0)) return false;
+        count++;
+        if (*end == 0) break;
+        rest = end + 1;
+        if (count == 9) return false;
+    }
+    if (count != 3 && count != 9) return false;
+    for (int i = 0; i < 9; i++) cell[i] = count == 9 ? numbers[i] : i % 4 == 0 ? numbers[i / 4] : 0;
+    return true;
+}
+
+static bool read_directions(const char *text, int open[3]) {
+    for (int k = 0; k < 3; k++) open[k] = text && !strchr(text, "xyz"[k]);
+    return !text || (*text && strspn(text, "xyz") == strlen(text));
+}
+
+static brio_status take(run *r, const periodic_options *p, double cell[9], brio_periodic_options *o) {
+    if (p->directions && !p->cell) return cli_fail(r, BRIO_ERR_ARGUMENT, "--periodic goes with --cell only");
+    if (p->cell && !read_cell(p->cell, cell))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell: '%s' is neither ax,ay,az,bx,by,bz,cx,cy,cz nor lx,ly,lz",
+                        p->cell);
+    if (!read_directions(p->directions, o->open))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--periodic: '%s' is not made of the letters x, y and z", p->directions);
+    o->size = sizeof *o;
+    o->cell = cell;
+    o->seed = r->common.seed;
+    return BRIO_OK;
+}
+
+brio_status cli_check_periodic(run *r, const periodic_options *p) {
+    brio_periodic_options o = {0};
+    double cell[9];
+    return take(r, p, cell, &o);
+}
+
+brio_status cli_periodic(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
+                         brio_periodic **out) {
+    brio_periodic_options o = {0};
+    double cell[9];
+    facts *f = &r->facts;
+    *out = NULL;
+    FORWARD(take(r, p, cell, &o));
+    FORWARD(brio_delaunay_periodic(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out));
+    const brio_periodic_stats *s = brio_periodic_facts(*out);
+    cli_lap(r, "insert");
+    cli_fact_bool(f, "weighted", weights != NULL);
+    cli_fact_text(f, "periodic", p->directions ? p->directions : "xyz");
+    cli_fact_count(f, "points", s->points);
+    cli_fact_count(f, "duplicates", s->duplicates);
+    cli_fact_count(f, "hidden", s->hidden);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_real(f, "cell_volume", s->cell_volume);
+    cli_fact_real(f, "moved", fmax(s->moved, s->cell_moved));
+    cli_fact_count(f, "triangulated", s->triangulated);
+    cli_fact_count(f, "completed", s->completed);
+    return BRIO_OK;
+}

@@ -1,0 +1,118 @@
+/* brio/periodic.h: triangulations and Voronoi cells of points in space that repeats. */
+#ifndef BRIO_PERIODIC_H
+#define BRIO_PERIODIC_H
+
+#include "cells.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** A translate of a point: its position is that of the point + shift[0] a + shift[1] b + shift[2] c. Here a, b, c are
+ *  the vectors of the cell as they were used (brio_periodic_stats). Directions that do not repeat have shifts of 0. */
+typedef struct brio_image {
+    uint32_t point;
+    int32_t shift[3];
+} brio_image;
+
+typedef struct brio_periodic_options {
+    size_t size;
+    const double *cell; /* 3 by 3: the vectors a, b, c; those that do not repeat are not read */
+    uint64_t seed;      /* as in brio_delaunay_options; the result does not depend on it, but for its order */
+    double halo; /* translates within so many spacings of the points are triangulated at once; others are looked for
+                      where they are needed. 0: the usual 3.5. The result does not depend on it, but for its order */
+    int open[3]; /* 1 for a direction that does not repeat */
+    int reserved_int; /* 0 */
+} brio_periodic_options;
+
+/** Facts of a periodic triangulation. */
+typedef struct brio_periodic_stats {
+    size_t size;
+    size_t points, vertices, duplicates, hidden;
+    int directions;      /* that repeat: 1 to 3 */
+    int dimension;       /* of the affine hull of all translates: 1 to 3 */
+    size_t tetrahedra;   /* finite ones of the result, one of each class of translates */
+    size_t hull_facets;  /* infinite ones; 0 with three directions */
+    size_t images;       /* translates that the result names */
+    double cell[9];      /* the vectors a, b, c as they were used; those that do not repeat are 0 */
+    double cell_volume;  /* of the vectors that repeat: a volume, an area or a length */
+    double cell_moved;   /* the largest move of a coordinate of a vector when the cell was put on its grid */
+    double moved;        /* the same of the points, relative to each other and to the cell */
+    size_t triangulated; /* points and translates that were triangulated, all rounds together */
+    size_t completed;    /* points whose surroundings were not known at once */
+    int rounds;          /* of triangulation */
+    double seconds;
+} brio_periodic_stats;
+
+typedef struct brio_periodic brio_periodic;
+
+/** Builds the Delaunay triangulation of points that repeat or, with weights, the regular triangulation: that of the
+ *  infinite set of all translates of the points by sums of the vectors of the cell. It repeats, too; the result has one
+ *  tetrahedron of each class of translates.
+ *  Every cell has a result: of one point, thin ones, and skewed ones, whose lattice is reduced first. Points may lie
+ *  outside the cell.
+ *  Grid: sums of doubles are no doubles, so vectors and points are put on a grid first, finer than 2^-47 of the longest
+ *  vector of the reduced lattice in each coordinate, on which all translates that matter are exact. The result is exact
+ *  for these, ties included (decision 018). Points at halves, quarters and eighths of the cell stay
+ *  there, as do coordinates in which no vector of the cell goes anywhere.
+ *  The result does not depend on the order of the points, on the number of threads, on which translate of a point is
+ *  given, or on the origin: as long as these change positions by multiples of the grid, or by what rounding to doubles
+ *  adds to such multiples; where there are no ties, by any rounding.
+ *  points, weights, num_points  as brio_delaunay.
+ *  options  with the cell.   out  owned by the caller, freed with brio_periodic_free; NULL on error.
+ *  Cost: as brio_delaunay for the points and the translates in a margin of 3.5 spacings.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no direction repeats; the vectors span nothing, or are too skewed; a point is
+ *  more than 2^30 cells away), and as brio_delaunay.
+ *  Based on: [Caroli Teillaud 2016] for triangulations of closed Euclidean manifolds; [Devillers Teillaud 2011] for
+ *  ties. */
+BRIO_API brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, const double *weights,
+                                            size_t num_points, const brio_periodic_options *options,
+                                            brio_periodic **out);
+
+/** Frees a periodic triangulation; NULL is accepted. */
+BRIO_API void brio_periodic_free(brio_periodic *t);
+
+/** Returns the facts of a periodic triangulation. The view is valid until it is freed, as are those below. */
+BRIO_API const brio_periodic_stats *brio_periodic_facts(const brio_periodic *t);
+
+/** Returns the translates that tetrahedra name, stats.images of them. Image i < #P is of point i: the translate that
+ *  lies in the domain that the library chose. */
+BRIO_API const brio_image *brio_periodic_images(const brio_periodic *t);
+
+/** Returns the positions of the images, stats.images by 3. */
+BRIO_API const double *brio_periodic_positions(const brio_periodic *t);
+
+/** Returns the tetrahedra + hull_facets tetrahedra, finite ones first, as brio_triangulation_tetrahedra does; vertices
+ *  are indices of images. Of each class there is the one whose lexicographically least vertex is an image i < #P. A
+ *  mate is in the array, too: seen from there, the common facet is a translate of the facet that is seen from here. */
+BRIO_API const brio_tetrahedron *brio_periodic_tetrahedra(const brio_periodic *t);
+
+/** Returns #P translates: for each point, the vertex that represents it. A vertex represents itself, with the shift 0.
+ *  A duplicate has the vertex at its position, and a hidden point the vertex of least power distance. */
+BRIO_API const brio_image *brio_periodic_representatives(const brio_periodic *t);
+
+/** Computes a hash of the set of tetrahedra, from how vertices lie to each other. It does not depend on the order of
+ *  points or tetrahedra, the origin, or which translates were given. Scaling all by a power of two does not change
+ *  it.   Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_periodic_checksum(brio_context *ctx, const brio_periodic *t, uint64_t *checksum);
+
+/** Checks a periodic triangulation exactly, without the code that made it: tetrahedra are positive; mates share facets;
+ *  the volumes fill the cell; no vertex behind a facet is in conflict, ties included, which for a triangulation of all
+ *  of space means that no vertex at all is; every point has a vertex that represents it. That hidden points are hidden
+ *  is not checked.
+ *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_periodic_check(brio_context *ctx, const brio_periodic *t);
+
+/** Computes the Voronoi cells, or power cells, of the vertices, as brio_voronoi_cells does. Cells are those of the
+ *  points where they are given: centroids and vertices are near them. Face f is shared with the translate of the point
+ *  face_neighbours[f] by face_shifts[f]. A cell can have several faces with one point, also with itself.
+ *  options  NULL for the defaults. `box` clips along coordinates in which no vector of the cell goes anywhere, the
+ *           others are not read; `planes` must be none.
+ *  out  owned by the caller, freed with brio_cells_free; NULL on error. volume_sum is that of the cell up to 1e-13. */
+BRIO_API brio_status brio_periodic_cells(brio_context *ctx, const brio_periodic *t, const brio_cells_options *options,
+                                         brio_cells **out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

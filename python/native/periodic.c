@@ -1,0 +1,127 @@
+/* Triangulations and cells of points in space that repeats. */
+#include "native.h"
+
+static void free_periodic(void *t) {
+    brio_periodic_free(t);
+}
+
+static const brio_periodic *periodic_of(PyObject *module, PyObject *object) {
+    return handle_object(state_of(module), object, KIND_PERIODIC);
+}
+
+/* periodic(points, weights, cell, open, threads, progress): a handle. */
+static PyObject *periodic(PyObject *module, PyObject *args) {
+    PyObject *points, *weights, *cell, *progress, *result = NULL;
+    int threads;
+    brio_periodic_options o = {.size = sizeof o};
+    input p = {.held = 0}, w = {.held = 0}, l = {.held = 0};
+    call c;
+    if (!PyArg_ParseTuple(args, "OOO(iii)iO", &points, &weights, &cell, &o.open[0], &o.open[1], &o.open[2], &threads,
+                          &progress))
+        return NULL;
+    if (!input_open(&p, points, "points", 'd', 3) && !input_open_weights(&w, weights, p.rows) &&
+        !input_open(&l, cell, "cell", 'd', 3) && !input_has_rows(&l, "cell", 3) &&
+        !call_begin(&c, state_of(module), threads, progress)) {
+        brio_periodic *t = NULL;
+        brio_status status;
+        o.cell = l.data;
+        CALL(c, status, brio_delaunay_periodic(c.ctx, p.data, w.data, p.rows, &o, &t));
+        result = call_end_with(&c, status, KIND_PERIODIC, t, free_periodic, NULL);
+    }
+    input_close(&l);
+    input_close(&w);
+    input_close(&p);
+    return result;
+}
+
+/* What is known of a triangulation, in a dict. */
+static PyObject *periodic_facts(PyObject *module, PyObject *object) {
+    const brio_periodic *t = periodic_of(module, object);
+    if (!t) return NULL;
+    const brio_periodic_stats *s = brio_periodic_facts(t);
+    const double *c = s->cell;
+#define COUNT(name) #name, (Py_ssize_t)s->name
+    return Py_BuildValue("{s:n,s:n,s:n,s:n,s:i,s:i,s:n,s:n,s:n,s:n,s:n,s:i,s:d,s:d,s:d,s:(ddddddddd)}", COUNT(points),
+                         COUNT(vertices), COUNT(duplicates), COUNT(hidden), "directions", s->directions, "dimension",
+                         s->dimension, COUNT(tetrahedra), COUNT(hull_facets), COUNT(images), COUNT(triangulated),
+                         COUNT(completed), "rounds", s->rounds, "cell_volume", s->cell_volume, "cell_moved",
+                         s->cell_moved, "moved", s->moved, "cell", c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7],
+                         c[8]);
+#undef COUNT
+}
+
+/* Views: images as rows of point and shift (0), their positions (1), the vertices (2) and mates (3) of finite tetrahedra,
+ * the vertices of infinite ones (4), and the representatives as rows of point and shift (5). */
+static PyObject *periodic_view(PyObject *module, PyObject *args) {
+    PyObject *object;
+    int part;
+    if (!PyArg_ParseTuple(args, "Oi", &object, &part)) return NULL;
+    const brio_periodic *t = periodic_of(module, object);
+    if (!t) return NULL;
+    const brio_periodic_stats *s = brio_periodic_facts(t);
+    module_state *state = state_of(module);
+    if (part == 0) return array_new(state, object, layout_of(brio_periodic_images(t), 'i', s->images, 4));
+    if (part == 1) return array_new(state, object, layout_of(brio_periodic_positions(t), 'd', s->images, 3));
+    if (part == 5) return array_new(state, object, layout_of(brio_periodic_representatives(t), 'i', s->points, 4));
+    const uint32_t *first = (const uint32_t *)brio_periodic_tetrahedra(t);
+    if (first) first += (part == 3 ? 4 : 0) + (part == 4 ? 8 * s->tetrahedra : 0);
+    layout shown = layout_of(first, part == 3 ? 'I' : 'i', part == 4 ? s->hull_facets : s->tetrahedra, 4);
+    shown.strides[0] *= 2; /* a tetrahedron: vertices, then mates */
+    return array_new(state, object, shown);
+}
+
+static PyObject *periodic_checksum(PyObject *module, PyObject *object) {
+    const brio_periodic *t = periodic_of(module, object);
+    uint64_t sum = 0;
+    brio_status status;
+    call c;
+    if (!t || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, brio_periodic_checksum(c.ctx, t, &sum));
+    return call_end(&c, status) ? NULL : PyLong_FromUnsignedLongLong(sum);
+}
+
+static PyObject *periodic_check(PyObject *module, PyObject *object) {
+    const brio_periodic *t = periodic_of(module, object);
+    brio_status status;
+    call c;
+    if (!t || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, brio_periodic_check(c.ctx, t));
+    if (call_end(&c, status)) return NULL;
+    Py_RETURN_NONE;
+}
+
+/* periodic_cells(t, box, vertices, threads, progress): a dict of arrays. */
+static PyObject *periodic_cells(PyObject *module, PyObject *args) {
+    PyObject *object, *box, *progress, *owner = NULL, *result = NULL;
+    int threads, vertices;
+    input b = {.held = 0};
+    brio_cells *made = NULL;
+    call c;
+    if (!PyArg_ParseTuple(args, "OOiiO", &object, &box, &vertices, &threads, &progress)) return NULL;
+    const brio_periodic *t = periodic_of(module, object);
+    if (!t) return NULL;
+    if (box != Py_None && (input_open(&b, box, "box", 'd', 0) || input_has_rows(&b, "box", 6))) {
+        input_close(&b);
+        return NULL;
+    }
+    if (!call_begin(&c, state_of(module), threads, progress)) {
+        brio_cells_options o = {.size = sizeof o, .vertices = vertices, .box = b.data};
+        brio_status status;
+        CALL(c, status, brio_periodic_cells(c.ctx, t, &o, &made));
+        owner = call_end_with(&c, status, KIND_CELLS, made, cells_release, NULL);
+    }
+    input_close(&b);
+    if (owner) result = cells_views(state_of(module), owner, made);
+    Py_XDECREF(owner);
+    return result;
+}
+
+PyMethodDef periodic_methods[] = {
+    {"periodic", periodic, METH_VARARGS, "periodic(points, weights, cell, open, threads, progress): a handle."},
+    {"periodic_facts", periodic_facts, METH_O, "What is known of it, in a dict."},
+    {"periodic_view", periodic_view, METH_VARARGS, "periodic_view(t, part): a view."},
+    {"periodic_checksum", periodic_checksum, METH_O, "A hash that depends on no origin and no order."},
+    {"periodic_check", periodic_check, METH_O, "Checks it exactly."},
+    {"periodic_cells", periodic_cells, METH_VARARGS, "periodic_cells(t, box, vertices, threads, progress): a dict."},
+    {NULL, NULL, 0, NULL},
+};

@@ -1,0 +1,251 @@
+"""Triangulations and cells of points in space that repeats."""
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _calls, _native
+from ._arrays import Floats, as_box, as_floats, as_rows, as_weights, freeze_all, frozen
+from ._calls import Progress
+from .errors import ArgumentError, CheckError
+
+Ints = NDArray[np.int64]
+_IMAGES, _POSITIONS, _SIMPLICES, _MATES, _HULL, _REPRESENTATIVES = range(6)
+
+
+def as_cell(cell: Any) -> Floats:
+    """Takes three vectors as rows, or three lengths of a box."""
+    rows = as_floats(cell, "cell")
+    if rows.shape == (3,):
+        return np.diag(rows)
+    if rows.shape != (3, 3):
+        raise ArgumentError(f"cell: 3 by 3 numbers, a vector a row, or 3 lengths are wanted, not an array of shape {rows.shape}")
+    return np.ascontiguousarray(rows)
+
+
+def as_periodic(periodic: Any) -> tuple[bool, bool, bool]:
+    """Takes directions as letters, such as "xy", or as three truth values."""
+    if isinstance(periodic, str):
+        if not periodic or set(periodic) - set("xyz"):
+            raise ArgumentError(f'periodic: letters of "xyz" are wanted, not {periodic!r}')
+        return ("x" in periodic, "y" in periodic, "z" in periodic)
+    values = np.asarray(periodic)
+    if values.shape == ():
+        values = np.repeat(values, 3)
+    if values.shape != (3,):
+        raise ArgumentError(f"periodic: three truth values are wanted, not {periodic!r}")
+    return (bool(values[0]), bool(values[1]), bool(values[2]))
+
+
+def as_weights_or_radii(weights: Any, radii: Any, count: int) -> Floats | None:
+    """Takes weights, or their square roots."""
+    if radii is None:
+        return as_weights(weights, count)
+    if weights is not None:
+        raise ArgumentError("weights or radii, not both: a weight is the square of a radius")
+    taken = as_weights(radii, count)
+    return None if taken is None else taken * taken
+
+
+class PeriodicDelaunay:
+    """The Delaunay triangulation of points in space that repeats or, with weights, the regular triangulation.
+
+    ``brio.Delaunay(points, cell=...)`` makes it: one simplex of each class of translates. It is exact on a grid finer
+    than 2^-47 of the cell, and the same for every origin and every choice of translates.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        They may lie outside the cell.
+    weights : array_like, shape (n,), optional
+    cell : array_like, shape (3, 3) or (3,)
+        The vectors of the cell, a row each, of any shape; or the lengths of a box.
+    periodic : str or three truth values
+        The directions that repeat, such as "xy": those of the first and the second vector.
+    radii : array_like, shape (n,), optional
+        In place of weights: their square roots.
+    threads, progress
+        As for Delaunay.
+
+    Attributes
+    ----------
+    image_points, image_shifts : ndarrays of int32, shapes (nimages,) and (nimages, 3)
+        The translates that simplices name: image i is ``points[image_points[i]] + image_shifts[i] @ cell``. The first n
+        are of the points, one each.
+    image_positions : ndarray of float64, shape (nimages, 3)
+    simplices : ndarray of int32, shape (nsimplex, 4)
+        Indices of images; positive.
+    neighbors : ndarray of int32, shape (nsimplex, 4)
+        The class of the simplex beyond each facet; -1 at the hull, where not all directions repeat.
+    representatives, representative_shifts : ndarrays of int32
+        For each point, the vertex that represents it, and which translate of it.
+    cell : ndarray of float64, shape (3, 3)
+        As it was used.
+    facts : dict
+        Counts, and what was moved when points and cell were put on the grid.
+    checksum : int
+        A hash that does not depend on the order of points, the origin, or which translates were given.
+
+    Examples
+    --------
+    >>> import brio
+    >>> tri = brio.Delaunay([[0, 0, 0]], cell=[1, 1, 1])
+    >>> tri.nsimplex, tri.facts["images"]
+    (6, 8)
+    """
+
+    def __init__(self, points: Any, weights: Any = None, *, cell: Any, periodic: Any = True, radii: Any = None,
+                 threads: int = 0, progress: bool | Progress | None = None) -> None:
+        self.points = as_rows(points, "points", (3,))
+        self.weights = as_weights_or_radii(weights, radii, len(self.points))
+        self.periodic = as_periodic(periodic)
+        vectors = as_cell(cell)
+        unused = tuple(int(not repeats) for repeats in self.periodic)
+
+        def build(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
+            return _native.periodic(p, w, vectors, unused, threads, report)
+
+        self._handle = _calls.of_points(build, self.points, self.weights, threads, progress)
+        self.facts: dict[str, Any] = _native.periodic_facts(self._handle)
+        self.cell = np.where(np.asarray(self.periodic)[:, None], np.reshape(self.facts.pop("cell"), (3, 3)), vectors)
+        images = self._view(_IMAGES)
+        self.image_points, self.image_shifts = images[:, 0], images[:, 1:]
+        freeze_all(self.__dict__)
+
+    def _view(self, part: int) -> NDArray[Any]:
+        return np.asarray(_native.periodic_view(self._handle, part))
+
+    @property
+    def simplices(self) -> NDArray[np.int32]:
+        return self._view(_SIMPLICES)
+
+    @property
+    def image_positions(self) -> Floats:
+        return self._view(_POSITIONS)
+
+    @cached_property
+    def neighbors(self) -> NDArray[np.int32]:
+        beyond = (self._view(_MATES) >> 2).astype(np.int32)
+        beyond[beyond >= self.nsimplex] = -1
+        return frozen(beyond)
+
+    @property
+    def hull(self) -> NDArray[np.int32]:
+        """Facets of the hull, as indices of images."""
+        return self._view(_HULL)[:, :3]
+
+    @property
+    def representatives(self) -> NDArray[np.int32]:
+        return self._view(_REPRESENTATIVES)[:, 0]
+
+    @property
+    def representative_shifts(self) -> NDArray[np.int32]:
+        return self._view(_REPRESENTATIVES)[:, 1:]
+
+    @property
+    def nsimplex(self) -> int:
+        return int(self.facts["tetrahedra"])
+
+    @property
+    def npoints(self) -> int:
+        return len(self.points)
+
+    @cached_property
+    def checksum(self) -> int:
+        return int(_native.periodic_checksum(self._handle))
+
+    def check(self) -> bool:
+        """Checks the triangulation exactly, without the code that made it."""
+        try:
+            _native.periodic_check(self._handle)
+        except CheckError:
+            return False
+        return True
+
+    def __repr__(self) -> str:
+        return f"<brio.PeriodicDelaunay of {self.npoints} points: {self.nsimplex} simplices>"
+
+
+class PeriodicVoronoi:
+    """The Voronoi cells of points in space that repeats or, with weights, the power cells.
+
+    ``brio.Voronoi(points, cell=...)`` makes it. Cells are those of the points where they are given.
+
+    Parameters
+    ----------
+    points, weights, cell, periodic, radii, threads, progress
+        As for PeriodicDelaunay.
+    box : array_like, shape (2, 3) or (6,), optional
+        Clips the cells along coordinates in which no vector of the cell goes anywhere, such as z of a slab.
+    vertices : bool
+        Whether `vertices`, `face_vertices` and `corner_offsets` are made.
+
+    Attributes
+    ----------
+    volumes, areas : ndarrays of float64, shape (n,)
+        Of each point's cell, and of its surface; 0 for points without a cell.
+    centroids : ndarray of float64, shape (n, 3)
+        NaN for points without a cell.
+    neighbor_offsets, neighbor_points, neighbor_shifts : ndarrays of int64, int64 and int32
+        Face k of point i's cell, k from ``neighbor_offsets[i]`` to ``neighbor_offsets[i + 1] - 1``, is shared with the
+        cell of ``points[neighbor_points[k]] + neighbor_shifts[k] @ cell``.
+    face_areas, face_normals : ndarrays of float64, shapes (nfaces,) and (nfaces, 3)
+        Of each face; normals point out of the cell.
+    vertices, face_vertices, corner_offsets : ndarrays, or None
+        Face k has the corners ``face_vertices[corner_offsets[k]:corner_offsets[k + 1]]``.
+    delaunay : PeriodicDelaunay
+
+    Examples
+    --------
+    >>> import brio
+    >>> fcc = brio.Voronoi([[0, 0, 0]], cell=[[0, 1, 1], [1, 0, 1], [1, 1, 0]])
+    >>> fcc.volumes.tolist(), fcc.coordination().tolist()
+    ([2.0], [12])
+    """
+
+    def __init__(self, points: Any, weights: Any = None, *, cell: Any, periodic: Any = True, radii: Any = None, box: Any = None,
+                 vertices: bool = False, threads: int = 0, progress: bool | Progress | None = None) -> None:
+        self.delaunay = PeriodicDelaunay(points, weights, cell=cell, periodic=periodic, radii=radii, threads=threads,
+                                         progress=progress)
+        walls = None if box is None else as_box(box, 3)
+        with _calls.reporting(progress) as report:
+            raw = _native.periodic_cells(self.delaunay._handle, walls, int(vertices), threads, report)
+        c = {name: part if isinstance(part, float) or part is None else np.asarray(part) for name, part in raw.items()}
+        site, count = c["site"].astype(np.int64), self.npoints
+        self.volumes, self.areas, self.centroids = np.zeros(count), np.zeros(count), np.full((count, 3), np.nan)
+        self.volumes[site], self.areas[site], self.centroids[site] = c["volume"], c["area"], c["centroid"]
+        faces = np.zeros(count, np.int64)
+        faces[site] = np.diff(c["face_offsets"]).astype(np.int64)
+        self.neighbor_offsets = np.concatenate([[0], np.cumsum(faces)])
+        self.neighbor_points, self.neighbor_shifts = c["face_neighbours"], c["face_shifts"]
+        self.face_areas, self.face_normals = c["face_areas"], c["face_normals"]
+        self.vertices = c["vertices"] if vertices else None
+        self.face_vertices = c["face_vertices"] if vertices else None
+        self.corner_offsets = c["corner_offsets"] if vertices else None
+        freeze_all(self.__dict__)
+
+    @property
+    def points(self) -> Floats:
+        return self.delaunay.points
+
+    @property
+    def cell(self) -> Floats:
+        return self.delaunay.cell
+
+    @property
+    def npoints(self) -> int:
+        return self.delaunay.npoints
+
+    def coordination(self, least: float = 0.0) -> Ints:
+        """Counts each point's faces of more than the share `least` of its cell's surface.
+
+        Which faces there are is exact. In a lattice whose symmetry doubles cannot hold, such as a hexagonal one, faces of
+        rounding's size appear: 1e-9 leaves them out.
+        """
+        owner = np.repeat(np.arange(self.npoints), np.diff(self.neighbor_offsets))
+        return np.bincount(owner[self.face_areas > least * self.areas[owner]], minlength=self.npoints)
+
+    def __repr__(self) -> str:
+        return f"<brio.PeriodicVoronoi of {self.npoints} points: {len(self.neighbor_points)} faces>"

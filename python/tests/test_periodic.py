@@ -1,0 +1,130 @@
+"""Space that repeats: lattices, cells that fill the box, and what does not change the result."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+import brio
+
+RNG = np.random.default_rng(45)
+SHARES = {
+    "sc": [[0, 0, 0]],
+    "bcc": [[0, 0, 0], [0.5, 0.5, 0.5]],
+    "fcc": [[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0]],
+    "diamond": [[0, 0, 0], [0, 0.5, 0.5], [0.5, 0, 0.5], [0.5, 0.5, 0], [0.25, 0.25, 0.25], [0.25, 0.75, 0.75],
+                [0.75, 0.25, 0.75], [0.75, 0.75, 0.25]],
+}
+FACES = {"sc": 6, "bcc": 14, "fcc": 12, "diamond": 16}
+SKEW = np.array([[1, 0, 0], [7, 1, 0], [-13, 50, 1]])
+
+
+@pytest.mark.parametrize("name", SHARES)
+@pytest.mark.parametrize("edge", [1.0, 4.0495, 3.165e-10, 5.43e9])
+@pytest.mark.parametrize("skewed", [False, True])
+def test_crystals_have_equal_volumes_and_the_right_faces(name, edge, skewed):
+    shares = np.array(SHARES[name])
+    cell = (SKEW if skewed else np.eye(3)) * edge
+    vor = brio.Voronoi(shares * edge, cell=cell)
+    least = 1e-9 if skewed else 0  # fifty times a double is not exact, and so is the symmetry
+    assert vor.coordination(least).tolist() == [FACES[name]] * len(shares)
+    assert np.abs(vor.volumes / (edge**3 / len(shares)) - 1).max() < 1e-13
+
+
+def test_hexagonal_close_packing():
+    a, c = 1.0, np.sqrt(8 / 3)
+    cell = np.array([[a, 0, 0], [-a / 2, a * np.sqrt(3) / 2, 0], [0, 0, c]])
+    vor = brio.Voronoi(np.array([[0, 0, 0], [2 / 3, 1 / 3, 0.5]]) @ cell, cell=cell)
+    assert vor.coordination(1e-9).tolist() == [12, 12]
+    assert np.abs(vor.volumes / (np.linalg.det(cell) / 2) - 1).max() < 1e-13
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6, 1e12])
+def test_neighbours_do_not_depend_on_the_unit(size):
+    points = np.random.default_rng(1).random((10000, 3)) * size
+    vor = brio.Voronoi(points, cell=[size] * 3)
+    assert abs(len(vor.neighbor_points) / len(points) - 15.535) < 0.09
+    assert abs(vor.volumes.sum() / size**3 - 1) < 1e-12
+
+
+def test_faces_come_in_pairs():
+    points, cell = RNG.random((40, 3)), np.array([[1, 0, 0], [0.3, 1.2, 0], [0.1, -0.4, 0.9]])
+    vor = brio.Voronoi(points @ cell, cell=cell, radii=0.05 * RNG.random(40))
+    owner = np.repeat(np.arange(40), np.diff(vor.neighbor_offsets))
+    there = {(i, j, *s): a for i, j, s, a in zip(owner.tolist(), vor.neighbor_points.tolist(), vor.neighbor_shifts.tolist(), vor.face_areas)}
+    assert len(there) == len(owner)
+    for (i, j, a, b, c), area in there.items():
+        assert there[j, i, -a, -b, -c] == pytest.approx(area, rel=1e-9, abs=1e-14)
+    way = vor.points[vor.neighbor_points] + vor.neighbor_shifts @ vor.cell - vor.points[owner]
+    assert np.allclose(way / np.linalg.norm(way, axis=1)[:, None], vor.face_normals)
+
+
+def test_cells_hold_their_vertices_where_points_are_given():
+    cell = np.array([[1, 0, 0], [0.2, 1, 0], [0, 0.3, 1]])
+    points = RNG.random((8, 3)) @ cell + RNG.integers(-1, 2, (8, 3)) @ cell
+    vor = brio.Voronoi(points, cell=cell, vertices=True)
+    images = (points[:, None] + np.array(list(itertools.product(range(-4, 5), repeat=3))) @ cell).reshape(-1, 3)
+    for i in range(8):
+        faces = slice(vor.neighbor_offsets[i], vor.neighbor_offsets[i + 1])
+        corners = np.unique(vor.face_vertices[vor.corner_offsets[faces.start] : vor.corner_offsets[faces.stop]])
+        for v in vor.vertices[corners]:
+            mine = np.linalg.norm(v - points[i])
+            assert mine < 2 and np.linalg.norm(images - v, axis=1).min() > mine - 1e-12
+        assert np.linalg.norm(vor.centroids[i] - points[i]) < 1
+
+
+def test_origin_representatives_and_order_do_not_matter():
+    cell = np.array([[1, 0, 0], [0.25, 1.5, 0], [0, -0.5, 0.75]])
+    points = RNG.random((50, 3)) @ cell
+    first = brio.Delaunay(points, cell=cell)
+    assert first.check()
+    for _ in range(40):
+        moved = points + RNG.random(3) * 20 - 10 + RNG.integers(-4, 5, (50, 3)) @ cell
+        change = np.eye(3, dtype=int)
+        for i, j in [(0, 1), (1, 2), (2, 0)]:
+            change[i] += RNG.integers(-3, 4) * change[j]
+        assert brio.Delaunay(RNG.permutation(moved), cell=change @ cell).checksum == first.checksum
+
+
+def test_thin_and_skewed_cells_of_few_points():
+    for n in (1, 2, 4):
+        for cell in ([[1, 0, 0], [50, 1, 0], [0, 50, 1]], [[50, 0, 0], [0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0], [0.5, 0.5, 1e-3]]):
+            tri = brio.Delaunay(RNG.random((n, 3)) @ np.array(cell), cell=cell)
+            assert tri.check()
+            assert tri.nsimplex > 0 and np.allclose(tri.cell, cell)
+
+
+def test_hidden_points_and_duplicates():
+    points = np.array([[0.1, 0.1, 0.1], [0.6, 0.6, 0.6], [0.95, 0.1, 0.1], [1.1, 0.1, 2.1]])
+    tri = brio.Delaunay(points, [0.0, 0.0, -1.0, 0.0], cell=[1, 1, 1])
+    assert (tri.facts["vertices"], tri.facts["hidden"], tri.facts["duplicates"]) == (2, 1, 1)
+    assert tri.representatives.tolist() == [0, 1, 0, 0]
+    assert tri.representative_shifts.tolist() == [[0, 0, 0], [0, 0, 0], [1, 0, 0], [1, 0, 2]]
+    assert brio.Voronoi(points, [0.0, 0.0, -1.0, 0.0], cell=[1, 1, 1]).volumes[2:].tolist() == [0, 0]
+
+
+def test_slabs_are_clipped_by_a_box():
+    points = RNG.random((200, 3))
+    vor = brio.Voronoi(points, cell=np.eye(3), periodic="xy", box=[[0, 0, -1], [1, 1, 2]])
+    assert vor.volumes.sum() == pytest.approx(3, rel=1e-12)
+    assert set(vor.neighbor_points[vor.neighbor_points < 0].tolist()) == {-5, -6}
+    assert np.isinf(brio.Voronoi(points, cell=np.eye(3), periodic="xy").volumes).any()
+
+
+def test_points_of_a_plane_and_a_line_have_cells():
+    flat = RNG.random((30, 3)) * [1, 1, 0]
+    vor = brio.Voronoi(flat, cell=np.eye(3), periodic="xy", box=[0, 0, -1, 1, 1, 1])
+    assert vor.volumes.sum() == pytest.approx(2, rel=1e-12)
+
+
+def test_arguments():
+    with pytest.raises(brio.ArgumentError, match="3 by 3"):
+        brio.Delaunay([[0, 0, 0]], cell=[1, 2])
+    with pytest.raises(brio.ArgumentError, match="span no volume"):
+        brio.Delaunay([[0, 0, 0]], cell=[[1, 0, 0], [2, 0, 0], [0, 0, 1]])
+    with pytest.raises(brio.ArgumentError, match="no direction"):
+        brio.Delaunay([[0, 0, 0]], cell=np.eye(3), periodic=[False] * 3)
+    with pytest.raises(brio.ArgumentError, match="letters"):
+        brio.Voronoi([[0, 0, 0]], cell=np.eye(3), periodic="ab")
+    with pytest.raises(brio.ArgumentError, match="not both"):
+        brio.Voronoi([[0, 0, 0]], [1], radii=[1], cell=np.eye(3))

@@ -1,0 +1,210 @@
+/* Cells of a periodic triangulation.
+ *
+ * The tetrahedra with a vertex in the domain are unfolded (unfold.c), and the cells of the points there are computed
+ * from their stars (brio_cells_of_complex). Then neighbours become points and shifts, and each cell is moved to where
+ * its point was given: a vertex of cells that move differently becomes several. */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/versioned.h"
+#include "cells/diagram.h"
+#include "periodic/periodic.h"
+#include <math.h>
+#include <string.h>
+
+/* BOX_REACH: a box is so many cells wide along coordinates that repeat; no cell reaches so far. */
+enum { BOX_REACH = 8 };
+
+typedef struct {
+    brio_context *ctx;
+    const brio_periodic *t;
+    brio_images images;
+    brio_unfolded unfolded;
+    double box[6];
+} periodic_call;
+
+/* --- the call for cells in the domain --- */
+
+static brio_status copy_images(periodic_call *c) {
+    const brio_images *from = &c->t->images;
+    brio_images *to = &c->images;
+    BRIO_FORWARD(
+        brio_images_new(c->ctx, &c->t->lattice, (const double(*)[3])from->x, from->weight, from->num_points, to));
+    for (size_t i = from->num_points; i < from->count; i++)
+        BRIO_FORWARD(brio_images_add(to, from->list[i].point, from->list[i].shift));
+    return BRIO_OK;
+}
+
+/* Appends all translates within the lattice's range: for points of a plane or a line, which are few or thin. */
+static brio_status add_all(periodic_call *c) {
+    brio_images *m = &c->images;
+    const brio_lattice *l = &c->t->lattice;
+    for (size_t p = 0; p < m->num_points; p++) {
+        int32_t s[3], from[3] = {0, 0, 0}, to[3] = {0, 0, 0};
+        for (int i = 0; i < l->rank; i++) {
+            double share = brio_lattice_share(l, i, m->x[p]);
+            from[i] = (int32_t)ceil(-l->range[i] - share), to[i] = (int32_t)floor(1 + l->range[i] - share);
+        }
+        for (s[0] = from[0]; s[0] <= to[0]; s[0]++)
+            for (s[1] = from[1]; s[1] <= to[1]; s[1]++)
+                for (s[2] = from[2]; s[2] <= to[2]; s[2]++)
+                    if (s[0] || s[1] || s[2]) BRIO_FORWARD(brio_images_add(m, (uint32_t)p, s));
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+    }
+    return BRIO_OK;
+}
+
+/* Takes the caller's box along coordinates in which no vector goes anywhere; along the others it is wide. */
+static brio_status take_box(periodic_call *c, brio_cells_options *o) {
+    const brio_lattice *l = &c->t->lattice;
+    bool clips = false;
+    BRIO_EXPECT(c->ctx, !o->planes && !o->num_planes, BRIO_ERR_ARGUMENT,
+                "planes do not clip cells of a space that repeats; a box does along coordinates that do not repeat");
+    if (!o->box) return BRIO_OK;
+    for (int k = 0; k < 3; k++) {
+        double low = 0, high = 0;
+        c->box[k] = o->box[k], c->box[3 + k] = o->box[3 + k];
+        if (l->unit[k] == 0) {
+            clips = true;
+            continue;
+        }
+        for (int i = 0; i < 3; i++) low += fabs(l->basis[i][k]) * BOX_REACH;
+        for (size_t p = 0; p < c->images.num_points; p++) high = fmax(high, fabs(c->images.x[p][k]));
+        c->box[k] = -low - high, c->box[3 + k] = low + high;
+    }
+    BRIO_EXPECT(c->ctx, clips, BRIO_ERR_ARGUMENT, "a box, but every coordinate repeats");
+    o->box = c->box;
+    return BRIO_OK;
+}
+
+/* --- what the caller sees --- */
+
+/* Returns how far the cell of a point is moved, along coordinate k: from the domain to where the point was given. */
+static inline double move_of(const brio_periodic *t, uint32_t point, int k) {
+    double sum = 0;
+    if (t->stays) return 0;
+    for (int j = 0; j < t->lattice.rank; j++) sum -= t->home[point][j] * t->lattice.used[j][k];
+    return sum;
+}
+
+static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
+    const brio_periodic *t = c->t;
+    const brio_lattice *l = &t->lattice;
+    size_t faces = cells->face_offsets ? (size_t)cells->face_offsets[cells->num_cells] : 0;
+    if (!cells->face_offsets) return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, cells->face_shifts, 3 * faces + 1));
+    for (size_t n = 0; n < cells->num_cells; n++)
+        for (uint64_t f = cells->face_offsets[n]; f < cells->face_offsets[n + 1]; f++) {
+            if (cells->face_neighbours[f] < 0) continue;
+            if (t->stays && (size_t)cells->face_neighbours[f] < c->images.num_points) continue;
+            const brio_image *image = &c->images.list[cells->face_neighbours[f]];
+            cells->face_neighbours[f] = image->point;
+            for (int j = 0; j < l->rank; j++) {
+                int64_t shift = (int64_t)t->home[image->point][j] - t->home[cells->site[n]][j];
+                for (int i = 0; i < l->rank; i++) shift += image->shift[i] * l->change[i][j];
+                cells->face_shifts[3 * f + (size_t)l->axis[j]] = (int32_t)shift;
+            }
+        }
+    return BRIO_OK;
+}
+
+static void move_centroids(const periodic_call *c, brio_cells *cells) {
+    for (size_t n = 0; n < cells->num_cells && cells->centroid; n++)
+        for (int k = 0; k < 3; k++)
+            cells->centroid[3 * n + (size_t)k] =
+                brio_lattice_shown(&c->t->lattice, cells->centroid[3 * n + (size_t)k], k) +
+                move_of(c->t, cells->site[n], k);
+}
+
+/* A vertex of cells that move by one shift. */
+typedef struct {
+    uint32_t vertex;
+    int32_t move[3];
+} moved_vertex;
+
+/* Gives the corner of a cell its vertex, a new one where no cell with that move had it. */
+static brio_status move_vertices(const periodic_call *c, brio_cells *cells) {
+    brio_context *ctx = c->ctx;
+    const brio_periodic *t = c->t;
+    brio_status status = BRIO_OK;
+    size_t size = 64, count = 0, capacity = 0, x_capacity = 0;
+    uint32_t *slot = NULL;
+    moved_vertex *list = NULL;
+    double *x = NULL;
+    while (size < 4 * cells->num_vertices) size *= 2;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, slot, size));
+    for (size_t n = 0; n < cells->num_cells; n++)
+        for (uint64_t f = cells->face_offsets[n]; f < cells->face_offsets[n + 1]; f++)
+            for (uint64_t at = cells->corner_offsets[f]; at < cells->corner_offsets[f + 1]; at++) {
+                moved_vertex v = {.vertex = cells->face_vertices[at]};
+                memcpy(v.move, t->home[cells->site[n]], sizeof v.move);
+                uint64_t hash =
+                    brio_mix(v.vertex + brio_mix((uint64_t)(uint32_t)v.move[0] << 32 | (uint32_t)v.move[1]) +
+                             (uint32_t)v.move[2] * UINT64_C(0x9e3779b97f4a7c15));
+                size_t place = hash & (size - 1);
+                while (slot[place] && memcmp(&list[slot[place] - 1], &v, sizeof v)) place = (place + 1) & (size - 1);
+                if (!slot[place]) {
+                    BRIO_REQUIRE(ctx, 2 * (count + 1) <= size, BRIO_ERR_TOO_LARGE, "too many vertices of moved cells");
+                    BRIO_TRY(BRIO_RESERVE(ctx, list, capacity, count + 1));
+                    BRIO_TRY(BRIO_RESERVE(ctx, x, x_capacity, 3 * (count + 1)));
+                    for (int k = 0; k < 3; k++)
+                        x[3 * count + (size_t)k] =
+                            brio_lattice_shown(&t->lattice, cells->vertices[3 * (size_t)v.vertex + (size_t)k], k) +
+                            move_of(t, cells->site[n], k);
+                    list[count++] = v;
+                    slot[place] = (uint32_t)count;
+                }
+                cells->face_vertices[at] = slot[place] - 1;
+            }
+    brio_release(ctx, cells->vertices);
+    cells->vertices = x;
+    cells->num_vertices = count;
+    x = NULL;
+done:
+    brio_release(ctx, slot);
+    brio_release(ctx, list);
+    brio_release(ctx, x);
+    return status;
+}
+
+static brio_status compute(periodic_call *c, const brio_cells_options *options, brio_cells **out) {
+    brio_cells_options o = *options;
+    bool flat = c->t->stats.dimension < 3;
+    BRIO_FORWARD(copy_images(c));
+    if (flat)
+        BRIO_FORWARD(add_all(c));
+    else
+        BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, &c->images, &c->unfolded));
+    BRIO_FORWARD(take_box(c, &o));
+    brio_cell_complex complex = {.tet = flat ? NULL : c->unfolded.tet,
+                                 .num_finite = c->unfolded.num_finite,
+                                 .count = c->unfolded.count,
+                                 .points = c->images.x[0],
+                                 .weights = c->images.weight,
+                                 .num_points = c->images.count,
+                                 .num_sites = c->images.num_points};
+    BRIO_FORWARD(brio_cells_of_complex(c->ctx, &complex, &o, out));
+    if (c->t->lattice.rank == 3) (*out)->region_volume = c->t->lattice.volume;
+    BRIO_FORWARD(show_neighbours(c, *out));
+    move_centroids(c, *out);
+    return (*out)->vertices ? move_vertices(c, *out) : BRIO_OK;
+}
+
+brio_status brio_periodic_cells(brio_context *ctx, const brio_periodic *t, const brio_cells_options *options,
+                                brio_cells **out) {
+    BRIO_DOOR;
+    periodic_call c = {.ctx = ctx, .t = t};
+    brio_cells_options o = {0};
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_cells_options, options, &o));
+    BRIO_TRY(compute(&c, &o, out));
+done:
+    brio_images_free(&c.images);
+    brio_release(ctx, c.unfolded.tet);
+    if (status != BRIO_OK) {
+        brio_cells_free(*out);
+        *out = NULL;
+    }
+    return status;
+}

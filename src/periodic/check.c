@@ -1,0 +1,222 @@
+/* The checksum of a periodic triangulation, and its exact check.
+ *
+ * Positions of translates depend on which the caller gave, and on the origin; how two vertices lie to each other does
+ * not. So the name of a tetrahedron is the signs of the differences of its vertices' coordinates, its vertices in
+ * lexicographic order. The colour of a vertex is a hash of the names of its tetrahedra, twice more of the colours about
+ * it; the checksum is the sum of hashes of tetrahedra with the colours of their vertices.
+ *
+ * The check: a complex of positive tetrahedra, each facet of which has a mate on its other side, covers space evenly;
+ * its volume tells how often. Once: then it is a triangulation of space. If no vertex behind a facet conflicts with the
+ * tetrahedron before it, the lifted complex is convex along every line, so no vertex at all does. This holds where all
+ * directions repeat. With fewer, hull facets and their mates must be convex, too.
+ *
+ * Based on: Edelsbrunner. Geometry and Topology for Mesh Generation. 2001 (the local test). */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "periodic/periodic.h"
+#include "predicates/predicates.h"
+#include <math.h>
+#include <string.h>
+
+/* --- the checksum --- */
+
+enum { COLOUR_ROUNDS = 2 };
+
+/* Sorts the finite vertices of a tetrahedron lexicographically, and returns a hash of how they lie. */
+static uint64_t name_of(const brio_images *m, const uint32_t *v, uint32_t *sorted, int *count) {
+    uint64_t name = v[3] == BRIO_INFINITE;
+    int n = 0;
+    for (int k = 0; k < 4; k++) {
+        if (v[k] == BRIO_INFINITE) continue;
+        int at = n++;
+        for (; at > 0 && brio_images_compare(m, v[k], sorted[at - 1]) < 0; at--) sorted[at] = sorted[at - 1];
+        sorted[at] = v[k];
+    }
+    for (int i = 0; i < n; i++)
+        for (int j = i + 1; j < n; j++)
+            for (int k = 0; k < 3; k++) {
+                const double *x = m->x[sorted[i]], *y = m->x[sorted[j]];
+                name = 3 * name + (x[k] < y[k] ? 1 : x[k] > y[k] ? 2 : 0);
+            }
+    *count = n;
+    return brio_mix(name);
+}
+
+brio_status brio_periodic_checksum(brio_context *ctx, const brio_periodic *t, uint64_t *checksum) {
+    BRIO_DOOR;
+    const brio_images *m = &t->images;
+    brio_status status = BRIO_OK;
+    uint64_t *colour = NULL, *next = NULL, sum = brio_mix(t->stats.vertices);
+    size_t count = t->stats.tetrahedra + t->stats.hull_facets;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, colour, m->num_points + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, next, m->num_points + 1));
+    for (int round = 0; round <= COLOUR_ROUNDS; round++) {
+        memset(next, 0, (m->num_points + 1) * sizeof *next);
+        for (size_t i = 0; i < count; i++) {
+            uint32_t sorted[4];
+            int n;
+            uint64_t name = name_of(m, t->tet[i].vertex, sorted, &n);
+            for (int k = 0; k < n; k++) name = brio_mix(name + colour[m->list[sorted[k]].point]);
+            for (int k = 0; k < n && round < COLOUR_ROUNDS; k++)
+                next[m->list[sorted[k]].point] += brio_mix(name + (uint64_t)k);
+            if (round == COLOUR_ROUNDS) sum += name;
+            BRIO_TRY(brio_look(ctx, 1));
+        }
+        for (size_t p = 0; p < m->num_points && round < COLOUR_ROUNDS; p++) colour[p] = brio_mix(colour[p] + next[p]);
+    }
+    *checksum = sum;
+done:
+    brio_release(ctx, colour);
+    brio_release(ctx, next);
+    return status;
+}
+
+/* --- the check --- */
+
+typedef struct {
+    brio_context *ctx;
+    const brio_periodic *t;
+    brio_filter filter;
+    size_t count;
+} checking;
+
+static void record_of(const brio_images *m, uint32_t image, const int32_t *shift, double *record) {
+    brio_image i = m->list[image];
+    for (int k = 0; k < 3; k++) i.shift[k] += shift[k];
+    brio_lattice_move(m->lattice, m->x[i.point], i.shift, record);
+    record[3] = m->weight ? m->weight[i.point] : 0;
+}
+
+/* Checks that the mate behind facet i, moved there, has the facet's vertices, from the other side. */
+static brio_status check_mate(const checking *c, size_t t, int i, const int32_t *shift) {
+    const brio_images *m = &c->t->images;
+    const brio_tetrahedron *tet = c->t->tet;
+    uint32_t facet = tet[t].mate[i];
+    BRIO_EXPECT(c->ctx, (facet >> 2) < c->count && tet[facet >> 2].mate[facet & 3] == 4 * (uint32_t)t + (uint32_t)i,
+                BRIO_ERR_CHECK, "tetrahedron %zu is not the mate of its mate at facet %d", t, i);
+    for (int k = 0; k < 4; k++) {
+        uint32_t v = tet[t].vertex[k];
+        bool found = false;
+        if (k == i) continue;
+        for (int j = 0; j < 4 && !found; j++) {
+            uint32_t w = tet[facet >> 2].vertex[j];
+            if (j == (int)(facet & 3)) continue;
+            if (v == BRIO_INFINITE || w == BRIO_INFINITE) {
+                found = v == w;
+                continue;
+            }
+            found = m->list[v].point == m->list[w].point;
+            for (int a = 0; a < 3; a++) found &= m->list[v].shift[a] == m->list[w].shift[a] + shift[a];
+        }
+        BRIO_EXPECT(c->ctx, found, BRIO_ERR_CHECK, "tetrahedra %zu and %u are mates, but have no common facet", t,
+                    facet >> 2);
+    }
+    return BRIO_OK;
+}
+
+static brio_status check_tetrahedron(checking *c, size_t t) {
+    static const int32_t none[3] = {0, 0, 0};
+    const brio_images *m = &c->t->images;
+    const uint32_t *v = c->t->tet[t].vertex;
+    double r[4][4], e[4];
+    bool weighted = m->weight != NULL, infinite = v[3] == BRIO_INFINITE;
+    for (int k = 0; k < (infinite ? 3 : 4); k++) record_of(m, v[k], none, r[k]);
+    BRIO_EXPECT(c->ctx, infinite || brio_orient3d_sign(&c->filter, r[0], r[1], r[2], r[3]) > 0, BRIO_ERR_CHECK,
+                "tetrahedron %zu is not positive", t);
+    int least = brio_images_least(m, v, 4);
+    BRIO_EXPECT(c->ctx, v[least] < m->num_points, BRIO_ERR_CHECK,
+                "the least vertex of tetrahedron %zu is not in the domain", t);
+    for (int i = 0; i < 4; i++) {
+        int32_t shift[3];
+        brio_periodic_across(m, c->t->tet, t, i, shift);
+        BRIO_FORWARD(check_mate(c, t, i, shift));
+        uint32_t facet = c->t->tet[t].mate[i], apex = c->t->tet[facet >> 2].vertex[facet & 3];
+        if (apex == BRIO_INFINITE) continue;
+        record_of(m, apex, shift, e);
+        if (!infinite) {
+            BRIO_EXPECT(c->ctx, !brio_conflict(&c->filter, r[0], r[1], r[2], r[3], e, weighted), BRIO_ERR_CHECK,
+                        "a vertex behind facet %d of tetrahedron %zu is in conflict with it", i, t);
+        } else if (i < 3) {
+            BRIO_EXPECT(c->ctx, brio_orient3d_sign(&c->filter, r[0], r[1], r[2], e) <= 0, BRIO_ERR_CHECK,
+                        "the hull is not convex at tetrahedron %zu", t);
+        }
+    }
+    return BRIO_OK;
+}
+
+/* Adds up the volumes of the tetrahedra, with the rounding errors. Exact enough to tell one covering from two. */
+static double volume_sum(const brio_periodic *t) {
+    double sum = 0, lost = 0;
+    for (size_t i = 0; i < t->stats.tetrahedra; i++) {
+        const uint32_t *v = t->tet[i].vertex;
+        double e[3][3], cross[3];
+        for (int k = 0; k < 3; k++)
+            for (int a = 0; a < 3; a++) e[k][a] = t->images.x[v[k + 1]][a] - t->images.x[v[0]][a];
+        for (int a = 0; a < 3; a++)
+            cross[a] = e[1][(a + 1) % 3] * e[2][(a + 2) % 3] - e[1][(a + 2) % 3] * e[2][(a + 1) % 3];
+        double x = (e[0][0] * cross[0] + e[0][1] * cross[1] + e[0][2] * cross[2]) / 6, next = sum + x;
+        lost += (sum - (next - (next - sum))) + (x - (next - sum));
+        sum = next;
+    }
+    return sum + lost;
+}
+
+/* Checks that representatives are vertices, and that vertices are those of the tetrahedra. */
+static brio_status check_points(const checking *c) {
+    const brio_periodic *t = c->t;
+    size_t vertices = 0;
+    brio_status status = BRIO_OK;
+    uint8_t *used = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, used, t->stats.points + 1));
+    for (size_t i = 0; i < c->count; i++)
+        for (int k = 0; k < 4; k++)
+            if (t->tet[i].vertex[k] != BRIO_INFINITE) used[t->images.list[t->tet[i].vertex[k]].point] = 1;
+    for (size_t p = 0; p < t->stats.points; p++) {
+        bool is_vertex = t->representative[p].point == p;
+        vertices += is_vertex;
+        BRIO_REQUIRE(c->ctx, is_vertex == (used[p] != 0), BRIO_ERR_CHECK,
+                     "point %zu is a vertex of tetrahedra or represents itself, but not both", p);
+        BRIO_REQUIRE(c->ctx, used[t->representative[p].point], BRIO_ERR_CHECK, "point %zu is represented by no vertex",
+                     p);
+    }
+    BRIO_REQUIRE(c->ctx,
+                 vertices == t->stats.vertices && vertices + t->stats.duplicates + t->stats.hidden == t->stats.points,
+                 BRIO_ERR_CHECK, "the numbers of vertices, duplicates and hidden points are wrong");
+done:
+    brio_release(c->ctx, used);
+    return status;
+}
+
+brio_status brio_periodic_check(brio_context *ctx, const brio_periodic *t) {
+    BRIO_DOOR;
+    checking c = {.ctx = ctx, .t = t, .count = t->stats.tetrahedra + t->stats.hull_facets};
+    const brio_lattice *l = &t->lattice;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, least = 0, most = 0;
+    if (t->stats.dimension < 3) return BRIO_OK;
+    for (size_t i = 0; i < t->images.count; i++) {
+        for (int k = 0; k < 3; k++) {
+            low[k] = fmin(low[k], t->images.x[i][k]);
+            high[k] = fmax(high[k], t->images.x[i][k]);
+        }
+        if (t->images.weight) least = fmin(least, t->images.weight[i]), most = fmax(most, t->images.weight[i]);
+    }
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < l->rank; i++) {
+            low[k] -= 2 * BRIO_LATTICE_MOST_SHIFT * fabs(l->basis[i][k]);
+            high[k] += 2 * BRIO_LATTICE_MOST_SHIFT * fabs(l->basis[i][k]);
+        }
+    double extent[3] = {high[0] - low[0], high[1] - low[1], high[2] - low[2]};
+    brio_filter_set(&c.filter, extent, most - least, t->images.weight != NULL);
+    for (size_t i = 0; i < c.count; i++) {
+        BRIO_FORWARD(check_tetrahedron(&c, i));
+        BRIO_FORWARD(brio_look(ctx, 4));
+    }
+    BRIO_EXPECT(ctx, t->stats.hull_facets == 0 || l->rank < 3, BRIO_ERR_CHECK,
+                "%zu infinite tetrahedra in a space that repeats", t->stats.hull_facets);
+    if (l->rank == 3) {
+        double filled = volume_sum(t) / l->volume;
+        BRIO_EXPECT(ctx, fabs(filled - 1) < 0x1p-20, BRIO_ERR_CHECK, "the tetrahedra fill %.17g of the cell", filled);
+    }
+    return check_points(&c);
+}

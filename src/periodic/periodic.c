@@ -1,0 +1,257 @@
+/* Periodic Delaunay and regular triangulations: the call, and what its result shows.
+ *
+ * The lattice is reduced and put on a grid with the points (lattice.c); the stars of the points are found (stars.c);
+ * one tetrahedron of each class stays (fold.c).
+ *
+ * Based on: decision 018. */
+#include "periodic/periodic.h"
+#include "base/finite.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/sort.h"
+#include "base/versioned.h"
+#include "periodic/translates.h"
+#include <math.h>
+#include <string.h>
+
+/* The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it. Measured. */
+static const double HALO = 3.5;
+
+void brio_periodic_free(brio_periodic *t) {
+    if (!t) return;
+    brio_context *ctx = t->ctx;
+    brio_images_free(&t->images);
+    brio_release(ctx, t->shown);
+    brio_release(ctx, t->position);
+    brio_release(ctx, t->representative);
+    brio_release(ctx, t->home);
+    brio_release(ctx, t->tet);
+    brio_release(ctx, t);
+}
+
+/* --- points --- */
+
+/* Puts the points into the domain. */
+static brio_status bring_home(brio_periodic *t, const double *points, size_t n, double (**out)[3]) {
+    double(*home)[3] = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(t->ctx, home, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, t->home, n + 1));
+    t->stays = true;
+    for (size_t p = 0; p < n; p++) {
+        brio_home h;
+        BRIO_REQUIRE(t->ctx, brio_lattice_home(&t->lattice, points + 3 * p, &h), BRIO_ERR_ARGUMENT,
+                     "point %zu is more than 2^30 cells away from the others", p);
+        memcpy(home[p], h.x, sizeof *home);
+        for (int j = 0; j < 3; j++) t->home[p][j] = (int32_t)h.shift[j];
+        t->stays &= !h.shift[0] && !h.shift[1] && !h.shift[2];
+        t->stats.moved = fmax(t->stats.moved, h.moved);
+        BRIO_TRY(brio_look(t->ctx, 1));
+    }
+    *out = home;
+    home = NULL;
+done:
+    brio_release(t->ctx, home);
+    return status;
+}
+
+/* --- images --- */
+
+/* Drops the images that no tetrahedron has. */
+static brio_status drop_images(brio_periodic *t, size_t num_tets) {
+    brio_images *m = &t->images;
+    uint32_t *name = NULL;
+    size_t count = m->num_points;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, name, m->count + 1));
+    for (size_t i = 0; i < num_tets; i++)
+        for (int k = 0; k < 4; k++)
+            if (t->tet[i].vertex[k] != BRIO_INFINITE) name[t->tet[i].vertex[k]] = 1;
+    for (size_t i = 0; i < m->count; i++) {
+        if (i >= m->num_points && !name[i]) continue;
+        size_t at = i < m->num_points ? i : count++;
+        name[i] = (uint32_t)at;
+        m->list[at] = m->list[i];
+        memcpy(m->x[at], m->x[i], sizeof *m->x);
+        if (m->weight) m->weight[at] = m->weight[i];
+    }
+    for (size_t i = 0; i < num_tets; i++)
+        for (int k = 0; k < 4; k++)
+            if (t->tet[i].vertex[k] != BRIO_INFINITE) t->tet[i].vertex[k] = name[t->tet[i].vertex[k]];
+    m->count = count;
+    brio_release(t->ctx, m->slot);
+    m->slot = NULL;
+    m->num_slots = m->num_entered = 0;
+    brio_release(t->ctx, name);
+    return BRIO_OK;
+}
+
+/* Returns an image as the caller sees it: relative to the points and the vectors that were given. */
+static brio_image show(const brio_periodic *t, const brio_image *image, const int32_t *from) {
+    const brio_lattice *l = &t->lattice;
+    brio_image out = {.point = image->point};
+    for (int j = 0; j < l->rank; j++) {
+        int64_t shift = t->home[image->point][j] - (int64_t)from[j];
+        for (int i = 0; i < l->rank; i++) shift += image->shift[i] * l->change[i][j];
+        out.shift[l->axis[j]] = (int32_t)shift;
+    }
+    return out;
+}
+
+static brio_status show_images(brio_periodic *t) {
+    static const int32_t none[3] = {0, 0, 0};
+    const brio_images *m = &t->images;
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->shown, m->count + 1));
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->position, m->count + 1));
+    for (size_t i = 0; i < m->count; i++) {
+        t->shown[i] = show(t, &m->list[i], none);
+        for (int k = 0; k < 3; k++) t->position[i][k] = brio_lattice_shown(&t->lattice, m->x[i][k], k);
+    }
+    t->stats.images = m->count;
+    return BRIO_OK;
+}
+
+/* --- representatives --- */
+
+static int compare_positions(uint32_t a, uint32_t b, const void *user) {
+    const brio_images *m = user;
+    int sign = brio_images_compare(m, a, b);
+    if (sign) return sign;
+    if (m->weight && m->weight[a] != m->weight[b]) return m->weight[a] > m->weight[b] ? -1 : 1;
+    return a < b ? -1 : a > b;
+}
+
+/* Finds the vertices of least power distance of points that are hidden, and counts these by their positions. */
+static brio_status represent_hidden(brio_periodic *t, const uint8_t *is_vertex, uint32_t *hidden, size_t count) {
+    const brio_images *m = &t->images;
+    brio_status status = BRIO_OK;
+    brio_translates translates = {0};
+    uint8_t *left_out = NULL;
+    BRIO_TRY(BRIO_ALLOC(t->ctx, left_out, m->num_points + 1));
+    for (size_t p = 0; p < m->num_points; p++) left_out[p] = !is_vertex[p];
+    BRIO_TRY(brio_translates_new(m, left_out, &translates));
+    BRIO_TRY(brio_sort_rows(t->ctx, &(brio_row_order){m->x[0], 3, compare_positions, m}, hidden, count));
+    for (size_t n = 0; n < count; n++) {
+        brio_image nearest;
+        brio_translates_nearest(&translates, m->x[hidden[n]], &nearest);
+        t->representative[hidden[n]] = show(t, &nearest, t->home[hidden[n]]);
+        if (n > 0 && brio_images_compare(m, hidden[n - 1], hidden[n]) == 0)
+            t->stats.duplicates++;
+        else
+            t->stats.hidden++;
+        BRIO_TRY(brio_look(t->ctx, 16));
+    }
+done:
+    brio_translates_free(&translates);
+    brio_release(t->ctx, left_out);
+    return status;
+}
+
+static brio_status represent(brio_periodic *t, const brio_stars *s) {
+    const brio_images *m = &s->images;
+    const uint32_t *known = brio_triangulation_representatives(s->t);
+    brio_status status = BRIO_OK;
+    uint32_t *hidden = NULL;
+    size_t n = m->num_points, count = 0;
+    BRIO_TRY(BRIO_ALLOC(t->ctx, t->representative, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, hidden, n + 1));
+    for (uint32_t p = 0; p < n; p++) {
+        uint32_t v = known[p];
+        t->stats.vertices += s->is_vertex[p];
+        t->representative[p] = (brio_image){.point = p};
+        if (s->is_vertex[p]) continue;
+        if (v < n && s->is_vertex[v] && brio_images_compare(m, p, v) == 0) {
+            brio_image image = {.point = v};
+            t->representative[p] = show(t, &image, t->home[p]);
+            t->stats.duplicates++;
+        } else {
+            hidden[count++] = p;
+        }
+    }
+    if (count) BRIO_TRY(represent_hidden(t, s->is_vertex, hidden, count));
+done:
+    brio_release(t->ctx, hidden);
+    return status;
+}
+
+/* --- the call --- */
+
+static void describe(brio_periodic *t, const brio_stars *s) {
+    const brio_lattice *l = &t->lattice;
+    t->stats.size = sizeof t->stats;
+    t->stats.points = s->images.num_points;
+    t->stats.directions = l->rank;
+    t->stats.dimension = brio_triangulation_stats(s->t)->dimension;
+    for (int j = 0; j < l->rank; j++) memcpy(t->stats.cell + 3 * l->axis[j], l->used[j], sizeof l->used[j]);
+    t->stats.cell_volume = l->volume;
+    t->stats.cell_moved = l->moved;
+    t->stats.triangulated = s->triangulated;
+    t->stats.completed = s->num_redone;
+    t->stats.rounds = s->rounds;
+}
+
+static brio_status build(brio_periodic *t, const double *points, const double *weights, size_t n,
+                         const brio_periodic_options *o) {
+    brio_context *ctx = t->ctx;
+    brio_status status = BRIO_OK;
+    double(*home)[3] = NULL;
+    brio_stars stars = {0};
+    BRIO_TRY(bring_home(t, points, n, &home));
+    brio_stars_task task = {&t->lattice, (const double(*)[3])home,     weights,
+                            n,           o->halo > 0 ? o->halo : HALO, o->seed ? o->seed : BRIO_SEED};
+    BRIO_TRY(brio_stars_new(ctx, &task, &stars));
+    describe(t, &stars);
+    BRIO_TRY(brio_periodic_fold(ctx, &stars, &t->tet, &t->stats.tetrahedra, &t->stats.hull_facets));
+    t->images = stars.images;
+    BRIO_TRY(represent(t, &stars));
+    stars.images = (brio_images){.ctx = ctx};
+    BRIO_TRY(drop_images(t, t->stats.tetrahedra + t->stats.hull_facets));
+    BRIO_TRY(show_images(t));
+done:
+    if (stars.images.list == t->images.list) stars.images = (brio_images){.ctx = ctx};
+    brio_stars_free(&stars);
+    brio_release(ctx, home);
+    return status;
+}
+
+brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                   const brio_periodic_options *options, brio_periodic **out) {
+    BRIO_DOOR;
+    brio_periodic_options o = {0};
+    brio_status status = BRIO_OK;
+    brio_periodic *t = NULL;
+    double start = brio_seconds();
+    *out = NULL;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_periodic_options, options, &o));
+    BRIO_REQUIRE(ctx, o.cell, BRIO_ERR_ARGUMENT, "the options have no cell");
+    BRIO_REQUIRE(ctx, o.halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o.halo);
+    BRIO_REQUIRE(ctx, num_points < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", num_points);
+    BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
+    t->ctx = ctx;
+    BRIO_TRY(brio_lattice_new(ctx, &o, points, num_points, &t->lattice));
+    BRIO_TRY(build(t, points, weights, num_points, &o));
+    t->images.lattice = &t->lattice;
+    t->stats.seconds = brio_seconds() - start;
+    *out = t;
+    t = NULL;
+done:
+    brio_periodic_free(t);
+    return status;
+}
+
+const brio_periodic_stats *brio_periodic_facts(const brio_periodic *t) {
+    return &t->stats;
+}
+const brio_image *brio_periodic_images(const brio_periodic *t) {
+    return t->shown;
+}
+const double *brio_periodic_positions(const brio_periodic *t) {
+    return (const double *)t->position;
+}
+const brio_tetrahedron *brio_periodic_tetrahedra(const brio_periodic *t) {
+    return t->tet;
+}
+const brio_image *brio_periodic_representatives(const brio_periodic *t) {
+    return t->representative;
+}

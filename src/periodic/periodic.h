@@ -1,0 +1,75 @@
+/* A periodic triangulation: one tetrahedron of each class of translates.
+ *
+ * I1  Of each class there is the tetrahedron whose lexicographically least finite vertex is an image i < num_points.
+ * I2  mate is an involution. Mates across a facet have its three vertices, up to a translation: the lexicographically
+ *     least ones of both sides correspond. */
+#ifndef BRIO_PERIODIC_PERIODIC_H
+#define BRIO_PERIODIC_PERIODIC_H
+
+#include "periodic/images.h"
+
+/* --- the stars of the points in the domain, in the triangulation of all translates --- */
+
+/** Tetrahedra from two sources. Those of `t` at points that are not `redone` are right where they have a vertex in the
+ *  domain; those at redone points are in `extra`. */
+typedef struct brio_stars {
+    brio_images images;
+    size_t num_known;      /* images that `t` is made of */
+    brio_triangulation *t; /* of the first num_known images */
+    uint8_t *redone;       /* #points, or NULL for none */
+    uint8_t *is_vertex;    /* #points */
+    size_t num_redone;
+    uint32_t (*extra)[4]; /* images: finite ones with four vertices, infinite ones with BRIO_INFINITE last */
+    size_t num_extra, extra_capacity;
+    size_t triangulated;
+    int rounds;
+} brio_stars;
+
+/** Points whose stars are to be found. */
+typedef struct brio_stars_task {
+    const brio_lattice *lattice;
+    const double (*home)[3]; /* #points: their translates in the domain */
+    const double *weights;   /* #points, or NULL */
+    size_t num_points;
+    double halo; /* in spacings */
+    uint64_t seed;
+} brio_stars_task;
+
+/** Finds the stars.   Returns BRIO_OK, and as brio_delaunay; freed with brio_stars_free in any case. */
+brio_status brio_stars_new(brio_context *ctx, const brio_stars_task *task, brio_stars *stars);
+void brio_stars_free(brio_stars *stars);
+
+/* --- the result --- */
+
+struct brio_periodic {
+    brio_context *ctx;
+    brio_periodic_stats stats;
+    brio_lattice lattice;
+    brio_images images;
+    brio_image *shown;          /* #images: the images as the caller sees them */
+    double (*position)[3];      /* #images, the same */
+    brio_image *representative; /* #points, as the caller sees them */
+    int32_t (*home)[3];         /* #points: shifts of the caller's vectors from the points to the domain */
+    bool stays;                 /* all points are in the domain as they were given: `home` is 0 */
+    brio_tetrahedron *tet;      /* I1, I2: finite ones first */
+};
+
+/** Makes the classes of stars.   tet  owned by the caller.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, or BRIO_ERR_INTERNAL if facets have no mates. */
+brio_status brio_periodic_fold(brio_context *ctx, brio_stars *stars, brio_tetrahedron **tet, size_t *num_finite,
+                               size_t *num_infinite);
+
+/** Returns the shift by which the mate behind facet i of tetrahedron t has to be moved to meet it there. */
+void brio_periodic_across(const brio_images *images, const brio_tetrahedron *tet, size_t t, int i, int32_t shift[3]);
+
+/** All tetrahedra with a vertex in the domain, and the mates across facets that have such a vertex. Other mates are the
+ *  facet itself. */
+typedef struct brio_unfolded {
+    brio_tetrahedron *tet;
+    size_t num_finite, count;
+} brio_unfolded;
+
+/** Makes them.   images  gets the images that they name.   out  its array is owned by the caller. */
+brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, brio_images *images, brio_unfolded *out);
+
+#endif

@@ -1,0 +1,336 @@
+/* The stars of the points in the domain.
+ *
+ * The points and the translates in a margin about the domain are triangulated. All translates in a parallelepiped K are
+ * known then. A tetrahedron is right if no translate outside K conflicts with it. Such a translate lies outside the
+ * convex hull of the known ones, and the tetrahedra in conflict with it are joined across facets with an infinite one.
+ * So a search from the hull, through tetrahedra whose balls leave K, meets all that can be wrong: a layer.
+ *
+ * Where one of the layer at a point of the domain is in conflict with a translate, its points are redone: completed
+ * from their neighbours here, and from translates that are looked for (completion/completion.h). Only translates in the
+ * lattice's range about the domain matter, by decision 018.
+ *
+ * Based on: decision 018; Caroli, Teillaud. Delaunay triangulations of closed Euclidean d-orbifolds. DCG 2016.
+ * Differs from the paper: no covering of 27 or more sheets is made; copies are where balls need them. */
+#include "periodic/periodic.h"
+#include "base/memory.h"
+#include "base/vector.h"
+#include "periodic/translates.h"
+#include "predicates/circumcentre.h"
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+    brio_context *ctx;
+    const brio_lattice *lattice;
+    brio_stars *s;
+    size_t num_points;
+    double margin[3]; /* K: coordinates in the basis from -margin to 1 + margin */
+    double heaviest;
+    const brio_tetrahedron *tet;
+    size_t num_finite, num_tets;
+    uint8_t *seen;
+    uint32_t *queue;
+    size_t queued, queue_capacity;
+    brio_translates translates;
+    uint8_t *left_out;
+} layer;
+
+/* --- what is triangulated first --- */
+
+/* Returns the spacing of points that fill their box, the domain's span and what they reach beyond it. */
+static double spacing_of(const brio_images *m) {
+    const brio_lattice *l = m->lattice;
+    double side[3] = {0, 0, 0}, product = 1, most = 0, n = (double)m->num_points;
+    for (int i = 0; i < 3; i++) {
+        double low = INFINITY, high = -INFINITY, unit = 1 / brio_length(l->dual[i]);
+        for (size_t p = 0; p < m->num_points && i >= l->rank; p++) {
+            double share = brio_lattice_share(l, i, m->x[p]);
+            low = fmin(low, share), high = fmax(high, share);
+        }
+        side[i] = i < l->rank ? unit : (high - low) * unit;
+    }
+    for (int i = 1; i < 3; i++)
+        for (int j = i; j > 0 && side[j] > side[j - 1]; j--) {
+            double x = side[j];
+            side[j] = side[j - 1], side[j - 1] = x;
+        }
+    for (int d = 1; d <= 3; d++) {
+        product *= side[d - 1];
+        most = fmax(most, pow(product / n, 1.0 / d));
+    }
+    return most;
+}
+
+/* Appends the translates of point p that are in K. */
+static brio_status add_translates(const layer *y, uint32_t p) {
+    brio_images *m = &y->s->images;
+    int32_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0}, s[3];
+    for (int i = 0; i < y->lattice->rank; i++) {
+        double share = brio_lattice_share(y->lattice, i, m->x[p]);
+        from[i] = (int32_t)ceil(-y->margin[i] - share);
+        to[i] = (int32_t)floor(1 + y->margin[i] - share);
+        if (from[i] > 0) from[i] = 0;
+        if (to[i] < 0) to[i] = 0;
+    }
+    for (s[0] = from[0]; s[0] <= to[0]; s[0]++)
+        for (s[1] = from[1]; s[1] <= to[1]; s[1]++)
+            for (s[2] = from[2]; s[2] <= to[2]; s[2]++)
+                if (s[0] || s[1] || s[2]) BRIO_FORWARD(brio_images_add(m, p, s));
+    return BRIO_OK;
+}
+
+static brio_status add_margin(layer *y, double halo) {
+    double width = halo * spacing_of(&y->s->images);
+    for (int i = 0; i < y->lattice->rank; i++)
+        y->margin[i] = fmin(width * brio_length(y->lattice->dual[i]), y->lattice->range[i]);
+    for (size_t p = 0; p < y->num_points; p++) {
+        BRIO_FORWARD(add_translates(y, (uint32_t)p));
+        BRIO_FORWARD(brio_look(y->ctx, 1));
+    }
+    return BRIO_OK;
+}
+
+static brio_status triangulate(layer *y, uint64_t seed) {
+    brio_stars *s = y->s;
+    brio_delaunay_options o = {.size = sizeof o, .seed = seed};
+    s->num_known = s->images.count;
+    BRIO_FORWARD(brio_delaunay(y->ctx, s->images.x[0], s->images.weight, s->num_known, &o, &s->t));
+    s->triangulated += s->num_known;
+    s->rounds++;
+    const brio_delaunay_stats *facts = brio_triangulation_stats(s->t);
+    y->tet = brio_triangulation_tetrahedra(s->t);
+    y->num_finite = facts->tetrahedra;
+    y->num_tets = facts->tetrahedra + facts->hull_facets;
+    const uint32_t *representative = brio_triangulation_representatives(s->t);
+    BRIO_FORWARD(BRIO_ALLOC(y->ctx, s->is_vertex, y->num_points + 1));
+    for (size_t p = 0; p < y->num_points; p++) s->is_vertex[p] = representative[p] == p;
+    return BRIO_OK;
+}
+
+/* Returns whether K has all translates that matter for any point of the domain. */
+static bool has_all(const layer *y) {
+    for (int i = 0; i < y->lattice->rank; i++)
+        if (y->margin[i] < y->lattice->range[i]) return false;
+    return true;
+}
+
+/* --- the layer --- */
+
+static brio_status push(layer *y, size_t tet) {
+    if (y->seen[tet]) return BRIO_OK;
+    y->seen[tet] = 1;
+    BRIO_FORWARD(BRIO_RESERVE(y->ctx, y->queue, y->queue_capacity, y->queued + 1));
+    y->queue[y->queued++] = (uint32_t)tet;
+    return BRIO_OK;
+}
+
+/* Returns whether a position of K's outside may be in conflict. K is taken a bit smaller: the coordinates of the known
+ * translates in the basis were rounded. */
+static bool leaves(const layer *y, const brio_ball *b) {
+    static const double SLACK = 0x1p-30;
+    if (b->infinite || !(b->square < INFINITY)) return true;
+    double most = b->square + y->heaviest, radius;
+    if (most < 0) return false;
+    radius = sqrt(most) * (1 + SLACK);
+    for (int i = 0; i < y->lattice->rank; i++) {
+        double share = brio_lattice_share(y->lattice, i, b->centre), slack = SLACK * (1 + fabs(share));
+        double way = radius * brio_length(y->lattice->dual[i]) + slack;
+        if (!(share - way > -y->margin[i] && share + way < 1 + y->margin[i])) return true;
+    }
+    return false;
+}
+
+/* Sets the balls of some tetrahedra. */
+static void set_balls(const layer *y, const uint32_t *tets, size_t n, brio_ball *balls) {
+    const brio_images *m = &y->s->images;
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    double centre[BRIO_CENTRE_BATCH][3], error[BRIO_CENTRE_BATCH];
+    size_t finite = 0, f = 0;
+    for (size_t i = 0; i < n; i++)
+        if (tets[i] < y->num_finite) memcpy(vertex[finite++], y->tet[tets[i]].vertex, sizeof *vertex);
+    brio_centre_batch batch = {m->x[0], m->weight, (const uint32_t(*)[4])vertex, finite};
+    if (finite) brio_centres(&batch, *centre, error);
+    for (size_t i = 0; i < n; i++) {
+        brio_ball *b = &balls[i];
+        const uint32_t *v = y->tet[tets[i]].vertex;
+        *b = (brio_ball){.infinite = tets[i] >= y->num_finite};
+        for (int k = 0; k < (b->infinite ? 3 : 4); k++) {
+            memcpy(b->vertex[k], m->x[v[k]], 3 * sizeof(double));
+            b->vertex[k][3] = m->weight ? m->weight[v[k]] : 0;
+        }
+        if (!b->infinite) memcpy(b->centre, centre[f], sizeof b->centre);
+        brio_ball_set_square(b, b->infinite ? 0 : error[f], &y->translates.all);
+        f += !b->infinite;
+    }
+}
+
+static bool is_own(const layer *y, const uint32_t *v) {
+    for (int k = 0; k < 4; k++)
+        if (v[k] < y->num_points) return true;
+    return false;
+}
+
+/* Looks at one of the layer: goes on to its mates, and marks its points for redoing where a translate conflicts. */
+static brio_status look_at(layer *y, uint32_t tet, const brio_ball *ball) {
+    const brio_tetrahedron *t = &y->tet[tet];
+    brio_set_point found;
+    if (!leaves(y, ball)) return BRIO_OK;
+    for (int i = 0; i < 4; i++) BRIO_FORWARD(push(y, t->mate[i] >> 2));
+    if (!is_own(y, t->vertex)) return BRIO_OK;
+    bool known = true;
+    for (int k = 0; k < 4; k++) known &= t->vertex[k] >= y->num_points || y->s->redone[t->vertex[k]];
+    if (known || !brio_translates_deepest(&y->translates, &y->translates.filter, ball, &found)) return BRIO_OK;
+    for (int k = 0; k < 4; k++) {
+        if (t->vertex[k] >= y->num_points || y->s->redone[t->vertex[k]]) continue;
+        y->s->redone[t->vertex[k]] = 1;
+        y->s->num_redone++;
+    }
+    return BRIO_OK;
+}
+
+static brio_status search_layer(layer *y) {
+    brio_ball balls[BRIO_CENTRE_BATCH];
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(y->ctx, y->seen, y->num_tets + 1));
+    for (size_t t = y->num_finite; t < y->num_tets; t++) BRIO_FORWARD(push(y, t));
+    for (size_t at = 0; at < y->queued;) {
+        size_t n = y->queued - at < BRIO_CENTRE_BATCH ? y->queued - at : BRIO_CENTRE_BATCH;
+        set_balls(y, y->queue + at, n, balls);
+        for (size_t i = 0; i < n; i++) BRIO_FORWARD(look_at(y, y->queue[at + i], &balls[i]));
+        at += n;
+        BRIO_FORWARD(brio_look(y->ctx, n * 16));
+    }
+    return BRIO_OK;
+}
+
+/* --- points that are redone --- */
+
+/* Lists the redone points, and the vertices of their tetrahedra. */
+static brio_status list_points(const layer *y, brio_set_point **out, size_t *num_own, size_t *num_all) {
+    const brio_images *m = &y->s->images;
+    brio_status status = BRIO_OK;
+    uint8_t *needed = NULL;
+    brio_set_point *list = NULL;
+    size_t n = 0, count = 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, needed, m->count + 1));
+    for (size_t t = 0; t < y->num_tets; t++) {
+        const uint32_t *v = y->tet[t].vertex;
+        bool redone = false;
+        for (int k = 0; k < 4; k++) redone |= v[k] < y->num_points && y->s->redone[v[k]];
+        for (int k = 0; k < 4 && redone; k++)
+            if (v[k] != BRIO_INFINITE) needed[v[k]] = 1;
+        BRIO_TRY(brio_look(y->ctx, 1));
+    }
+    for (size_t i = 0; i < m->count; i++) count += needed[i] != 0;
+    BRIO_TRY(BRIO_ALLOC(y->ctx, list, count + 1));
+    for (int own = 1; own >= 0; own--)
+        for (size_t i = 0; i < m->count; i++) {
+            bool is_redone = i < y->num_points && y->s->redone[i];
+            if (!needed[i] || is_redone != (own == 1)) continue;
+            brio_set_point *p = &list[n++];
+            memcpy(p->record, m->x[i], 3 * sizeof(double));
+            p->record[3] = m->weight ? m->weight[i] : 0;
+            p->name = brio_translate_name(m->list[i].point, m->list[i].shift);
+            *num_own += own == 1;
+        }
+    *num_all = n;
+    *out = list;
+    list = NULL;
+done:
+    brio_release(y->ctx, needed);
+    brio_release(y->ctx, list);
+    return status;
+}
+
+static brio_status take_final(void *user, const brio_set_point *known, const uint32_t (*vertex)[4], size_t count) {
+    const layer *y = user;
+    brio_stars *s = y->s;
+    BRIO_FORWARD(BRIO_RESERVE(y->ctx, s->extra, s->extra_capacity, s->num_extra + count));
+    for (size_t n = 0; n < count; n++) {
+        for (int k = 0; k < 4; k++) {
+            uint32_t *v = &s->extra[s->num_extra][k];
+            *v = BRIO_INFINITE;
+            if (vertex[n][k] == BRIO_INFINITE) continue;
+            brio_image i = brio_translate_of(known[vertex[n][k]].name);
+            BRIO_FORWARD(brio_images_find(&s->images, i.point, i.shift, v));
+        }
+        s->num_extra++;
+    }
+    return BRIO_OK;
+}
+
+static brio_status redo(layer *y) {
+    brio_status status = BRIO_OK;
+    brio_set_point *list = NULL;
+    uint8_t *is_vertex = NULL;
+    brio_completion_stats facts;
+    brio_completion_task task = {.weighted = y->s->images.weight != NULL,
+                                 .all = y->translates.all,
+                                 .source = brio_translates_find,
+                                 .source_user = &y->translates,
+                                 .final = take_final,
+                                 .final_user = y};
+    BRIO_TRY(list_points(y, &list, &task.num_own, &task.num_points));
+    task.points = list;
+    BRIO_TRY(BRIO_ALLOC(y->ctx, is_vertex, task.num_own + 1));
+    BRIO_TRY(brio_complete(y->ctx, &task, is_vertex, &facts));
+    for (size_t i = 0; i < task.num_own; i++) y->s->is_vertex[brio_translate_of(list[i].name).point] = is_vertex[i];
+    y->s->rounds += facts.rounds;
+    y->s->triangulated += facts.triangulated;
+done:
+    brio_release(y->ctx, list);
+    brio_release(y->ctx, is_vertex);
+    return status;
+}
+
+static brio_status complete(layer *y) {
+    const brio_images *m = &y->s->images;
+    y->heaviest = m->weight ? -INFINITY : 0;
+    for (size_t p = 0; p < y->num_points && m->weight; p++) y->heaviest = fmax(y->heaviest, m->weight[p]);
+    BRIO_FORWARD(BRIO_ALLOC(y->ctx, y->left_out, y->num_points + 1));
+    for (size_t p = 0; p < y->num_points; p++) y->left_out[p] = !y->s->is_vertex[p];
+    BRIO_FORWARD(brio_translates_new(m, y->left_out, &y->translates));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(y->ctx, y->s->redone, y->num_points + 1));
+    BRIO_FORWARD(search_layer(y));
+    return y->s->num_redone ? redo(y) : BRIO_OK;
+}
+
+/* --- all --- */
+
+/* Triangulates the points and the translates in a margin about them. */
+static brio_status begin(layer *y, const brio_stars_task *task, double halo) {
+    *y = (layer){.ctx = y->ctx, .lattice = task->lattice, .s = y->s, .num_points = task->num_points};
+    BRIO_FORWARD(brio_images_new(y->ctx, task->lattice, task->home, task->weights, task->num_points, &y->s->images));
+    BRIO_FORWARD(add_margin(y, halo));
+    return triangulate(y, task->seed);
+}
+
+brio_status brio_stars_new(brio_context *ctx, const brio_stars_task *task, brio_stars *s) {
+    brio_status status = BRIO_OK;
+    layer y = {.ctx = ctx, .s = s};
+    *s = (brio_stars){.images = {.ctx = ctx}};
+    BRIO_TRY(begin(&y, task, task->halo));
+    if (brio_triangulation_stats(s->t)->dimension < 3 && !has_all(&y)) { /* of a plane or a line: all at once */
+        brio_stars_free(s);
+        BRIO_TRY(begin(&y, task, INFINITY));
+    }
+    if (task->num_points && !has_all(&y)) BRIO_TRY(complete(&y));
+done:
+    brio_translates_free(&y.translates);
+    brio_release(ctx, y.left_out);
+    brio_release(ctx, y.seen);
+    brio_release(ctx, y.queue);
+    return status;
+}
+
+void brio_stars_free(brio_stars *s) {
+    brio_context *ctx = s->images.ctx;
+    brio_triangulation_free(s->t);
+    if (ctx) {
+        brio_release(ctx, s->redone);
+        brio_release(ctx, s->is_vertex);
+        brio_release(ctx, s->extra);
+    }
+    brio_images_free(&s->images);
+    *s = (brio_stars){0};
+}

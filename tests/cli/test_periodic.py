@@ -1,0 +1,69 @@
+"""brio delaunay and voronoi --cell: points in space that repeats."""
+
+import random
+
+from brio_cli import CliTest, main
+
+FCC = "0,2.025,2.025,2.025,0,2.025,2.025,2.025,0"
+
+
+def rows(path):
+    with open(path) as f:
+        lines = f.read().splitlines()
+    names = lines[0].split(",")
+    return [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
+
+
+class Periodic(CliTest):
+    def points(self, n, seed=1):
+        rng = random.Random(seed)
+        return [tuple(rng.randrange(1 << 20) / (1 << 20) for _ in range(3)) for _ in range(n)]
+
+    def test_usage(self):
+        points = self.xyz("a.xyz", [(0, 0, 0)])
+        for command in [("delaunay",), ("voronoi", "-o", self.path("x.csv"))]:
+            self.usage("--periodic goes with --cell only", *command, points, "--periodic", "xy")
+            for cell in ["1,1", "1,1,1,", "1,1,1,1,1,1,1,1,1,1", "1,x,1", "1,1,inf"]:
+                self.usage("is neither ax,ay,az", *command, points, "--cell", cell)
+            for directions in ["xw", "x y"]:
+                self.usage("is not made of the letters", *command, points, "--cell", "1,1,1", "--periodic", directions)
+        self.usage("not with --plane", "delaunay", points, "--cell", "1,1,1", "--plane", "xy")
+        self.usage("span no volume", "delaunay", points, "--cell", "1,1,0")
+
+    def test_one_atom_of_a_lattice(self):
+        points, out, faces = self.xyz("a.xyz", [(0, 0, 0)]), self.path("cells.csv"), self.path("faces.csv")
+        facts = self.facts("voronoi", points, "--cell", FCC, "-o", out, "--faces", faces)
+        self.assertEqual((facts["cells"], facts["bounded"], facts["faces"]), (1, 1, 12))
+        self.assertAlmostEqual(facts["volume"], 2 * 2.025 ** 3, 11)
+        self.assertEqual(rows(out)[0]["faces"], 12)
+        shifts = {tuple(row["shift_" + k] for k in "abc") for row in rows(faces)}
+        self.assertEqual(len(shifts), 12)
+        self.assertEqual({row["neighbour"] for row in rows(faces)}, {0})
+
+    def test_cells_fill_the_box(self):
+        points, out = self.xyz("a.xyz", self.points(300)), self.path("cells.csv")
+        facts = self.facts("voronoi", points, "--cell", "1,1,1", "-o", out)
+        self.assertAlmostEqual(sum(row["volume"] for row in rows(out)), 1, 12)
+        self.assertEqual(facts["bounded"], 300)
+        slab = self.facts("voronoi", points, "--cell", "1,1,1", "--periodic", "xy", "--box", "0,0,-1,1,1,3")
+        self.assertAlmostEqual(slab["volume"], 4, 12)
+
+    def test_translates_do_not_matter(self):
+        points = self.points(100)
+        first = self.facts("delaunay", self.xyz("a.xyz", points), "--cell", "1,1,1", "--verify")
+        self.assertTrue(first["verified"])
+        moved = [(x + i % 3 - 1, y + 0.25, z - i % 5) for i, (x, y, z) in enumerate(points)]
+        random.Random(2).shuffle(moved)
+        other = self.facts("delaunay", self.xyz("b.xyz", moved), "--cell", "1,0,0,7,1,0,-3,5,1")
+        self.assertEqual([first[k] for k in ("checksum", "tetrahedra")], [other[k] for k in ("checksum", "tetrahedra")])
+
+    def test_output_names_points_and_translates(self):
+        points, out = self.xyz("a.xyz", self.points(20)), self.path("out.vtu")
+        facts = self.facts("delaunay", points, "--cell", "1,1,1", "-o", out)
+        info = self.facts("info", out)
+        self.assertEqual(info["tetrahedra"], facts["tetrahedra"])
+        self.assertTrue({"point", "shift_a", "shift_b", "shift_c"} <= set(info["properties"]), info)
+
+
+if __name__ == "__main__":
+    main()

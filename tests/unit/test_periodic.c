@@ -1,0 +1,376 @@
+/* Periodic triangulations: against the triangulation of many copies, which shares no code with the lattice, the halo, or
+ * the classes; cells of lattices; invariance under what may change; every number of directions. */
+#include "base/rng.h"
+#include "harness.h"
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { MOST = 64, COPIES = 4, ALL = 1, SOME = 0 };
+
+static brio_context *ctx;
+
+/* --- inputs: small integers times a power of two, so that all translates are exact --- */
+
+typedef struct {
+    double points[3 * MOST], weights[MOST], cell[9];
+    size_t count;
+    int periodic[3];
+    bool weighted;
+} crystal;
+
+static int below(brio_rng *rng, int n) {
+    return (int)brio_rng_below(rng, (uint32_t)n);
+}
+
+static void set_cell(crystal *c, const double *cell) {
+    memcpy(c->cell, cell, sizeof c->cell);
+    for (int k = 0; k < 3; k++) c->periodic[k] = 1;
+}
+
+/* Makes points of a cell; `coarse` ones tie. */
+static crystal random_crystal(brio_rng *rng, const double *cell, size_t n, int grid, bool weighted) {
+    crystal c = {.count = n, .weighted = weighted};
+    set_cell(&c, cell);
+    for (size_t p = 0; p < n; p++) {
+        double share[3];
+        for (int k = 0; k < 3; k++) share[k] = (double)below(rng, grid) / grid;
+        for (int k = 0; k < 3; k++)
+            c.points[3 * p + (size_t)k] = share[0] * cell[k] + share[1] * cell[3 + k] + share[2] * cell[6 + k];
+        c.weights[p] = below(rng, 5) / 8.0;
+    }
+    return c;
+}
+
+static brio_periodic *build(const crystal *c) {
+    brio_periodic *t = NULL;
+    brio_periodic_options o = {.size = sizeof o, .cell = c->cell};
+    for (int k = 0; k < 3; k++) o.open[k] = !c->periodic[k];
+    brio_status status = brio_delaunay_periodic(ctx, c->points, c->weighted ? c->weights : NULL, c->count, &o, &t);
+    EXPECT(status == BRIO_OK, "%s", brio_message(ctx));
+    return t;
+}
+
+/* --- the oracle --- */
+
+typedef struct {
+    int32_t v[4][4]; /* point and shift, sorted; the least vertex has the shift 0; BRIO_INFINITE as -1 */
+} class_key;
+
+static int compare_rows(const void *a, const void *b) {
+    const int32_t *x = a, *y = b;
+    for (int k = 0; k < 4; k++)
+        if (x[k] != y[k]) return x[k] < y[k] ? -1 : 1;
+    return 0;
+}
+
+static int compare_keys(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(class_key));
+}
+
+/* Returns the key of vertices (point, shift), moved so that row `least` has the shift 0. */
+static class_key key_of(int32_t (*v)[4], int least) {
+    class_key key;
+    int32_t from[4] = {0, v[least][1], v[least][2], v[least][3]};
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 4; k++) key.v[i][k] = v[i][0] < 0 ? -1 : v[i][k] - from[k];
+    qsort(key.v, 4, sizeof *key.v, compare_rows);
+    return key;
+}
+
+static void position_of(const crystal *c, const int32_t *v, double *x) {
+    for (int k = 0; k < 3; k++)
+        x[k] = c->points[3 * v[0] + k] + v[1] * c->cell[k] + v[2] * c->cell[3 + k] + v[3] * c->cell[6 + k];
+}
+
+static int least_of(const crystal *c, int32_t (*v)[4]) {
+    double best[3] = {0, 0, 0}, x[3];
+    int least = -1;
+    for (int i = 0; i < 4; i++) {
+        if (v[i][0] < 0) continue;
+        position_of(c, v[i], x);
+        int before = least < 0 ? 1 : 0;
+        for (int k = 0; k < 3 && !before; k++) {
+            if (x[k] == best[k]) continue;
+            before = x[k] < best[k] ? 1 : -1;
+        }
+        if (before > 0) least = i, memcpy(best, x, sizeof x);
+    }
+    return least;
+}
+
+/* Returns the classes of the copies' tetrahedra whose least vertex is in the middle copy. */
+static class_key *classes_of_copies(const crystal *c, int copies, size_t *count) {
+    size_t side = 2 * (size_t)copies + 1, n = c->count * side * side * side, at = 0;
+    double *points = malloc(3 * n * sizeof *points), *weights = malloc(n * sizeof *weights);
+    int32_t(*name)[4] = malloc(n * sizeof *name), s[3];
+    brio_triangulation *t = NULL;
+    for (s[0] = -copies; s[0] <= copies; s[0]++)
+        for (s[1] = -copies; s[1] <= copies; s[1]++)
+            for (s[2] = -copies; s[2] <= copies; s[2]++) {
+                if ((s[0] && !c->periodic[0]) || (s[1] && !c->periodic[1]) || (s[2] && !c->periodic[2])) continue;
+                for (size_t p = 0; p < c->count; p++, at++) {
+                    int32_t v[4] = {(int32_t)p, s[0], s[1], s[2]};
+                    memcpy(name[at], v, sizeof v);
+                    position_of(c, v, points + 3 * at);
+                    weights[at] = c->weights[p];
+                }
+            }
+    EXPECT(brio_delaunay(ctx, points, c->weighted ? weights : NULL, at, NULL, &t) == BRIO_OK, "%s", brio_message(ctx));
+    const brio_delaunay_stats *f = brio_triangulation_stats(t);
+    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
+    size_t all = f->tetrahedra + f->hull_facets;
+    class_key *keys = calloc(all + 1, sizeof *keys);
+    *count = 0;
+    for (size_t i = 0; i < all; i++) {
+        int32_t v[4][4];
+        for (int k = 0; k < 4; k++) {
+            if (tet[i].vertex[k] == BRIO_INFINITE)
+                memset(v[k], 0xff, sizeof v[k]);
+            else
+                memcpy(v[k], name[tet[i].vertex[k]], sizeof v[k]);
+        }
+        int least = least_of(c, v);
+        if (v[least][1] || v[least][2] || v[least][3]) continue;
+        keys[(*count)++] = key_of(v, least);
+    }
+    qsort(keys, *count, sizeof *keys, compare_keys);
+    brio_triangulation_free(t);
+    free(points), free(weights), free(name);
+    return keys;
+}
+
+static class_key *classes_of(const crystal *c, const brio_periodic *t, size_t *count) {
+    const brio_periodic_stats *f = brio_periodic_facts(t);
+    const brio_tetrahedron *tet = brio_periodic_tetrahedra(t);
+    const brio_image *image = brio_periodic_images(t);
+    *count = f->tetrahedra + f->hull_facets;
+    class_key *keys = calloc(*count + 1, sizeof *keys);
+    for (size_t i = 0; i < *count; i++) {
+        int32_t v[4][4];
+        for (int k = 0; k < 4; k++) {
+            memset(v[k], 0xff, sizeof v[k]);
+            if (tet[i].vertex[k] == BRIO_INFINITE) continue;
+            const brio_image *m = &image[tet[i].vertex[k]];
+            int32_t row[4] = {(int32_t)m->point, m->shift[0], m->shift[1], m->shift[2]};
+            memcpy(v[k], row, sizeof row);
+        }
+        keys[i] = key_of(v, least_of(c, v));
+    }
+    qsort(keys, *count, sizeof *keys, compare_keys);
+    return keys;
+}
+
+static void compare_with_copies(const crystal *c, const brio_periodic *t, int copies, const char *what) {
+    size_t ours, theirs;
+    class_key *a = classes_of(c, t, &ours), *b = classes_of_copies(c, copies, &theirs);
+    EXPECT(ours == theirs, "%s: %zu classes, %zu of the copies", what, ours, theirs);
+    EXPECT(ours != theirs || !memcmp(a, b, ours * sizeof *a), "%s: other classes", what);
+    free(a), free(b);
+}
+
+static void check(const brio_periodic *t, const char *what) {
+    EXPECT(brio_periodic_check(ctx, t) == BRIO_OK, "%s: %s", what, brio_message(ctx));
+}
+
+/* --- cells of lattices and skewed ones --- */
+
+static const double CELLS[][9] = {
+    {1, 0, 0, 0, 1, 0, 0, 0, 1},    {4, 0, 0, 0, 2, 0, 0, 0, 1},  {0, 1, 1, 1, 0, 1, 1, 1, 0},
+    {-1, 1, 1, 1, -1, 1, 1, 1, -1}, {8, 0, 0, 3, 7, 0, 1, 2, 9},  {1, 0, 0, 50, 1, 0, 20, 30, 1},
+    {1, 0, 0, 0, 16, 0, 0, 0, 16},  {16, 0, 0, 0, 1, 0, 0, 0, 1}, {3, 1, 0, -1, 3, 1, 0, -1, 5},
+    {64, 1, 0, 63, 1, 1, 0, 1, 2},
+};
+enum { NUM_CELLS = sizeof CELLS / sizeof *CELLS };
+
+static void is_the_triangulation_of_many_copies(void) {
+    brio_rng rng = brio_rng_new(3);
+    for (int round = 0; round < (SHORT_TESTS ? 1 : 6); round++)
+        for (int i = 0; i < NUM_CELLS; i++)
+            for (int n = 1; n <= 9; n += 4)
+                for (int weighted = 0; weighted < 2; weighted++) {
+                    bool skewed = i == 5 || i == 6 || i == 7 || i == 9;
+                    if (skewed) continue; /* the copies would be too few, or too many */
+                    crystal c = random_crystal(&rng, CELLS[i], (size_t)n, n == 5 ? 4 : 64, weighted);
+                    brio_periodic *t = build(&c);
+                    char what[64];
+                    snprintf(what, sizeof what, "cell %d, %d points, weights %d", i, n, weighted);
+                    if (t) compare_with_copies(&c, t, n > 5 ? 2 : 3, what), check(t, what);
+                    brio_periodic_free(t);
+                }
+}
+
+static void any_cell_fills_its_volume(void) {
+    brio_rng rng = brio_rng_new(5);
+    for (int i = 0; i < NUM_CELLS; i++)
+        for (int n = 1; n <= 50; n = 3 * n + 1)
+            for (int weighted = 0; weighted < 2; weighted++) {
+                crystal c = random_crystal(&rng, CELLS[i], (size_t)n, n % 2 ? 64 : 4, weighted);
+                brio_periodic *t = build(&c);
+                brio_cells *cells = NULL;
+                char what[64];
+                snprintf(what, sizeof what, "cell %d, %d points, weights %d", i, n, weighted);
+                if (!t) continue;
+                check(t, what);
+                EXPECT(brio_periodic_cells(ctx, t, NULL, &cells) == BRIO_OK, "%s: %s", what, brio_message(ctx));
+                double volume = brio_periodic_facts(t)->cell_volume;
+                if (cells)
+                    EXPECT(fabs(cells->volume_sum / volume - 1) < 1e-12, "%s: %.17g of %g", what, cells->volume_sum,
+                           volume);
+                brio_cells_free(cells);
+                brio_periodic_free(t);
+            }
+}
+
+static void faces_of_lattices_are_right(void) {
+    static const struct {
+        double cell[9];
+        int faces;
+    } lattices[] = {
+        {{1, 0, 0, 0, 1, 0, 0, 0, 1}, 6},
+        {{0, 1, 1, 1, 0, 1, 1, 1, 0}, 12},
+        {{-1, 1, 1, 1, -1, 1, 1, 1, -1}, 14},
+        {{0, 2.025, 2.025, 2.025, 0, 2.025, 2.025, 2.025, 0}, 12},
+    };
+    static const double zero[3] = {0, 0, 0};
+    for (size_t i = 0; i < sizeof lattices / sizeof *lattices; i++) {
+        crystal c = {.count = 1};
+        set_cell(&c, lattices[i].cell);
+        memcpy(c.points, zero, sizeof zero);
+        brio_periodic *t = build(&c);
+        brio_cells *cells = NULL;
+        EXPECT(t && brio_periodic_cells(ctx, t, NULL, &cells) == BRIO_OK, "%s", brio_message(ctx));
+        if (!cells) continue;
+        EXPECT((int)cells->face_offsets[1] == lattices[i].faces, "lattice %zu: %d faces", i,
+               (int)cells->face_offsets[1]);
+        brio_cells_free(cells);
+        brio_periodic_free(t);
+    }
+}
+
+/* A conventional cell of 4 atoms of fcc with an edge that is no dyadic number: every cell has 12 faces. */
+static void fractions_of_the_cell_stay_exact(void) {
+    static const double shares[4][3] = {{0, 0, 0}, {0, .5, .5}, {.5, 0, .5}, {.5, .5, 0}};
+    double a = 4.0495;
+    for (int skew = 0; skew < 3; skew++) {
+        crystal c = {.count = 4};
+        double cell[9] = {a, 0, 0, skew * a, a, 0, -7 * skew * a, 3 * skew * a, a};
+        set_cell(&c, cell);
+        for (int p = 0; p < 4; p++)
+            for (int k = 0; k < 3; k++) c.points[3 * p + k] = shares[p][k] * a + 0.1;
+        brio_periodic *t = build(&c);
+        brio_cells *cells = NULL;
+        EXPECT(t && brio_periodic_cells(ctx, t, NULL, &cells) == BRIO_OK, "%s", brio_message(ctx));
+        if (!cells) continue;
+        for (size_t n = 0; n < 4; n++) {
+            EXPECT(cells->face_offsets[n + 1] - cells->face_offsets[n] == 12, "skew %d: %d faces", skew,
+                   (int)(cells->face_offsets[n + 1] - cells->face_offsets[n]));
+            EXPECT(fabs(cells->volume[n] / (a * a * a / 4) - 1) < 1e-13, "%.17g", cells->volume[n] / (a * a * a / 4));
+        }
+        brio_cells_free(cells);
+        brio_periodic_free(t);
+    }
+}
+
+/* --- invariance --- */
+
+static void origins_and_representatives_do_not_matter(void) {
+    brio_rng rng = brio_rng_new(7);
+    for (int kind = 0; kind < 4; kind++) {
+        crystal c =
+            random_crystal(&rng, CELLS[kind == 3 ? 8 : kind], kind < 2 ? 30 : 8, kind == 1 ? 4 : 1 << 20, kind == 2);
+        brio_periodic *t = build(&c);
+        uint64_t first, sum;
+        EXPECT(brio_periodic_checksum(ctx, t, &first) == BRIO_OK, "%s", brio_message(ctx));
+        brio_periodic_free(t);
+        for (int round = 0; round < (SHORT_TESTS ? 25 : 250); round++) {
+            crystal d = c;
+            double origin[3];
+            for (int k = 0; k < 3; k++) origin[k] = brio_rng_double(&rng) * 10 - 5; /* not on the grid */
+            for (size_t p = 0; p < c.count; p++) {
+                size_t q = (p + (size_t)round) % c.count; /* another order, too */
+                d.weights[q] = c.weights[p];
+                int s[3] = {below(&rng, 9) - 4, below(&rng, 9) - 4, below(&rng, 9) - 4};
+                for (int k = 0; k < 3; k++)
+                    d.points[3 * q + (size_t)k] = c.points[3 * p + (size_t)k] + origin[k] + s[0] * c.cell[k] +
+                                                  s[1] * c.cell[3 + k] + s[2] * c.cell[6 + k];
+            }
+            t = build(&d);
+            EXPECT(brio_periodic_checksum(ctx, t, &sum) == BRIO_OK && sum == first, "kind %d, round %d", kind, round);
+            brio_periodic_free(t);
+        }
+    }
+}
+
+static void checksum_tells_triangulations_apart(void) {
+    brio_rng rng = brio_rng_new(9);
+    crystal c = random_crystal(&rng, CELLS[0], 20, 1 << 20, false);
+    uint64_t one, other;
+    brio_periodic *t = build(&c);
+    EXPECT(brio_periodic_checksum(ctx, t, &one) == BRIO_OK, "%s", brio_message(ctx));
+    brio_periodic_free(t);
+    c.points[0] += 0.25;
+    t = build(&c);
+    EXPECT(brio_periodic_checksum(ctx, t, &other) == BRIO_OK && one != other, "the same");
+    brio_periodic_free(t);
+}
+
+/* --- fewer directions; larger sets --- */
+
+static void slabs_and_wires_are_those_of_many_copies(void) {
+    brio_rng rng = brio_rng_new(11);
+    for (int round = 0; round < (SHORT_TESTS ? 2 : 10); round++)
+        for (int i = 0; i < 3; i++)
+            for (int directions = 1; directions < 7; directions++)
+                for (int weighted = 0; weighted < 2; weighted++) {
+                    crystal c = random_crystal(&rng, CELLS[i == 2 ? 8 : i], 6, round % 2 ? 4 : 64, weighted);
+                    for (int k = 0; k < 3; k++) c.periodic[k] = directions >> k & 1;
+                    brio_periodic *t = build(&c);
+                    char what[64];
+                    snprintf(what, sizeof what, "cell %d, directions %d, weights %d", i, directions, weighted);
+                    if (t && brio_periodic_facts(t)->dimension == 3)
+                        compare_with_copies(&c, t, 6, what), check(t, what);
+                    brio_periodic_free(t);
+                }
+}
+
+/* Points of a slab: the layer at its faces needs translates from all over the cell. */
+static void halos_do_not_matter(void) {
+    size_t n = SHORT_TESTS ? 2000 : 20000;
+    brio_rng rng = brio_rng_new(13);
+    double *points = malloc(3 * n * sizeof *points);
+    for (int directions = 1; directions < 8; directions++)
+        for (int clustered = 0; clustered < 2; clustered++) {
+            int open[3] = {!(directions & 1), !(directions >> 1 & 1), !(directions >> 2 & 1)};
+            double cell[9] = {1, 0, 0, 0.25, 1, 0, 0, 0.125, 1};
+            uint64_t sum[3];
+            for (size_t i = 0; i < 3 * n; i++) points[i] = pow(brio_rng_double(&rng), clustered ? 4 : 1);
+            for (int h = 0; h < 3; h++) {
+                brio_periodic_options o = {.size = sizeof o, .cell = cell, .halo = h == 0 ? 0.5 : h == 1 ? 3.5 : 12};
+                memcpy(o.open, open, sizeof open);
+                brio_periodic *t = NULL;
+                EXPECT(brio_delaunay_periodic(ctx, points, NULL, n, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+                if (!t) continue;
+                EXPECT(brio_periodic_checksum(ctx, t, &sum[h]) == BRIO_OK, "%s", brio_message(ctx));
+                check(t, "halo");
+                if (h == 0) EXPECT(brio_periodic_facts(t)->completed > 0, "nothing was completed");
+                brio_periodic_free(t);
+            }
+            EXPECT(sum[0] == sum[1] && sum[1] == sum[2], "directions %d, clustered %d", directions, clustered);
+        }
+    free(points);
+}
+
+SUITE(test_periodic) {
+    if (brio_context_new(NULL, &ctx) != BRIO_OK) return 1;
+    RUN(faces_of_lattices_are_right);
+    RUN(is_the_triangulation_of_many_copies);
+    RUN(any_cell_fills_its_volume);
+    RUN(fractions_of_the_cell_stay_exact);
+    RUN(origins_and_representatives_do_not_matter);
+    RUN(checksum_tells_triangulations_apart);
+    RUN(slabs_and_wires_are_those_of_many_copies);
+    RUN(halos_do_not_matter);
+    brio_context_free(ctx);
+    return harness_end();
+}
