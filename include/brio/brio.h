@@ -94,6 +94,7 @@
 #include "certificate.h"   /* of a mesh: closed, components, genus, area, volume, what is wrong; distances */
 #include "points.h"        /* thinning, outliers, samples of a mesh */
 #include "triangulation.h" /* Delaunay and regular triangulations */
+#include "dynamic.h"       /* triangulations that live: points inserted, removed, moved */
 #include "queries.h"       /* location, nearest vertices, interpolation */
 #include "cells.h"         /* Voronoi and power cells */
 #include "shapes.h"        /* convex hulls, alpha shapes, restricted triangulations */
