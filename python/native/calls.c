@@ -116,6 +116,15 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
     return 0;
 }
 
+int call_begin_in(call *c, module_state *state, brio_context *own, int threads, PyObject *progress) {
+    if (call_begin(c, state, threads, progress)) return -1;
+    brio_context_set_progress(c->ctx, NULL, NULL);
+    c->ctx = own;
+    brio_context_set_threads(own, threads);
+    brio_context_set_progress(own, look, c);
+    return 0;
+}
+
 /* Sets the exception of a status and a sentence, whose reference it takes; NULL leaves the exception that is set. */
 static void raise(module_state *state, brio_status status, PyObject *sentence) {
     PyObject *error = sentence ? PyObject_CallFunction(state->make_error, "iO", (int)status, sentence) : NULL;
@@ -207,8 +216,9 @@ int handle_has_points(module_state *state, PyObject *object, const input *points
     uint64_t own =
         h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t) : brio_triangulation_points_hash(t);
     if (own == brio_points_hash(points->data, weights->data, points->rows, (int)points->columns)) return 0;
-    return raise_argument(state, PyUnicode_FromString("the points are not those of the triangulation: they were changed "
-                                                      "since"));
+    return raise_argument(state,
+                          PyUnicode_FromString("the points are not those of the triangulation: they were changed "
+                                               "since"));
 }
 
 static PyType_Slot handle_slots[] = {
