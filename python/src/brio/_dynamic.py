@@ -52,7 +52,7 @@ class DynamicDelaunay:
     >>> tri.insert([[0.2, 0.2, 0.2], [1, 1, 1]]).tolist()
     [4, 5]
     >>> tri.facts["simplices"]
-    7
+    6
     >>> tri.remove([4])
     >>> sorted(tri.neighbors(0).tolist())
     [1, 2, 3]
