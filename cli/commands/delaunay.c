@@ -183,10 +183,10 @@ static brio_status check_periodic(run *r, const arguments *a) {
     FORWARD(cli_check_periodic(r, &a->periodic));
     bool open = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING ||
-                a->plane != NO_PLANE || a->order.order != FITTING_ORDER;
+                a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->tiles;
     if (a->periodic.cell && open)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--cell goes with --verify and weights, not with --plane, orders, locations or records");
+                        "--cell goes with --verify and weights, not with --plane, --tiles, orders, locations or records");
     return BRIO_OK;
 }
 

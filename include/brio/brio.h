@@ -95,6 +95,7 @@
 #include "points.h"        /* thinning, outliers, samples of a mesh */
 #include "triangulation.h" /* Delaunay and regular triangulations */
 #include "tiles.h"         /* triangulations of more points than fit in memory */
+#include "dynamic.h"       /* triangulations that live: points inserted, removed, moved */
 #include "queries.h"       /* location, nearest vertices, interpolation */
 #include "cells.h"         /* Voronoi and power cells */
 #include "periodic.h"      /* triangulations and cells of space that repeats */

@@ -116,6 +116,15 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
     return 0;
 }
 
+int call_begin_in(call *c, module_state *state, brio_context *own, int threads, PyObject *progress) {
+    if (call_begin(c, state, threads, progress)) return -1;
+    brio_context_set_progress(c->ctx, NULL, NULL);
+    c->ctx = own;
+    brio_context_set_threads(own, threads);
+    brio_context_set_progress(own, look, c);
+    return 0;
+}
+
 /* Sets the exception of a failure and a sentence, whose reference it takes; NULL leaves the exception that is set. */
 static void raise(module_state *state, const brio_failure *f, PyObject *sentence) {
     PyObject *points = PyList_New(0), *error = NULL;

@@ -56,6 +56,8 @@ typedef struct {
 
 /** Begins a call: takes a context, sets its threads and its progress. Returns 0 or -1 with an exception set. */
 int call_begin(call *c, module_state *state, int threads, PyObject *progress);
+/** Begins a call with a context that an object has for itself, and that no other call has now. */
+int call_begin_in(call *c, module_state *state, brio_context *own, int threads, PyObject *progress);
 /** Runs `expression`, which uses c.ctx, without the interpreter's lock. */
 #define CALL(c, status, expression)                                                                                    \
     do {                                                                                                               \
@@ -126,7 +128,8 @@ typedef enum {
     KIND_CELLS,
     KIND_ALPHA,
     KIND_PERIODIC,
-    KIND_MESH
+    KIND_MESH,
+    KIND_DYNAMIC
 } kind;
 
 /** An object and the context that frees it. */
@@ -160,6 +163,6 @@ void cells_release(void *cells);
 /* --- the functions of the module, by file --- */
 
 extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
-    mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[];
+    mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[], dynamic_methods[];
 
 #endif

@@ -31,6 +31,7 @@
 #define BRIO_FIRST_brio_delaunay2_options     seed
 #define BRIO_FIRST_brio_delaunay_options      reserved_int
 #define BRIO_FIRST_brio_distance              diagonal
+#define BRIO_FIRST_brio_dynamic_stats         exact_calls
 #define BRIO_FIRST_brio_evidence              origin_of
 #define BRIO_FIRST_brio_failure               bytes
 #define BRIO_FIRST_brio_file_facts            version

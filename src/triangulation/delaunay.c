@@ -226,6 +226,55 @@ done:
     return status;
 }
 
+/* --- tetrahedra that are known --- */
+
+/* Writes tetrahedra whose vertices are the caller's indices into a store that brio_start has begun. */
+static brio_status adopt(brio_store *s, const brio_adopted *from) {
+    brio_status status = BRIO_OK;
+    uint32_t *record = NULL; /* of each point of the caller */
+    BRIO_TRY(BRIO_ALLOC(s->ctx, record, s->num_points));
+    for (uint32_t r = 0; r < s->num_points; r++) record[s->caller[r]] = r;
+    if (from->count > s->t.count) BRIO_TRY(brio_store_reserve(s, from->count - s->t.count));
+    for (size_t tet = 0; tet < from->count; tet++) {
+        s->t.tet[tet] = from->tet[tet];
+        uint32_t *v = s->t.tet[tet].vertex;
+        for (int i = 0; i < 4; i++) v[i] = v[i] == BRIO_INFINITE ? s->t.infinite : record[v[i]];
+        s->state[tet] = TET_PLAIN;
+    }
+    s->t.count = from->count;
+    s->adopted = true;
+    for (size_t p = 0; p < s->num_points; p++) s->representative[record[p]] = record[from->vertex_of[p]];
+done:
+    brio_release(s->ctx, record);
+    return status;
+}
+
+brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, const brio_adopted *from,
+                                brio_triangulation **out) {
+    brio_delaunay_options o = {0};
+    brio_store *store = NULL;
+    brio_inserter *ins = NULL;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    brio_keep_begin(ctx);
+    BRIO_TRY(check_count(ctx, input->count));
+    settle(&o);
+    BRIO_TRY(brio_store_new(ctx, input, &o, NULL, &store));
+    BRIO_TRY(brio_start(store));
+    assert(store->dimension == 3);
+    BRIO_TRY(adopt(store, from));
+    BRIO_TRY(brio_inserter_new(store, &ins));
+    ins->reports = true;
+    BRIO_TRY(brio_represent(ins, false));
+    BRIO_TRY(sort_result(ins));
+    BRIO_TRY(triangulation_new(ins, out));
+done:
+    brio_inserter_free(ins);
+    brio_store_free(store);
+    brio_keep_end(ctx);
+    return status;
+}
+
 void brio_triangulation_free(brio_triangulation *t) {
     if (!t) return;
     brio_release(t->ctx, t->tet);

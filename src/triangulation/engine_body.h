@@ -110,4 +110,13 @@ static brio_status dig_weighted(brio_inserter *ins, uint32_t first, uint32_t p, 
     return dig_cavity(ins, first, ins->store->record[p], deferred, true);
 }
 
-const brio_engine ENGINE[2] = {{test_batch, dig, WALK, ABREAST}, {test_batch_weighted, dig_weighted, WALK, ABREAST}};
+static unsigned sound(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH]) {
+    return batch_sound(t, f, tets, false);
+}
+
+static unsigned sound_weighted(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH]) {
+    return batch_sound(t, f, tets, true);
+}
+
+const brio_engine ENGINE[2] = {{test_batch, dig, WALK, ABREAST, sound},
+                               {test_batch_weighted, dig_weighted, WALK, ABREAST, sound_weighted}};

@@ -232,7 +232,7 @@ static void count_duplicates(brio_inserter *ins) {
 
 brio_status brio_represent(brio_inserter *ins, bool leaves_hidden) {
     brio_store *s = ins->store;
-    bool in_order = !s->rank && !s->sequence;
+    bool in_order = !s->rank && !s->sequence && !s->adopted;
     brio_status status = !in_order && s->dimension == 3 && has_earlier_twin(s) ? restore_first(s) : BRIO_OK;
     if (status != BRIO_OK) return status;
     if (s->dimension == 0)

@@ -69,6 +69,7 @@ typedef struct {
     uint8_t *local;           /* of each vertex: its number in the cavity where it was last */
     size_t num_points;
     bool weighted;
+    bool adopted;       /* the tetrahedra were not inserted in any sequence of the records */
     bool follows;       /* a record is often close to the one before it */
     int dimension;      /* of the points' affine hull, -1 without points */
     brio_filter filter; /* bounds for all records, which each inserter copies */

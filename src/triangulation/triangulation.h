@@ -2,7 +2,7 @@
 #ifndef BRIO_TRIANGULATION_TRIANGULATION_H
 #define BRIO_TRIANGULATION_TRIANGULATION_H
 
-#include "base/context.h"
+#include "order/order.h"
 
 struct brio_triangulation {
     brio_context *ctx;
@@ -19,5 +19,19 @@ brio_status brio_delaunay_begin(brio_context *ctx, size_t num_points, const brio
 
 /** Returns the hash of a tetrahedron, of which the checksum is the sum.   rank  of its vertices; sorted afterwards. */
 uint64_t brio_tetrahedron_hash(uint64_t rank[4]);
+
+/** The tetrahedra of the perturbed regular triangulation of points of dimension 3, as brio_delaunay returns them, but
+ *  in any order. */
+typedef struct {
+    const brio_tetrahedron *tet; /* vertices are indices of points, or BRIO_INFINITE in slot 3 */
+    size_t count;
+    const uint32_t *vertex_of; /* of a vertex: itself; of a duplicate: its vertex; of others: any vertex */
+} brio_adopted;
+
+/** Makes what brio_delaunay makes of these points, with defaults, equal in every byte of its tetrahedra and
+ *  representatives, without inserting a point.
+ *  Returns what brio_delaunay returns. */
+brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, const brio_adopted *from,
+                                brio_triangulation **out);
 
 #endif

@@ -174,6 +174,7 @@ ENDS_WITH(brio_delaunay_options, reserved_int);
 ENDS_WITH(brio_delaunay_stats, insert_seconds);
 ENDS_WITH(brio_certificate, volume);
 ENDS_WITH(brio_distance, diagonal);
+ENDS_WITH(brio_dynamic_stats, exact_calls);
 ENDS_WITH(brio_pole_options, reserved);
 ENDS_WITH(brio_pole_stats, reserved);
 ENDS_WITH(brio_surface_options, pieces);

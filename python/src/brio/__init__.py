@@ -4,6 +4,7 @@ from . import errors
 from ._alpha import AlphaComplex, AlphaShape, alpha_complex
 from ._curves import Curve, curve, spanning_tree
 from ._delaunay import Delaunay
+from ._dynamic import DynamicDelaunay
 from ._files import Conversion, build_info, convert, read, write
 from ._halfspaces import HalfspaceIntersection
 from ._hull import ConvexHull
@@ -19,6 +20,7 @@ from .errors import *  # noqa: F403
 
 __all__ = [
     "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Curve", "Delaunay", "Distance",
+    "DynamicDelaunay",
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "PeriodicDelaunay", "PeriodicVoronoi",
     "SphericalVoronoi", "Surface",
     "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",

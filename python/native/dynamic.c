@@ -1,0 +1,215 @@
+/* Triangulations that live. Each has a context of its own, since its calls work with the context that made it; one call at
+ * a time uses it. */
+#include "native.h"
+
+typedef struct {
+    brio_context *ctx;
+    brio_dynamic *d;
+    int busy; /* a call uses it; atomic */
+} living;
+
+static void free_living(void *object) {
+    living *l = object;
+    brio_dynamic_free(l->d);
+    brio_context_free(l->ctx);
+    free(l);
+}
+
+/* Returns the object for a call that it alone has until `leave`, or NULL with an exception set. */
+static living *enter(PyObject *module, PyObject *object) {
+    living *l = handle_object(state_of(module), object, KIND_DYNAMIC);
+    if (l && __atomic_exchange_n(&l->busy, 1, __ATOMIC_ACQUIRE)) {
+        PyErr_SetString(PyExc_RuntimeError, "another thread is in a call of this triangulation");
+        return NULL;
+    }
+    return l;
+}
+
+static void leave(living *l) {
+    __atomic_store_n(&l->busy, 0, __ATOMIC_RELEASE);
+}
+
+/* dynamic_new(weighted): one without points. */
+static PyObject *dynamic_new(PyObject *module, PyObject *args) {
+    int weighted;
+    call c;
+    if (!PyArg_ParseTuple(args, "i", &weighted) || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    living *l = calloc(1, sizeof *l);
+    brio_status status = l ? brio_context_new(NULL, &l->ctx) : BRIO_ERR_NO_MEMORY;
+    if (status == BRIO_OK) CALL(c, status, brio_dynamic_new(l->ctx, NULL, NULL, 0, weighted, &l->d));
+    if (status != BRIO_OK && l) {
+        free_living(l);
+        l = NULL;
+    }
+    return call_end_with(&c, status, KIND_DYNAMIC, l, free_living, NULL);
+}
+
+/* dynamic_insert(object, points, weights, threads, progress): the index of the first. */
+static PyObject *dynamic_insert(PyObject *module, PyObject *args) {
+    PyObject *object, *points, *weights, *progress;
+    int threads, failed = -1;
+    uint32_t first = 0;
+    input p, w = {.held = 0};
+    call c;
+    if (!PyArg_ParseTuple(args, "OOOiO", &object, &points, &weights, &threads, &progress)) return NULL;
+    living *l = enter(module, object);
+    if (!l) return NULL;
+    if (!input_open(&p, points, "points", 'd', 3)) {
+        if (!input_open_weights(&w, weights, p.rows) &&
+            !call_begin_in(&c, state_of(module), l->ctx, threads, progress)) {
+            brio_status status;
+            CALL(c, status, brio_dynamic_insert(l->d, p.data, w.data, p.rows, &first));
+            failed = call_end(&c, status);
+        }
+        input_close(&w);
+        input_close(&p);
+    }
+    leave(l);
+    return failed ? NULL : PyLong_FromUnsignedLong(first);
+}
+
+/* dynamic_change(object, indices, points, weights, threads, progress): removes the points of these indices where points
+ * and weights are None; else moves or reweights them. indices None: all. */
+static PyObject *dynamic_change(PyObject *module, PyObject *args) {
+    PyObject *object, *indices, *points, *weights, *progress;
+    int threads, failed = -1;
+    input i = {.held = 0}, p = {.held = 0}, w = {.held = 0};
+    call c;
+    if (!PyArg_ParseTuple(args, "OOOOiO", &object, &indices, &points, &weights, &threads, &progress)) return NULL;
+    living *l = enter(module, object);
+    if (!l) return NULL;
+    int opened = indices == Py_None || !input_open(&i, indices, "indices", 'I', 0);
+    opened = opened && (points == Py_None || !input_open(&p, points, "points", 'd', 3));
+    size_t rows = indices != Py_None ? i.rows : p.rows;
+    opened = opened && (points == Py_None || !input_has_rows(&p, "points", rows));
+    opened = opened && !input_open_weights(&w, weights, rows);
+    if (opened && !call_begin_in(&c, state_of(module), l->ctx, threads, progress)) {
+        brio_status status;
+        CALL(c, status,
+             points != Py_None    ? brio_dynamic_move(l->d, indices == Py_None ? NULL : i.data, p.data, w.data, rows)
+             : weights != Py_None ? brio_dynamic_reweight(l->d, i.data, w.data, rows)
+                                  : brio_dynamic_remove(l->d, i.data, rows));
+        failed = call_end(&c, status);
+    }
+    input_close(&i);
+    input_close(&p);
+    input_close(&w);
+    leave(l);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}
+
+static PyObject *dynamic_facts(PyObject *module, PyObject *object) {
+    living *l = enter(module, object);
+    if (!l) return NULL;
+    brio_dynamic_stats s = {.size = sizeof s};
+    brio_dynamic_facts(l->d, &s);
+    leave(l);
+    return Py_BuildValue("{s:n,s:n,s:n,s:n,s:n,s:i,s:K,s:K,s:K}", "indices", (Py_ssize_t)s.indices, "points",
+                         (Py_ssize_t)s.points, "vertices", (Py_ssize_t)s.vertices, "simplices",
+                         (Py_ssize_t)s.tetrahedra, "hull", (Py_ssize_t)s.hull_facets, "dimension", s.dimension,
+                         "in_place", (unsigned long long)s.in_place, "replaced", (unsigned long long)s.replaced, "anew",
+                         (unsigned long long)s.anew);
+}
+
+/* dynamic_points(object, indices, points, weights): arrays of as many rows as there are points. */
+static PyObject *dynamic_points(PyObject *module, PyObject *args) {
+    PyObject *object, *indices, *points, *weights;
+    input i = {.held = 0}, p = {.held = 0}, w = {.held = 0};
+    int failed = -1;
+    if (!PyArg_ParseTuple(args, "OOOO", &object, &indices, &points, &weights)) return NULL;
+    living *l = enter(module, object);
+    if (!l) return NULL;
+    brio_dynamic_stats s = {.size = sizeof s};
+    brio_dynamic_facts(l->d, &s);
+    if (!output_open(&i, indices, "indices", 'I', 0) && !output_open(&p, points, "points", 'd', 3) &&
+        !output_open(&w, weights, "weights", 'd', 0) && !input_has_rows(&i, "indices", s.points) &&
+        !input_has_rows(&p, "points", s.points) && !input_has_rows(&w, "weights", s.points)) {
+        brio_dynamic_points(l->d, i.data, p.data, w.data);
+        failed = 0;
+    }
+    input_close(&i);
+    input_close(&p);
+    input_close(&w);
+    leave(l);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}
+
+/* dynamic_neighbors(object, index): a bytes object of numbers of 32 bits. */
+static PyObject *dynamic_neighbors(PyObject *module, PyObject *args) {
+    PyObject *object, *result = NULL;
+    unsigned index;
+    const uint32_t *neighbours;
+    size_t count;
+    call c;
+    if (!PyArg_ParseTuple(args, "OI", &object, &index)) return NULL;
+    living *l = enter(module, object);
+    if (!l) return NULL;
+    if (!call_begin_in(&c, state_of(module), l->ctx, 1, Py_None)) {
+        brio_status status = brio_dynamic_neighbours(l->d, index, &neighbours, &count);
+        if (!call_end(&c, status))
+            result = PyBytes_FromStringAndSize((const char *)neighbours, (Py_ssize_t)(count * sizeof *neighbours));
+    }
+    leave(l);
+    return result;
+}
+
+/* dynamic_locate(object, queries, out): the four vertices for each query. */
+static PyObject *dynamic_locate(PyObject *module, PyObject *args) {
+    PyObject *object, *queries, *array;
+    input q = {.held = 0}, out = {.held = 0};
+    int failed = -1;
+    call c;
+    if (!PyArg_ParseTuple(args, "OOO", &object, &queries, &array)) return NULL;
+    living *l = enter(module, object);
+    if (!l) return NULL;
+    if (!input_open(&q, queries, "queries", 'd', 3) && !output_open(&out, array, "out", 'I', 4) &&
+        !input_has_rows(&out, "out", q.rows) && !call_begin_in(&c, state_of(module), l->ctx, 1, Py_None)) {
+        brio_status status = BRIO_OK;
+        const double *x = q.data;
+        uint32_t *v = out.data;
+        for (size_t i = 0; i < q.rows && status == BRIO_OK; i++)
+            status = brio_dynamic_locate(l->d, x + 3 * i, v + 4 * i);
+        failed = call_end(&c, status);
+    }
+    input_close(&q);
+    input_close(&out);
+    leave(l);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}
+
+static void free_snapshot(void *t) {
+    brio_triangulation_free(t);
+}
+
+/* dynamic_snapshot(object, threads, progress): a triangulation of the points by ascending index. */
+static PyObject *dynamic_snapshot(PyObject *module, PyObject *args) {
+    PyObject *object, *progress, *result = NULL;
+    int threads;
+    brio_triangulation *t = NULL;
+    call c;
+    if (!PyArg_ParseTuple(args, "OiO", &object, &threads, &progress)) return NULL;
+    living *l = enter(module, object);
+    if (!l) return NULL;
+    if (!call_begin(&c, state_of(module), threads, progress)) {
+        brio_status status;
+        CALL(c, status, brio_dynamic_snapshot(c.ctx, l->d, &t));
+        result = call_end_with(&c, status, KIND_TRIANGULATION, t, free_snapshot, NULL);
+    }
+    leave(l);
+    return result;
+}
+
+PyMethodDef dynamic_methods[] = {
+    {"dynamic_new", dynamic_new, METH_VARARGS, "dynamic_new(weighted)"},
+    {"dynamic_insert", dynamic_insert, METH_VARARGS, "dynamic_insert(d, points, weights, threads, progress)"},
+    {"dynamic_change", dynamic_change, METH_VARARGS, "dynamic_change(d, indices, points, weights, threads, progress)"},
+    {"dynamic_facts", dynamic_facts, METH_O, "dynamic_facts(d)"},
+    {"dynamic_points", dynamic_points, METH_VARARGS, "dynamic_points(d, indices, points, weights)"},
+    {"dynamic_neighbors", dynamic_neighbors, METH_VARARGS, "dynamic_neighbors(d, index)"},
+    {"dynamic_locate", dynamic_locate, METH_VARARGS, "dynamic_locate(d, queries, out)"},
+    {"dynamic_snapshot", dynamic_snapshot, METH_VARARGS, "dynamic_snapshot(d, threads, progress)"},
+    {NULL, NULL, 0, NULL},
+};

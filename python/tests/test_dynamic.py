@@ -1,0 +1,102 @@
+"""Triangulations that live: after any changes, those of the points that are left."""
+
+import threading
+
+import numpy as np
+import pytest
+
+import brio
+
+GENERATOR = np.random.default_rng(5)
+
+
+def is_as_built(tri):
+    now = tri.snapshot()
+    fresh = brio.Delaunay(tri.points, tri.weights)
+    same = [np.array_equal(getattr(now, name), getattr(fresh, name))
+            for name in ("simplices", "neighbors", "representatives", "convex_hull")]
+    return all(same) and now.checksum == fresh.checksum
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+def test_a_loop_of_changes_ends_as_built(weighted):
+    tri = brio.DynamicDelaunay(GENERATOR.integers(0, 5, (40, 3)) / 4, weighted=weighted)
+    for step in range(60):
+        weights = GENERATOR.random(5) * 0.05 if weighted else None
+        new = tri.insert(GENERATOR.random((5, 3)) if step % 2 else GENERATOR.integers(0, 5, (5, 3)) / 4, weights)
+        tri.remove(GENERATOR.permutation(tri.indices)[:4])
+        some = GENERATOR.permutation(tri.indices)[:6]
+        tri.move(some, GENERATOR.random((len(some), 3)))
+        if weighted:
+            tri.reweight(some, GENERATOR.random(len(some)) * 0.05)
+        assert new.dtype == np.uint32 and len(tri) == len(tri.indices) == len(tri.points)
+        assert is_as_built(tri)
+
+
+def test_all_points_move_a_little():
+    points = GENERATOR.random((3000, 3))
+    tri = brio.DynamicDelaunay(points)
+    for _ in range(3):
+        points = points + 1e-5 * GENERATOR.standard_normal(points.shape)
+        tri.move_all(points)
+        assert np.array_equal(tri.points, points) and is_as_built(tri)
+    assert tri.facts["in_place"] > 5000
+
+
+def test_questions():
+    points = GENERATOR.random((50, 3))
+    tri = brio.DynamicDelaunay(points)
+    offsets, neighbours = tri.snapshot().vertex_neighbor_vertices
+    for vertex in range(50):
+        assert set(tri.neighbors(vertex)) == set(neighbours[offsets[vertex]:offsets[vertex + 1]])
+    found = tri.find_vertices([points.mean(axis=0), [9, 9, 9]])
+    simplices = set(map(frozenset, tri.snapshot().simplices.tolist()))
+    assert frozenset(found[0].tolist()) in simplices and found[1].tolist() == [-1] * 4
+
+
+def test_what_fails_changes_nothing():
+    tri = brio.DynamicDelaunay(GENERATOR.random((30, 3)))
+    before = tri.snapshot().checksum
+    with pytest.raises(brio.NotFiniteError) as caught:
+        tri.insert([[0, 0, 0], [np.nan, 0, 0]])
+    assert caught.value.indices.tolist() == [1]
+    for wrong in ([99], [-1], [3, 3], [[1]], [0.5]):
+        with pytest.raises(brio.ArgumentError):
+            tri.remove(wrong)
+    with pytest.raises(brio.ArgumentError):
+        tri.insert([[0, 0, 0]], [1.0])
+    with pytest.raises((ValueError, brio.ArgumentError)):
+        tri.move([1, 2], [[0, 0, 0]])
+    with pytest.raises((ValueError, brio.ArgumentError)):
+        tri.move_all([[0, 0, 0]])
+    assert tri.snapshot().checksum == before and len(tri) == 30
+
+
+def test_a_cancelled_call_changes_nothing():
+    tri = brio.DynamicDelaunay(GENERATOR.random((2000, 3)))
+    before = tri.snapshot().checksum
+    tri.progress = lambda stage, share: True
+    with pytest.raises(brio.CancelledError):
+        tri.insert(GENERATOR.random((60000, 3)))
+    tri.progress = None
+    assert tri.snapshot().checksum == before and is_as_built(tri)
+
+
+def test_threads_do_not_meet_in_one_triangulation():
+    tri = brio.DynamicDelaunay(GENERATOR.random((500, 3)))
+    refused = []
+
+    def work(seed):
+        random = np.random.default_rng(seed)
+        for _ in range(30):
+            try:
+                tri.insert(random.random((20, 3)))
+            except RuntimeError:
+                refused.append(seed)
+
+    threads = [threading.Thread(target=work, args=(seed,)) for seed in range(3)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(tri) == 500 + 20 * (90 - len(refused)) and is_as_built(tri)

@@ -1,0 +1,288 @@
+/* A triangulation that lives: the store behind brio_dynamic.
+ *
+ *   rows     0            1 ........... num_rows - 1
+ *   record   the infinite points, dead or alive; a row that is free is used again
+ *            vertex
+ *   names    the caller's indices: row_of[name] is the row of a point, or BRIO_NONE once it was removed
+ *   slots    as in triangulation/tetrahedra.h: I1 to I4 hold between changes, with t.infinite = 0
+ *
+ * The infinite vertex is row 0, so rows can be added without end; the bounds of the filter are those of a box that
+ * grows with the points. Slots and rows that are free wait in lists.
+ *
+ * Between changes:
+ * L1  home[r] is a tetrahedron of vertex r; of a hidden row, the finite tetrahedron that holds it and that it does not
+ *     conflict with; of a twin, the vertex at its position.
+ * L2  hidden[s] is the first of the hidden rows whose home is slot s; `twins` of a vertex' row is the first of its
+ *     twins; next and prev lead through such a list.
+ * L3  A vertex is at least as heavy as each of its twins, and has the least name among those of its weight. So the
+ *     vertices are those that brio_delaunay would choose.
+ * L4  In an input of dimension 2 or less there are no tetrahedra, and every row that is alive is loose.
+ *
+ * A change is a transaction: every slot and every row is copied into the journal before it is first written. Where
+ * memory runs out, the caller cancels, or a change needs another way, the journal is written back (journal.c). So no
+ * step of a change needs to know whether a later one can fail. */
+#ifndef BRIO_DYNAMIC_LIVE_H
+#define BRIO_DYNAMIC_LIVE_H
+
+#include "brio/dynamic.h"
+#include "triangulation/engine.h"
+#include "triangulation/tetrahedra.h"
+
+enum { BRIO_NONE = UINT32_MAX };
+
+/** What a slot is: a tetrahedron, one of the hole under way, or nothing; and whether the journal has it. */
+enum { SLOT_PLAIN = 0, SLOT_HOLE = 1, SLOT_UNUSED = 2, SLOT_NOTED = 128 };
+
+/** What a row is; loose is a point that has no place yet. */
+enum { ROW_FREE = 0, ROW_VERTEX = 1, ROW_HIDDEN = 2, ROW_TWIN = 3, ROW_LOOSE = 4, ROW_NOTED = 128 };
+
+typedef struct {
+    uint32_t name;       /* the caller's index */
+    uint32_t twins;      /* of a vertex: its first twin, or BRIO_NONE */
+    uint32_t next, prev; /* of a hidden row or a twin, in its list; BRIO_NONE at the ends */
+} brio_live_row;
+
+/** A slot and a row, as they were before the transaction. */
+typedef struct {
+    brio_tetrahedron tet;
+    uint32_t slot, hidden;
+    uint8_t state;
+} brio_old_slot;
+
+typedef struct {
+    brio_record record;
+    brio_live_row row;
+    uint32_t at, home;
+    uint8_t kind;
+} brio_old_row;
+
+/** What is counted; one struct, so that the journal keeps it as a whole. */
+typedef struct {
+    size_t alive, vertices, finite, infinite;
+} brio_live_counts;
+
+typedef struct {
+    brio_old_slot *slot;
+    brio_old_row *row;
+    size_t num_slots, slot_capacity, num_rows, row_capacity;
+    size_t slots_before, rows_before, names_before; /* numbers of them when the transaction began */
+    brio_live_counts counts;
+} brio_journal;
+
+/** The tetrahedra that a change takes out, the outer sides of their border, and the rows of the border's vertices by
+ *  number: number[row] = i where vertex[i] = row. Number 0 is the infinite vertex, whether it is there or not. */
+typedef struct {
+    uint32_t *tet, *border, *outer; /* outer: sides to be tested, while the hole is dug */
+    uint32_t *fresh;                /* slots of the new tetrahedra */
+    uint32_t *vertex;
+    uint32_t *corner; /* 3 numbers of each facet of the border, in the order of OUT */
+    size_t num_tets, num_border, num_vertices, capacity, fresh_capacity;
+} brio_hole;
+
+/** A table of directed edges of a border, by numbers of vertices: direct for few, else hashed. Entries are told from
+ *  what was left by earlier uses by looking at what they name. */
+typedef struct {
+    uint32_t *direct;
+    uint64_t *key;
+    uint32_t *value;
+    size_t places; /* of the hashed table, a power of two */
+} brio_edge_table;
+
+/** Vertices that walks start from: one for each cell of a grid over the box that the points had. */
+typedef struct {
+    uint32_t *row;
+    size_t side, cells, vertices; /* vertices: when the grid was made */
+    double low[3], scale[3];
+} brio_hints;
+
+typedef struct brio_link brio_link; /* link.c */
+
+struct brio_dynamic {
+    brio_context *ctx;
+    bool weighted;
+    int dimension;
+
+    brio_record *record;
+    brio_live_row *row;
+    uint32_t *home, *number;
+    uint8_t *kind;
+    size_t num_rows, row_capacity;
+    uint32_t *free_row;
+    size_t num_free_rows, free_row_capacity;
+    uint32_t *row_of;
+    size_t num_names, name_capacity;
+
+    brio_tetrahedra t;
+    uint8_t *state;
+    uint32_t *hidden;
+    size_t capacity;
+    uint32_t *unused;
+    size_t num_unused, unused_capacity;
+    brio_live_counts counts;
+
+    brio_filter filter;
+    double low[4], high[4]; /* of coordinates and weights: the filter holds in here */
+    int unit, weight_unit;  /* on a coarse grid: all coordinates are multiples of 2^unit */
+    const brio_engine *engine;
+    brio_walk walk;
+    brio_hints hints;
+
+    brio_hole hole;
+    brio_edge_table edges;
+    brio_link *link;
+    uint32_t *loose; /* rows that a change has set free, a stack */
+    size_t num_loose, loose_capacity;
+    brio_journal journal;
+    bool in_transaction, needs_anew; /* needs_anew: the change can only be made by building anew */
+    uint64_t in_place, replaced, anew;
+};
+
+/* OUT[s]: the slots other than s, so that (x, OUT[s]) is positive for x on the other side of facet s; slot 3, which
+ * may hold the infinite vertex, last. */
+static const uint8_t BRIO_OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2}};
+
+/* --- journal.c --- */
+
+/** Begins a transaction. */
+void brio_live_begin(brio_dynamic *d);
+/** Ends it: keeps the changes if the status is BRIO_OK, else takes all of them back. Returns the status. */
+brio_status brio_live_end(brio_dynamic *d, brio_status status);
+/** Makes room in the journal for so many slots and rows. */
+brio_status brio_journal_reserve(brio_dynamic *d, size_t slots, size_t rows);
+
+/** Notes a slot, or a row, before it is written; room was reserved. */
+static inline void brio_note_slot(brio_dynamic *d, uint32_t slot) {
+    brio_journal *j = &d->journal;
+    if (slot >= j->slots_before || d->state[slot] & SLOT_NOTED) return;
+    assert(j->num_slots < j->slot_capacity);
+    j->slot[j->num_slots++] =
+        (brio_old_slot){d->t.tet[slot], slot, d->hidden[slot], d->state[slot] & (uint8_t)~SLOT_HOLE};
+    d->state[slot] |= SLOT_NOTED;
+}
+static inline void brio_note_row(brio_dynamic *d, uint32_t row) {
+    brio_journal *j = &d->journal;
+    if (row >= j->rows_before || d->kind[row] & ROW_NOTED) return;
+    assert(j->num_rows < j->row_capacity);
+    brio_old_row *old = &j->row[j->num_rows++];
+    *old = (brio_old_row){{0}, d->row[row], row, d->home[row], d->kind[row]};
+    for (int c = 0; c < 4; c++) old->record[c] = d->record[row][c];
+    d->kind[row] |= ROW_NOTED;
+}
+
+static inline int brio_row_kind(const brio_dynamic *d, uint32_t row) {
+    return d->kind[row] & ~ROW_NOTED;
+}
+static inline void brio_set_kind(brio_dynamic *d, uint32_t row, int kind) {
+    d->kind[row] = (uint8_t)(kind | (d->kind[row] & ROW_NOTED));
+}
+static inline bool brio_in_hole(const brio_dynamic *d, uint32_t slot) {
+    return d->state[slot] & SLOT_HOLE;
+}
+
+/* --- store.c --- */
+
+/** Makes an empty one. */
+brio_status brio_live_new(brio_context *ctx, bool weighted, brio_dynamic **out);
+/** Makes room for so many more rows, names, slots, tetrahedra of the hole. */
+brio_status brio_live_reserve_rows(brio_dynamic *d, size_t more);
+brio_status brio_live_reserve_names(brio_dynamic *d, size_t more);
+brio_status brio_live_reserve_slots(brio_dynamic *d, size_t more);
+brio_status brio_hole_reserve(brio_dynamic *d, size_t tets);
+brio_status brio_hole_reserve_fresh(brio_dynamic *d, size_t count);
+brio_status brio_live_reserve_loose(brio_dynamic *d, size_t more);
+
+/** Returns a new loose row of a record, with a name; room was reserved. */
+uint32_t brio_live_add_row(brio_dynamic *d, const double *record, uint32_t name);
+/** Frees a loose row and its name. */
+brio_status brio_live_drop_row(brio_dynamic *d, uint32_t row);
+
+/** Widens the box so that the filter holds for a record, too. */
+void brio_live_admit(brio_dynamic *d, const double *record);
+/** Chooses the filter for all rows, which are alive. */
+void brio_live_choose_filter(brio_dynamic *d);
+/** Makes the grid of hints anew where there are many more vertices than when it was made. */
+brio_status brio_live_refresh_hints(brio_dynamic *d);
+/** Enters a vertex as the hint of its cell. */
+void brio_live_hint(brio_dynamic *d, uint32_t row);
+/** Makes another vertex, which is near, the hint where it is a vertex that goes. */
+void brio_live_unhint(brio_dynamic *d, uint32_t row, uint32_t other);
+/** Sets the start of the next walk to a tetrahedron near x. */
+void brio_live_approach(brio_dynamic *d, const double *x);
+
+/** Numbers the vertices of the hole's border, and fills corner. */
+void brio_hole_number(brio_dynamic *d);
+/** Numbers the other vertices of the hole, after those. */
+void brio_hole_number_inner(brio_dynamic *d);
+/** Readies the table for a border of so many edges. */
+brio_status brio_edges_ready(brio_dynamic *d, size_t num_vertices, size_t num_edges);
+/** Enters and finds a value under a directed edge. What is found may be left from earlier: the caller looks. */
+void brio_edges_enter(brio_dynamic *d, uint32_t x, uint32_t y, uint32_t value);
+uint32_t brio_edges_find(const brio_dynamic *d, uint32_t x, uint32_t y);
+/** Lists `count` slots for new tetrahedra in hole.fresh, those of the hole first, and makes all that are left unused.
+ *  Hidden rows of the hole become loose. The slots and those behind the border are in the journal afterwards. */
+brio_status brio_hole_take_slots(brio_dynamic *d, size_t count);
+
+/* --- place.c --- */
+
+/** Puts a row into the list of a slot, or of a vertex; takes it out. */
+brio_status brio_live_hide(brio_dynamic *d, uint32_t row, uint32_t slot);
+brio_status brio_live_join(brio_dynamic *d, uint32_t row, uint32_t vertex);
+brio_status brio_live_unlink(brio_dynamic *d, uint32_t row);
+/** Finds its place for a loose row: it becomes a vertex, hidden, or a twin. */
+brio_status brio_live_place(brio_dynamic *d, uint32_t row);
+
+/* --- take.c --- */
+
+/** Takes a row out: it becomes loose. *row is the row that has the name afterwards. */
+brio_status brio_live_take(brio_dynamic *d, uint32_t *row);
+/** Marks the star of a vertex as the hole, with its border. */
+brio_status brio_live_star(brio_dynamic *d, uint32_t row);
+/** Fills a hole with the triangulation of its vertices, inner ones included, where that has all facets of the border.
+ *  Else *mended is false, the hole stays, and hole.fresh is 0 for each facet that it lacks; hole.fresh is as it was
+ *  where the vertices lie in a plane, are too many, or hide one another. */
+brio_status brio_hole_mend(brio_dynamic *d, bool *mended);
+/** Forgets the hole. */
+void brio_hole_forget(brio_dynamic *d);
+
+/* --- link.c --- */
+
+/** Makes the workspace. */
+brio_status brio_link_new(brio_context *ctx, brio_link **out);
+/** Makes the triangulation of the finite vertices of the hole's border, which are few; *flat where they lie in a
+ *  plane. Returns false where weights hide one of them.   tet, count  its tetrahedra, by numbers; those that are not
+ *  part of it have vertex[0] = BRIO_NONE. */
+bool brio_link_few(brio_dynamic *d, brio_tetrahedron **tet, size_t *count, bool *flat);
+/** Returns room for a number for each tetrahedron. */
+uint32_t *brio_link_slots(brio_dynamic *d);
+enum { BRIO_LINK_MOST = 62, BRIO_LINK_TETS = 2048 }; /* finite vertices; tetrahedra that there can be */
+
+/* --- move.c --- */
+
+/** Gives a row another record: in place where its star stays valid, else out and in. */
+brio_status brio_live_move(brio_dynamic *d, uint32_t name, const double *record);
+
+/* --- move_many.c --- */
+
+/** Gives all rows, which are vertices, the records of an array by row, with room for row_capacity of them; the array
+ *  is exchanged with that of the store. Sets needs_anew, and fails, where more than `most` would have to be taken
+ *  out. */
+brio_status brio_live_move_many(brio_dynamic *d, brio_record **record, size_t most);
+
+/* --- build.c --- */
+
+/** A list of points: what a change leaves. */
+typedef struct {
+    double *point, *weight; /* weight NULL without weights */
+    uint32_t *name;
+    size_t count;
+} brio_live_points;
+
+/** Lists the points that are alive, by ascending name, with room for `more`. */
+brio_status brio_live_list(brio_context *ctx, const brio_dynamic *d, size_t more, brio_live_points *out);
+void brio_live_list_free(brio_context *ctx, brio_live_points *list);
+/** Builds all of it anew from these points, with num_names names given out. On failure d is as it was. */
+brio_status brio_live_build(brio_dynamic *d, const brio_live_points *list, size_t num_names);
+/** Frees what a store has, not the store. */
+void brio_live_clear(brio_dynamic *d);
+
+#endif

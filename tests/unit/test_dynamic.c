@@ -1,0 +1,455 @@
+/* Triangulations that live. The oracle: after any sequence of changes the snapshot is the result of brio_delaunay of the
+ * points that are left, equal in every byte. */
+#include "harness.h"
+
+#include "failing_allocator.h"
+#include <math.h>
+#include <string.h>
+
+typedef enum { UNIFORM, GRID, SPHERE, CLUSTERS, MIXED, NUM_SHAPES } shape;
+static const char *const SHAPE[] = {"uniform", "grid", "sphere", "clusters", "mixed"};
+
+static uint64_t state = 1;
+
+static double draw(void) {
+    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (double)(state >> 11) * 0x1p-53;
+}
+
+static size_t draw_below(size_t n) {
+    return (size_t)(draw() * (double)n);
+}
+
+/* A point whose coordinates have exact ties: on a small grid, or on a sphere of integers. */
+static void draw_point(shape s, double p[3]) {
+    static const double ON_SPHERE[][3] = {{15, 0, 0}, {9, 12, 0}, {5, 10, 10}, {2, 5, 14}, {2, 10, 11}, {14, 5, 2}};
+    if (s == MIXED) s = (shape)draw_below(MIXED);
+    for (int c = 0; c < 3; c++) p[c] = draw();
+    if (s == GRID)
+        for (int c = 0; c < 3; c++) p[c] = floor(p[c] * 6) / 8;
+    if (s == CLUSTERS) {
+        double corner = floor(draw() * 4);
+        for (int c = 0; c < 3; c++) p[c] = corner / 4 + p[c] * p[c] * p[c] * 1e-3;
+    }
+    if (s == SPHERE) {
+        const double *q = ON_SPHERE[draw_below(sizeof ON_SPHERE / sizeof *ON_SPHERE)];
+        size_t turn = draw_below(3);
+        for (size_t c = 0; c < 3; c++) p[c] = q[(c + turn) % 3] * (draw() < 0.5 ? -1 : 1) / 16;
+    }
+}
+
+static double draw_weight(shape s) {
+    return s == GRID ? floor(draw() * 4) / 64 : draw() < 0.5 ? 0 : draw() * 0.02;
+}
+
+/* What the points are, beside the triangulation. */
+typedef struct {
+    brio_context *ctx;
+    brio_dynamic *d;
+    shape shape;
+    int weighted;
+    double *point, *weight; /* by index */
+    uint8_t *alive;
+    uint32_t *index; /* of those that are there, in any order */
+    size_t num_indices, num_points;
+} world;
+
+static world world_new(shape s, int weighted, size_t most) {
+    world w = {.shape = s, .weighted = weighted};
+    EXPECT(brio_context_new(NULL, &w.ctx) == BRIO_OK);
+    brio_context_set_threads(w.ctx, 1);
+    w.point = malloc(3 * most * sizeof *w.point);
+    w.weight = malloc(most * sizeof *w.weight);
+    w.alive = calloc(most, 1);
+    w.index = malloc(most * sizeof *w.index);
+    return w;
+}
+
+static void world_free(world *w) {
+    brio_dynamic_free(w->d);
+    EXPECT(brio_context_memory(w->ctx) == 0, "%zu bytes are left", brio_context_memory(w->ctx));
+    brio_context_free(w->ctx);
+    free(w->point), free(w->weight), free(w->alive), free(w->index);
+}
+
+/* The points that are there, by ascending index. */
+typedef struct {
+    double *point, *weight;
+    size_t count;
+} points_left;
+
+static points_left left_of(const world *w) {
+    points_left l = {malloc((3 * w->num_points + 1) * sizeof(double)), malloc((w->num_points + 1) * sizeof(double)), 0};
+    for (size_t i = 0; i < w->num_indices; i++) {
+        if (!w->alive[i]) continue;
+        memcpy(l.point + 3 * l.count, w->point + 3 * i, 3 * sizeof(double));
+        l.weight[l.count++] = w->weight[i];
+    }
+    return l;
+}
+
+/* Whether the snapshot is what brio_delaunay makes of the points that are left. */
+static int is_as_built(world *w) {
+    points_left l = left_of(w);
+    brio_triangulation *snapshot = NULL, *built = NULL;
+    int same = 0;
+    EXPECT(l.count == w->num_points);
+    EXPECT(brio_dynamic_snapshot(w->ctx, w->d, &snapshot) == BRIO_OK, "%s", brio_message(w->ctx));
+    EXPECT(brio_delaunay(w->ctx, l.point, w->weighted ? l.weight : NULL, l.count, NULL, &built) == BRIO_OK);
+    if (snapshot && built) {
+        const brio_delaunay_stats *s = brio_triangulation_stats(snapshot), *b = brio_triangulation_stats(built);
+        same = s->points == b->points && s->vertices == b->vertices && s->duplicates == b->duplicates &&
+               s->hidden == b->hidden && s->dimension == b->dimension && s->tetrahedra == b->tetrahedra &&
+               s->hull_facets == b->hull_facets;
+        size_t count = b->tetrahedra + b->hull_facets;
+        same = same && memcmp(brio_triangulation_tetrahedra(snapshot), brio_triangulation_tetrahedra(built),
+                              count * sizeof(brio_tetrahedron)) == 0;
+        same = same && memcmp(brio_triangulation_representatives(snapshot), brio_triangulation_representatives(built),
+                              l.count * sizeof(uint32_t)) == 0;
+        same = same && brio_triangulation_points_hash(snapshot) == brio_triangulation_points_hash(built);
+    }
+    brio_triangulation_free(snapshot);
+    brio_triangulation_free(built);
+    free(l.point), free(l.weight);
+    return same;
+}
+
+static void enter(world *w, size_t index, const double *p, double weight) {
+    memcpy(w->point + 3 * index, p, 3 * sizeof *p);
+    w->weight[index] = weight;
+    w->num_points += !w->alive[index];
+    w->alive[index] = 1;
+}
+
+static void insert_some(world *w, size_t n) {
+    double p[3 * 64], weight[64];
+    uint32_t first = 0;
+    for (size_t i = 0; i < n; i++) {
+        draw_point(w->shape, p + 3 * i);
+        weight[i] = w->weighted ? draw_weight(w->shape) : 0;
+    }
+    EXPECT(brio_dynamic_insert(w->d, p, w->weighted ? weight : NULL, n, &first) == BRIO_OK, "%s", brio_message(w->ctx));
+    EXPECT(first == w->num_indices);
+    for (size_t i = 0; i < n; i++) enter(w, w->num_indices++, p + 3 * i, weight[i]);
+}
+
+/* Draws indices of different points that are there; returns how many, at most n. */
+static size_t draw_indices(const world *w, size_t n, uint32_t *index) {
+    size_t count = 0;
+    for (size_t tries = 0; tries < 40 * n && count < n && w->num_points > 0; tries++) {
+        uint32_t i = (uint32_t)draw_below(w->num_indices);
+        int twice = !w->alive[i];
+        for (size_t k = 0; k < count; k++) twice |= index[k] == i;
+        if (!twice) index[count++] = i;
+    }
+    return count;
+}
+
+static void remove_some(world *w, size_t n) {
+    uint32_t index[64];
+    n = draw_indices(w, n, index);
+    EXPECT(brio_dynamic_remove(w->d, index, n) == BRIO_OK, "%s", brio_message(w->ctx));
+    for (size_t i = 0; i < n; i++) w->alive[index[i]] = 0, w->num_points--;
+}
+
+static void move_some(world *w, size_t n, double step) {
+    uint32_t index[64];
+    double p[3 * 64], weight[64];
+    n = draw_indices(w, n, index);
+    for (size_t i = 0; i < n; i++) {
+        draw_point(w->shape, p + 3 * i);
+        for (size_t c = 0; c < 3 && step < 1; c++)
+            p[3 * i + c] =
+                w->point[3 * index[i] + c] + step * (w->shape == GRID ? floor(3 * draw()) - 1 : draw() - 0.5);
+        weight[i] = w->weighted ? draw_weight(w->shape) : 0;
+    }
+    EXPECT(brio_dynamic_move(w->d, index, p, w->weighted ? weight : NULL, n) == BRIO_OK, "%s", brio_message(w->ctx));
+    for (size_t i = 0; i < n; i++) enter(w, index[i], p + 3 * i, weight[i]);
+}
+
+static void reweight_some(world *w, size_t n) {
+    uint32_t index[64];
+    double weight[64];
+    if (!w->weighted) return;
+    n = draw_indices(w, n, index);
+    for (size_t i = 0; i < n; i++) weight[i] = draw_weight(w->shape);
+    EXPECT(brio_dynamic_reweight(w->d, index, weight, n) == BRIO_OK, "%s", brio_message(w->ctx));
+    for (size_t i = 0; i < n; i++) w->weight[index[i]] = weight[i];
+}
+
+static void change(world *w, size_t usual) {
+    static const double STEP[] = {1e-9, 1e-3, 0.125, 1};
+    size_t n = draw() < 0.8 ? 1 : 1 + draw_below(64);
+    double more = w->num_points < usual ? 0.6 : 0.4, what = draw();
+    if (what < 0.7 * more)
+        insert_some(w, n);
+    else if (what < 0.7)
+        remove_some(w, n);
+    else if (what < 0.9)
+        move_some(w, n, STEP[draw_below(4)]);
+    else
+        reweight_some(w, n);
+}
+
+static void changes(shape s, int weighted, size_t usual, size_t count, size_t every) {
+    world w = world_new(s, weighted, 64 * count + 1);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, weighted, &w.d) == BRIO_OK);
+    size_t differences = 0;
+    for (size_t i = 1; i <= count; i++) {
+        change(&w, usual);
+        if (i % every) continue;
+        differences += !is_as_built(&w);
+        EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+        if (differences) break;
+    }
+    EXPECT(differences == 0, "%s, weighted %d, usual %zu", SHAPE[s], weighted, usual);
+    world_free(&w);
+}
+
+static void any_changes_end_as_built(void) {
+    for (int s = 0; s < NUM_SHAPES; s++)
+        for (int weighted = 0; weighted < 2; weighted++) {
+            changes((shape)s, weighted, 12, BRIEF_TESTS ? 60 : 300, 1);
+            changes((shape)s, weighted, 150, BRIEF_TESTS ? 60 : SHORT_TESTS ? 300 : 20000, 7);
+        }
+}
+
+/* --- many at once --- */
+
+static void insert_many(world *w, size_t n) {
+    double *p = malloc(3 * n * sizeof *p);
+    uint32_t first;
+    for (size_t i = 0; i < n; i++) draw_point(w->shape, p + 3 * i);
+    EXPECT(brio_dynamic_insert(w->d, p, NULL, n, &first) == BRIO_OK, "%s", brio_message(w->ctx));
+    for (size_t i = 0; i < n; i++) enter(w, w->num_indices++, p + 3 * i, 0);
+    free(p);
+}
+
+static void move_all(world *w, double step) {
+    double *p = malloc(3 * w->num_points * sizeof *p);
+    brio_dynamic_points(w->d, NULL, p, NULL);
+    for (size_t i = 0; i < 3 * w->num_points; i++) p[i] += step * (draw() - 0.5);
+    EXPECT(brio_dynamic_move(w->d, NULL, p, NULL, w->num_points) == BRIO_OK, "%s", brio_message(w->ctx));
+    for (size_t i = 0, n = 0; i < w->num_indices; i++)
+        if (w->alive[i]) memcpy(w->point + 3 * i, p + 3 * n++, 3 * sizeof *p);
+    free(p);
+}
+
+/* All points move by shares of their spacing: together, where tetrahedra are mended, until building anew is faster. */
+static void all_points_move(void) {
+    static const double SHARE[] = {1e-4, 1e-3, 1e-2, 5e-2, 0.5};
+    size_t n = BRIEF_TESTS ? 1500 : SHORT_TESTS ? 4000 : 20000, together = 0;
+    for (int s = 0; s < 2; s++) {
+        world w = world_new(s ? CLUSTERS : UNIFORM, 0, n + 1);
+        EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+        insert_many(&w, n);
+        remove_some(&w, 40);
+        for (size_t i = 0; i < sizeof SHARE / sizeof *SHARE; i++) {
+            brio_dynamic_stats before = {sizeof before}, after = {sizeof after};
+            EXPECT(brio_dynamic_facts(w.d, &before) == BRIO_OK);
+            move_all(&w, SHARE[i] / cbrt((double)n) * (s ? 1e-3 : 1));
+            EXPECT(brio_dynamic_facts(w.d, &after) == BRIO_OK);
+            together += before.anew == after.anew && after.in_place - before.in_place > n / 2;
+            EXPECT(is_as_built(&w), "%s, %g", SHAPE[w.shape], SHARE[i]);
+            EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+        }
+        world_free(&w);
+    }
+    EXPECT(together >= 4, "%zu moves without building anew", together);
+}
+
+/* Vertices whose stars have hundreds of tetrahedra: their links go through brio_delaunay; the whole star, anew. */
+static void centres_of_spheres_go(void) {
+    world w = world_new(UNIFORM, 0, 2000);
+    double p[3 * 402];
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+    for (size_t i = 0; i < 400; i++) {
+        double length = 0;
+        for (size_t c = 0; c < 3; c++) p[3 * i + c] = draw() - 0.5, length += p[3 * i + c] * p[3 * i + c];
+        for (size_t c = 0; c < 3; c++) p[3 * i + c] /= sqrt(length);
+    }
+    for (size_t c = 0; c < 3; c++) p[1200 + c] = 0, p[1203 + c] = 0.01 * (double)(c + 1);
+    EXPECT(brio_dynamic_insert(w.d, p, NULL, 402, NULL) == BRIO_OK);
+    for (size_t i = 0; i < 402; i++) enter(&w, w.num_indices++, p + 3 * i, 0);
+    const uint32_t *neighbours;
+    size_t degree;
+    EXPECT(brio_dynamic_neighbours(w.d, 400, &neighbours, &degree) == BRIO_OK && degree > 100, "%zu", degree);
+    for (uint32_t gone = 400; gone < 402; gone++) {
+        EXPECT(brio_dynamic_remove(w.d, &gone, 1) == BRIO_OK, "%s", brio_message(w.ctx));
+        w.alive[gone] = 0, w.num_points--;
+        EXPECT(is_as_built(&w), "%u", gone);
+    }
+    world_free(&w);
+}
+
+/* --- what fails leaves all as it was --- */
+
+/* A world of about 70 points, some of them coincident or hidden. */
+static world small_world(brio_context *ctx, int weighted) {
+    world w = world_new(MIXED, weighted, 4000);
+    brio_context_free(w.ctx);
+    w.ctx = ctx;
+    state = 7;
+    EXPECT(brio_dynamic_new(ctx, NULL, NULL, 0, weighted, &w.d) == BRIO_OK);
+    insert_some(&w, 60);
+    insert_some(&w, 10);
+    return w;
+}
+
+/* Makes change number `which`; on failure the world's own list stays, too. */
+static brio_status try_change(world *w, int which) {
+    uint32_t index[40];
+    double p[3 * 40], weight[40];
+    state = 99;
+    size_t n = draw_indices(w, 20, index);
+    for (size_t i = 0; i < 40; i++) {
+        draw_point(w->shape, p + 3 * i);
+        weight[i] = w->weighted ? draw_weight(w->shape) : 0;
+    }
+    const double *weights = w->weighted ? weight : NULL;
+    if (which == 0) return brio_dynamic_insert(w->d, p, weights, 40, NULL);
+    if (which == 1) return brio_dynamic_remove(w->d, index, n);
+    if (which == 2) return brio_dynamic_move(w->d, index, p, weights, n);
+    return brio_dynamic_insert(w->d, p, weights, 1, NULL);
+}
+
+enum { NUM_CHANGES = 4 };
+
+static void failing_memory_leaves_all(void) {
+    for (int weighted = 0; weighted < 2; weighted++)
+        for (int which = 0; which < NUM_CHANGES; which++) {
+            brio_status status = BRIO_ERR_NO_MEMORY;
+            for (size_t k = 1; k < 4000 && status != BRIO_OK; k += BRIEF_TESTS ? 11 : 1) {
+                failing_memory memory = {0, 0};
+                brio_allocator allocator = {failing_alloc, failing_realloc, failing_free, &memory};
+                brio_context *ctx;
+                EXPECT(brio_context_new(&allocator, &ctx) == BRIO_OK);
+                brio_context_set_threads(ctx, 1);
+                world w = small_world(ctx, weighted);
+                memory.left = k;
+                status = try_change(&w, which);
+                memory.left = 0;
+                EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_MEMORY, "%s", brio_status_string(status));
+                if (status != BRIO_OK) {
+                    EXPECT(is_as_built(&w), "weighted %d, change %d, request %zu", weighted, which, k);
+                    EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(ctx));
+                    EXPECT(try_change(&w, which) == BRIO_OK);
+                }
+                world_free(&w);
+                EXPECT(memory.live == 0, "%zu blocks left", memory.live);
+            }
+            EXPECT(status == BRIO_OK);
+        }
+}
+
+static int stop_at(const char *stage, double fraction, void *user) {
+    size_t *left = user;
+    (void)stage, (void)fraction;
+    return *left > 0 && --*left == 0;
+}
+
+static void cancelled_changes_leave_all(void) {
+    world w = world_new(UNIFORM, 0, 60000);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+    insert_many(&w, 3000);
+    size_t n = 20000, cancelled = 0, left = 0;
+    double *p = malloc(3 * n * sizeof *p);
+    for (size_t i = 0; i < 3 * n; i++) p[i] = draw();
+    brio_context_set_progress(w.ctx, stop_at, &left);
+    for (size_t k = 1; k < 40; k += BRIEF_TESTS ? 7 : 2) {
+        for (size_t some = 500; some <= n; some += n - 500) {
+            left = k;
+            brio_status status = brio_dynamic_insert(w.d, p, NULL, some, NULL);
+            left = 0;
+            cancelled += status == BRIO_ERR_CANCELLED;
+            if (status == BRIO_OK) {
+                for (size_t i = 0; i < some; i++) enter(&w, w.num_indices++, p + 3 * i, 0);
+                k = 40;
+                break;
+            }
+            EXPECT(status == BRIO_ERR_CANCELLED && is_as_built(&w));
+        }
+    }
+    EXPECT(cancelled > 0 && is_as_built(&w));
+    free(p);
+    world_free(&w);
+}
+
+static void wrong_arguments_are_refused(void) {
+    world w = world_new(UNIFORM, 0, 200);
+    double p[9] = {0.1, 0.2, 0.3, NAN, 0, 0, 1, 1, 1}, weight[3] = {1, 1, 1};
+    uint32_t twice[2] = {3, 3}, none[1] = {70}, gone[1] = {5};
+    EXPECT(brio_dynamic_new(w.ctx, p, weight, 1, 0, &w.d) == BRIO_ERR_ARGUMENT && !w.d);
+    EXPECT(brio_dynamic_new(w.ctx, p, NULL, 3, 0, &w.d) == BRIO_ERR_NOT_FINITE && !w.d);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+    insert_some(&w, 50);
+    EXPECT(brio_dynamic_insert(w.d, p, NULL, 3, NULL) == BRIO_ERR_NOT_FINITE);
+    EXPECT(brio_dynamic_insert(w.d, p, weight, 1, NULL) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_remove(w.d, twice, 2) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_remove(w.d, none, 1) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_move(w.d, twice, p, NULL, 2) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_move(w.d, gone, p + 3, NULL, 1) == BRIO_ERR_NOT_FINITE);
+    EXPECT(brio_dynamic_move(w.d, NULL, p, NULL, 3) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_reweight(w.d, gone, weight, 1) == BRIO_ERR_ARGUMENT);
+    EXPECT(is_as_built(&w));
+    EXPECT(brio_dynamic_remove(w.d, gone, 1) == BRIO_OK);
+    w.alive[5] = 0, w.num_points--;
+    EXPECT(brio_dynamic_remove(w.d, gone, 1) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_point(w.d, 5, NULL) == BRIO_DYNAMIC_NONE);
+    EXPECT(is_as_built(&w));
+    world_free(&w);
+}
+
+/* --- questions --- */
+
+static void questions_are_answered_between_changes(void) {
+    world w = world_new(MIXED, 1, 5000);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 1, &w.d) == BRIO_OK);
+    for (int round = 0; round < 20; round++) {
+        insert_some(&w, 40);
+        remove_some(&w, 20);
+        brio_dynamic_stats s = {sizeof s};
+        size_t kinds[5] = {0}, ends = 0;
+        EXPECT(brio_dynamic_facts(w.d, &s) == BRIO_OK && s.points == w.num_points && s.indices == w.num_indices);
+        for (uint32_t i = 0; i < w.num_indices; i++) {
+            double record[4];
+            brio_dynamic_state kind = brio_dynamic_point(w.d, i, record);
+            kinds[kind]++;
+            EXPECT((kind != BRIO_DYNAMIC_NONE) == w.alive[i]);
+            if (kind == BRIO_DYNAMIC_NONE) continue;
+            for (int c = 0; c < 3; c++) EXPECT(record[c] == w.point[3 * i + (uint32_t)c]); /* -0 is 0 */
+            EXPECT(record[3] == w.weight[i]);
+            const uint32_t *neighbours;
+            size_t count;
+            EXPECT(brio_dynamic_neighbours(w.d, i, &neighbours, &count) == BRIO_OK);
+            EXPECT((count > 0) == (kind == BRIO_DYNAMIC_VERTEX));
+            ends += count;
+        }
+        EXPECT(kinds[BRIO_DYNAMIC_VERTEX] == s.vertices && kinds[BRIO_DYNAMIC_FLAT] == 0);
+        /* Euler's relation of a ball: vertices - edges + facets - tetrahedra = 1 */
+        EXPECT(s.vertices - ends / 2 + (4 * s.tetrahedra + s.hull_facets) / 2 - s.tetrahedra == 1);
+        for (int i = 0; i < 20; i++) {
+            double x[3] = {draw(), draw(), draw()};
+            uint32_t v[4];
+            EXPECT(brio_dynamic_locate(w.d, x, v) == BRIO_OK);
+            for (int k = 0; k < 4 && v[0] != BRIO_INFINITE; k++) {
+                const double *q[4];
+                for (int c = 0; c < 4; c++) q[c] = c == k ? x : w.point + 3 * v[c];
+                EXPECT(brio_orient3d(q[0], q[1], q[2], q[3]) >= 0);
+            }
+        }
+        EXPECT(is_as_built(&w));
+    }
+    world_free(&w);
+}
+
+SUITE(test_dynamic) {
+    RUN(any_changes_end_as_built);
+    RUN(all_points_move);
+    RUN(centres_of_spheres_go);
+    RUN(failing_memory_leaves_all);
+    RUN(cancelled_changes_leave_all);
+    RUN(wrong_arguments_are_refused);
+    RUN(questions_are_answered_between_changes);
+    return harness_end();
+}
