@@ -59,7 +59,7 @@ void cli_notes_print(FILE *out, const char *kind, const notes *n);
     } while (0)
 
 typedef struct common_options {
-    const char *output, *format, *input_format, *columns, *scratch;
+    const char *output, *format, *view, *input_format, *columns, *scratch;
     bool json, quiet, verbose, progress, ascii, float32, compress, drop_invalid, salvage;
     int threads;
     uint64_t seed;
@@ -107,6 +107,7 @@ typedef struct run {
     char message[1024];            /* of a failure found here; the library's is in the context */
     notes warnings, hints;
     bool flat;       /* a failure is explained by the points: they lie in a plane or on a line */
+    bool shown;      /* the page of --view was written */
     bool over_limit; /* an estimate is over --max-memory */
 } run;
 
@@ -153,6 +154,11 @@ brio_status cli_fail_output(run *r, const char *format, ...) __attribute__((form
 /** Returns the sentence of the failure, found here or in the library. */
 const char *cli_message(const run *r, brio_status status);
 int cli_exit_code(brio_status status);
+
+/** Returns whether a mesh is asked for: a file of it, or a page that shows it. */
+static inline bool cli_wants_mesh(const run *r) {
+    return r->common.output || r->common.view;
+}
 
 /** Ends a stage of the clock. */
 void cli_lap(run *r, const char *stage);

@@ -204,6 +204,9 @@ ENDS_WITH(brio_convex_hull_stats, exact_calls);
 ENDS_WITH(brio_curve_options, reserved_int);
 ENDS_WITH(brio_curve_stats, curve_seconds);
 ENDS_WITH(brio_curve_certificate, length);
+ENDS_WITH(brio_page_layer, report);
+ENDS_WITH(brio_page_options, reserved_int);
+ENDS_WITH(brio_page_stats, reserved_int);
 ENDS_WITH(brio_planar_crust_stats, crust_seconds);
 ENDS_WITH(brio_spanning_tree_stats, tree_seconds);
 
