@@ -48,6 +48,15 @@ static void report(run *r, brio_mesh *const *meshes, int count) {
     cli_fact_count(&r->facts, "edges", edges);
 }
 
+/* Refuses outputs that are no page, and options about the form of other files. */
+static brio_status check_output(run *r) {
+    const common_options *c = &r->common;
+    const char *given = c->format ? "format" : c->ascii ? "ascii" : c->float32 ? "float32" : NULL;
+    if (!c->output) return cli_fail_output(r, "no output: -o FILE is missing");
+    if (given) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s has no meaning here: a page has one form", given);
+    return strcmp(c->output, "-") ? cli_check_page(r, "output", c->output) : BRIO_OK;
+}
+
 static brio_status view(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *meshes[MOST_FILES] = {NULL};
@@ -60,8 +69,7 @@ static brio_status view(run *r) {
                            .self_intersections = a->self_intersections,
                            .side_by_side = a->side_by_side};
     brio_status status = BRIO_OK;
-    if (!r->common.output) return cli_fail_output(r, "no output: -o FILE is missing");
-    if (strcmp(r->common.output, "-")) TRY(cli_check_page(r, "output", r->common.output));
+    TRY(check_output(r));
     for (int i = 0; i < r->num_operands; i++) {
         TRY(cli_read(r, r->operands[i], &meshes[i]));
         layers[i].mesh = meshes[i];

@@ -49,7 +49,10 @@ MODES = [
 ]
 
 IDLE = {
+    # a mesh is no cloud to thin
+    ("view mesh.ply -o page.html", "points"),
     # what is asked for comes anyway
+    ("view mesh.ply -o page.html", "exact"), ("view cloud.ply mesh.ply -o page.html", "exact"),
     ("delaunay cloud.ply -o out.node", "ascii"),
     ("interpolate text.csv --at p.csv --property q -o out.csv", "ascii"), ("locate cloud.ply --at p.csv -o out.csv", "ascii"),
     ("voronoi cloud.ply -o out.csv", "ascii"),

@@ -294,6 +294,8 @@ class Command(ViewTest):
         self.usage("--view has no meaning for check", "check", p, "--view", self.path("v.html"))
         self.usage("--view has no meaning for convert", "convert", p, self.path("q.ply"), "--view", self.path("v.html"))
         self.usage("name the same file", "hull", p, "-o", self.path("v.html"), "--view", self.path("v.html"), "--format", "ply")
+        self.usage("--ascii has no meaning here", "view", p, "-o", self.path("page.html"), "--ascii")
+        self.usage("too many: '13'", "view", *range(1, 14), "-o", self.path("page.html"))
         self.expect(6, "view", p, "-o", self.path("nowhere/page.html"))
         self.expect(2, "view", p, self.path("missing.ply"), "-o", self.path("page.html"))
         self.assertFalse(os.path.exists(self.path("page.html")))
