@@ -16,4 +16,7 @@ echo
 echo "== the surface held against the truth"
 "$brio" compare "$out/demo.ply" "$out/truth.ply"
 echo
-echo "Written: $out/scan.ply, $out/demo.ply, $out/truth.ply"
+echo "== a page that shows the scan and its surface in a browser"
+"$brio" view "$out/scan.ply" "$out/demo.ply" --side-by-side --title "A scan and its surface" -o "$out/demo.html"
+echo
+echo "Written: $out/scan.ply, $out/demo.ply, $out/truth.ply; open $out/demo.html in a browser"

@@ -125,6 +125,11 @@ missing_peers() {
         has clang-tidy || echo clang-tidy
         has cppcheck || echo cppcheck
     fi
+    if [ "$1" = web ] || [ "$1" = check ]; then
+        has chromium || echo chromium
+        has npm || echo nodejs npm
+        [ "$1" = check ] || return 0
+    fi
     case $1 in build | model | threads | analyze | fuzz | coverage | oracles | quality | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
@@ -252,15 +257,27 @@ install_tests_packages() {
     fi
 }
 
+# What bundles web/page.html and looks at pages: the packages of web/package-lock.json, in an environment of their own. Says so
+# if they stay missing: the tests of pages are skipped.
+install_web() {
+    environment=out/web-env
+    has npm || { echo "setup: there is no npm: the page cannot be bundled, and tests of pages are skipped" >&2; return 0; }
+    cmp -s web/package-lock.json "$environment/package-lock.json" && [ -d "$environment/node_modules" ] && return 0
+    echo "setup: installing web/package-lock.json in $environment"
+    mkdir -p "$environment" && cp web/package.json "$environment/" && cp web/package-lock.json "$environment/wanted.json"
+    (cd "$environment" && cp wanted.json package-lock.json && npm ci --no-audit --no-fund --ignore-scripts >/dev/null 2>&1) ||
+        { rm -f "$environment/package-lock.json"; echo "setup: the packages of web could not be installed from npm" >&2; }
+}
+
 purpose=${1:-build}
 case $purpose in
 packages)
     install_tests_packages
     exit 0
     ;;
-build | check | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | deb) ;;
+build | check | web | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|deb" >&2
+    echo "usage: setup.sh build|check|packages|web|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|deb" >&2
     exit 1
     ;;
 esac
@@ -278,6 +295,7 @@ if [ -z "$packages" ]; then
     [ "$purpose" != rivals ] || install_open3d
     [ "$purpose" != targets ] || install_cross_compiler
     [ "$purpose" != check ] || make_tests_environment
+    case $purpose in check | web) install_web ;; esac
     exit 0
 fi
 echo "setup: these are needed and missing: $packages" >&2

@@ -53,7 +53,7 @@ static brio_status make_union(run *r, const brio_mesh *input, const double *weig
     brio_mesh *mesh = NULL;
     brio_status status = BRIO_OK;
     TRY(brio_ball_union(r->ctx, input->vertices, weights, input->num_vertices, &o, NULL,
-                        r->common.output ? &mesh : NULL, &s));
+                        cli_wants_mesh(r) ? &mesh : NULL, &s));
     report(r, &s, mesh);
     if (!mesh) goto done;
     TRY(cli_check_interrupt(r));
@@ -72,7 +72,7 @@ static brio_status balls(run *r) {
     brio_status status = BRIO_OK;
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(cli_require_output(r, true));
-    if (a->error > 0 && !r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "--error is for the mesh: -o OUT is missing");
+    if (a->error > 0 && !cli_wants_mesh(r)) FAIL(r, BRIO_ERR_ARGUMENT, "--error is for the mesh: -o OUT is missing");
     TRY(cli_read_points(r, r->operands[0], &input));
     TRY(cli_weights(r, &a->weights, input, &weights));
     if (!weights)

@@ -99,7 +99,7 @@ static brio_status compare_cloud(run *r, brio_mesh *points, const brio_mesh *sur
     if (!distance || !magnitude) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu distances", n);
     TRY(brio_mesh_signed_distances(r->ctx, surface, points->vertices, n, distance));
     cli_lap(r, "compare");
-    if (r->common.output) TRY(add_property(r, points, distance));
+    if (cli_wants_mesh(r)) TRY(add_property(r, points, distance));
     for (size_t i = 0; i < n; i++) {
         magnitude[i] = fabs(distance[i]);
         outside += within > 0 && magnitude[i] > up_to;
@@ -150,7 +150,9 @@ static brio_status compare_surfaces(run *r, const brio_mesh *a, const brio_mesh 
     const arguments *chosen = r->arguments;
     brio_distance d = {0};
     brio_status status = BRIO_OK;
-    if (r->common.output) FAIL(r, BRIO_ERR_ARGUMENT, "two surfaces: -o is for points compared with a surface");
+    if (cli_wants_mesh(r))
+        FAIL(r, BRIO_ERR_ARGUMENT, "two surfaces: %s is for points compared with a surface",
+             r->common.output ? "-o" : "--view");
     status = brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &d);
     if (status == BRIO_ERR_ARGUMENT) /* faces without area, or of two corners */
         FAIL(r, BRIO_ERR_NO_ANSWER, "%s, %s: %s", r->operands[0], r->operands[1], brio_message(r->ctx));

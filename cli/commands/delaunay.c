@@ -238,7 +238,7 @@ static brio_delaunay_options library_options(const run *r, const arguments *a) {
     brio_delaunay_options o = {0};
     o.order = cli_library_order(insertion_order(a));
     o.seed = r->common.seed;
-    o.leave_hidden = !r->common.output && !a->verify; /* a report counts them, but names none */
+    o.leave_hidden = !cli_wants_mesh(r) && !a->verify; /* a report counts them, but names none */
     if (!isnan(a->order.round_ratio)) o.round_ratio = a->order.round_ratio;
     return o;
 }
@@ -457,7 +457,7 @@ static brio_status delaunay(run *r) {
     report_pages(&r->facts, r->lab);
     report_rounds(&r->facts, r->lab, a->page_size > 0);
     if (a->verify) TRY(verify(r, mesh, weights, t));
-    if (r->common.output) TRY(write_output(r, mesh, weights, &t));
+    if (cli_wants_mesh(r)) TRY(write_output(r, mesh, weights, &t));
 done:
     brio_triangulation_free(t);
     free(weights);

@@ -160,7 +160,7 @@ static void report(run *r, const brio_power_shape_options *o, int labeling, cons
 /* Writes the shape. Tetrahedra are left out of files that cannot hold them, such as a VTP file. */
 static brio_status write_shape(run *r, brio_mesh *shape) {
     brio_format format;
-    if (!r->common.output) return BRIO_OK; /* --json alone asks for the facts */
+    if (!r->common.output) return cli_write(r, shape); /* --json alone asks for the facts */
     FORWARD(cli_output_format(r, r->common.output, r->common.format, &format));
     if (shape->num_tetrahedra && !(brio_format_facts(format)->holds & BRIO_HOLDS_TETRAHEDRA)) {
         shape->num_tetrahedra = 0;

@@ -238,7 +238,7 @@ static brio_status run_terrain(run *r) {
     cli_fact_count(&r->facts, "triangles", t.num_kept);
     cli_fact_count(&r->facts, "left_out", brio_triangulation2_stats(t.t)->triangles - t.num_kept);
     if (a->raster) TRY(make_raster(r, a, &t));
-    if (!r->common.output) goto done;
+    if (!cli_wants_mesh(r)) goto done;
     TRY(set_faces(r, &t));
     TRY(cli_write(r, t.points));
 done:

@@ -79,7 +79,7 @@ static brio_status spanning_tree(run *r) {
     TRY(brio_spanning_tree(r->ctx, projected ? projected : points->vertices, points->num_vertices, &result, &s));
     report(r, &s);
     TRY(cli_check_interrupt(r));
-    if (!r->common.output) goto done;
+    if (!cli_wants_mesh(r)) goto done;
     TRY(complete(r, points, result));
     TRY(cli_write(r, result));
 done:

@@ -56,9 +56,19 @@ static brio_status refuse_idle(run *r) {
     return BRIO_OK;
 }
 
+/* Refuses --view for a command that makes no mesh: it writes nothing, or what is no mesh, or a file by itself. */
+static brio_status check_view(run *r) {
+    const command *c = r->command;
+    if (!r->common.view) return BRIO_OK;
+    if (!c->has_output || c->outputs || c->writes_last)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--view has no meaning for %s; brio view shows files", c->name);
+    return cli_check_page(r, "view", r->common.view);
+}
+
 brio_status cli_check_common(run *r) {
     const common_options *c = &r->common;
     FORWARD(refuse_idle(r));
+    FORWARD(check_view(r));
     if (c->threads < 0 || c->threads > MAX_THREADS)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--threads: %d is not between 0 and %d", c->threads, MAX_THREADS);
     if (c->json && cli_goes_to_stdout(c->output))
@@ -152,7 +162,7 @@ brio_status cli_read_samples(run *r, const char *path, brio_mesh **out) {
 brio_status cli_require_output_holding(run *r, cli_holds holds, bool optional) {
     const common_options *c = &r->common;
     brio_format format;
-    if (!c->output && (optional || c->json)) return BRIO_OK;
+    if (!c->output && (optional || c->json || c->view)) return BRIO_OK;
     if (!c->output) return cli_fail_output(r, "no output: -o FILE is missing");
     FORWARD(cli_output_format(r, c->output, c->format, &format));
     const brio_format_info *info = brio_format_facts(format);
@@ -201,7 +211,8 @@ done:
 }
 
 brio_status cli_write(run *r, const brio_mesh *mesh) {
-    return r->common.output ? write_file(r, r->common.output, r->common.format, mesh) : BRIO_OK;
+    if (r->common.output) FORWARD(write_file(r, r->common.output, r->common.format, mesh));
+    return cli_show(r, mesh);
 }
 
 brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh) {

@@ -39,9 +39,21 @@ brio_status cli_require_output_for(run *r, const char *option, bool given);
 brio_status cli_require_output(run *r, bool optional);
 /** Finds the same where an option changes what the command writes. */
 brio_status cli_require_output_holding(run *r, cli_holds holds, bool optional);
-/** Writes to -o, or does nothing without it. The time is lapped as `write`. */
+/** Writes to -o and, where --view asks for it, a page; does nothing without them. The time is lapped as `write`, and as
+ *  `view`. */
 brio_status cli_write(run *r, const brio_mesh *mesh);
 /** Writes to another file, by its extension. */
 brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh);
+
+/* --- pages that show meshes in a browser (page.c) --- */
+
+/** Finds everything wrong with the name of a page that can be found before the work.   name  the option's; path NULL:
+ *  no page. */
+brio_status cli_check_page(run *r, const char *name, const char *path);
+/** Writes a page, reports its size, and warns of points that are not on it. The time is lapped as `view`. */
+brio_status cli_write_page(run *r, const char *path, const brio_page_layer *const *layers, size_t num_layers,
+                           const brio_page_options *options);
+/** Writes the page of --view, with the report so far beside the mesh; does nothing without --view. */
+brio_status cli_show(run *r, const brio_mesh *mesh);
 
 #endif

@@ -18,6 +18,7 @@
     X(check)                                                                                                           \
     X(compare)                                                                                                         \
     X(iso)                                                                                                             \
+    X(view)                                                                                                            \
     X(convert)                                                                                                         \
     X(info)                                                                                                            \
     X(generate)                                                                                                        \

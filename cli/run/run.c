@@ -53,6 +53,8 @@ const option cli_common_options[] = {
     {"output", 'o', OPTION_OUTPUT, FIELD(output), "FILE",
      "the file to write; its extension names the format; - is standard output", 0},
     {"format", 0, OPTION_TEXT, FIELD(format), "EXT", "format of the output, such as ply (needed with -o -)", 0},
+    {"view", 0, OPTION_OUTPUT, FIELD(view), "FILE",
+     "also write a page, .html, that shows the result in a browser (as brio view does)", 0},
     {"input-format", 0, OPTION_TEXT, FIELD(input_format), "EXT",
      "format of the input, where its name and content do not tell", 0},
     {"columns", 0, OPTION_TEXT, FIELD(columns), "NAMES", "columns of a text input: x,y,z,-,nx (- leaves one out)", 0},

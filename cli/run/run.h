@@ -59,7 +59,7 @@ void cli_notes_print(FILE *out, const char *kind, const notes *n);
     } while (0)
 
 typedef struct common_options {
-    const char *output, *format, *input_format, *columns, *scratch;
+    const char *output, *format, *view, *input_format, *columns, *scratch;
     bool json, quiet, verbose, progress, ascii, float32, compress, drop_invalid, salvage;
     int threads;
     uint64_t seed;
@@ -108,6 +108,7 @@ typedef struct run {
     brio_failure failure;          /* what is known of the failure of `message` */
     notes warnings, hints;
     bool flat;       /* a failure is explained by the points: they lie in a plane or on a line */
+    bool shown;      /* the page of --view was written */
     bool over_limit; /* an estimate is over --max-memory */
 } run;
 
@@ -160,6 +161,11 @@ brio_failure cli_failure(const run *r);
 /** Returns the sentence of the failure, found here or in the library. */
 const char *cli_message(const run *r, brio_status status);
 int cli_exit_code(brio_status status);
+
+/** Returns whether a mesh is asked for: a file of it, or a page that shows it. */
+static inline bool cli_wants_mesh(const run *r) {
+    return r->common.output || r->common.view;
+}
 
 /** Ends a stage of the clock. */
 void cli_lap(run *r, const char *stage);

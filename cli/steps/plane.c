@@ -107,7 +107,7 @@ brio_status cli_plane(run *r, int plane, brio_mesh *mesh, const double *weights,
     TRY(triangulate(r, points, weights, n, order, &t));
     TRY(report(r, t, points, weights != NULL));
     if (verify) TRY(verify_result(r, t, points, weights));
-    if (!r->common.output) goto done;
+    if (!cli_wants_mesh(r)) goto done;
     TRY(cli_add_representatives(r, mesh, brio_triangulation2_representatives(t)));
     TRY(set_faces(r, mesh, t));
     TRY(cli_write(r, mesh));

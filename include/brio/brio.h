@@ -92,6 +92,7 @@
 #include "files.h"         /* reading, writing, converting */
 #include "mesh.h"          /* meshes and their properties */
 #include "certificate.h"   /* of a mesh: closed, components, genus, area, volume, what is wrong; distances */
+#include "page.h"          /* pages that show meshes in a browser */
 #include "points.h"        /* thinning, outliers, samples of a mesh */
 #include "triangulation.h" /* Delaunay and regular triangulations */
 #include "tiles.h"         /* triangulations of more points than fit in memory */

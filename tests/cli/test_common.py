@@ -12,7 +12,7 @@ from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
 COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide", "simplify", "terrain",
             "locate", "interpolate", "voronoi", "restricted", "tree", "balls"]
-COMMON_OPTIONS = ["--output", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
+COMMON_OPTIONS = ["--output", "--view", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--order", "--block-size", "--round-ratio", "--locate", "--plane",
@@ -30,7 +30,7 @@ OWN_OPTIONS = {
     "alpha": ["--alpha", "--filtration", "--weights", "--weights-mod", "--unweighted"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections", "--samples"],
     "compare": ["--samples", "--within"],
-    "info": [],
+    "info": [], "view": ["--self-intersections", "--side-by-side", "--points", "--exact", "--title"],
     "iso": ["--level", "--sigma", "--resolution", "--points", "--blobbiness", "--delaunay-conforming",
             "--vertex-normals", "--self-intersections"],
     "generate": ["--points", "--noise", "--views", "--truth", "--truth-resolution", "--kind", "--resolution"],

@@ -165,6 +165,7 @@ ROWS = {
     "WARNING_SET_ASIDE": ("interpolate values.csv --at values.csv --property q -o out.ply", 0, ["info out.ply"]),
     "WARNING_SELF": ("surface clusters.ply --method power-crust --self-intersections -o out.ply", 0,
                      [Ends(5, "intersects itself", "check out.ply --self-intersections")]),
+    "WARNING_PAGE": ("view half.xyz --points 10 -o page.html", 0, [Silent("view half.xyz -o page.html")]),
     "WARNING_COLOURS": ("surface deep.ply -o out.ply", 0, [Silent("surface deep.ply -o out.glb")]),
     "WARNING_APART": ("check apart.off --open", 0, ["{hint}", Silent("check out.ply --open")]),
     "WARNING_OUTSIDE": ("voronoi few.xyz --box 0,0,0,0.2,1,1 -o out.csv", 0,

@@ -18,6 +18,7 @@ from brio_cli import CliTest, CUBE, FLAT, FLAT_RIGHT, main, OCTAHEDRON, OCTAHEDR
 ANYWHERE = {"json", "quiet", "verbose", "progress", "threads", "seed", "max-memory", "scratch", "output", "help"}
 
 VALUES = {
+    "view": ["v.html"], "title": ["other"],
     "format": ["zzz"], "input-format": ["obj", "zzz"], "columns": ["-,x,y,z"], "weights": ["w.txt"], "weights-mod": ["-9"],
     "order": ["random", "hilbert"], "block-size": ["7"], "round-ratio": ["0.9"], "locate": ["jump"], "record-every": ["5"],
     "subgraph": ["tree"], "page-size": ["4K"], "surface": ["mesh.ply"], "cache-size": ["64K"], "plane": ["xy"], "method": ["cocone", "linear", "voronoi"], "labeling": ["naive"], "noise": ["smooth", "0.5"],
@@ -41,14 +42,17 @@ MODES = [
     "voronoi cloud.ply -o out.csv", "voronoi cloud.ply",
     "check mesh.ply", "check open.off", "check flat.node", "compare mesh.ply mesh2.ply",
     "iso ball.map --level -4 -o out.ply", "iso atoms.pdb --level 1 -o out.ply", "iso ball.map --level -4",
-    "convert text.csv out.las", "info text.csv",
+    "convert text.csv out.las", "info text.csv", "view mesh.ply -o page.html", "view cloud.ply mesh.ply -o page.html",
     "generate scan -n 90 -o out.ply", "generate solid --resolution 16 -o out.ply",
     "subdivide mesh.ply -o out.ply", "restricted cloud.ply --surface mesh2.ply -o out.ply", "tree cloud.ply -o out.ply", "surface ring.xyz -o out.ply", "locate cloud.ply --at p.csv -o out.csv",
     "interpolate text.csv --at p.csv --property q -o out.csv", "interpolate text.csv --at p.csv --property q -o out.ply",
 ]
 
 IDLE = {
+    # a mesh is no cloud to thin
+    ("view mesh.ply -o page.html", "points"),
     # what is asked for comes anyway
+    ("view mesh.ply -o page.html", "exact"), ("view cloud.ply mesh.ply -o page.html", "exact"),
     ("delaunay cloud.ply -o out.node", "ascii"),
     ("interpolate text.csv --at p.csv --property q -o out.csv", "ascii"), ("locate cloud.ply --at p.csv -o out.csv", "ascii"),
     ("voronoi cloud.ply -o out.csv", "ascii"),

@@ -74,6 +74,8 @@ class People(CliTest):
         yield "check", mesh, "--samples", points
         yield "iso", self.ball_map("b.map", 12), "--level", "-3", "-o", out
         yield "info", mesh
+        yield "view", mesh, "-o", self.path("page.html")
+        yield "hull", points, "--view", self.path("hull.html")
         yield "generate", "scan", "-n", "100", "--truth", self.path("t.ply"), "--truth-resolution", "12", "-o", out
         yield "subdivide", mesh, "-o", out
         yield "simplify", mesh, "--faces", "60", "-o", out

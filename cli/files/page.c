@@ -1,0 +1,59 @@
+/* Pages that show meshes: --view of every command that writes a mesh, and brio view. */
+#include "cli/files/read_write.h"
+#include "cli/files/files.h"
+#include "cli/run/interrupt.h"
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static bool is_page(const char *path) {
+    const char *dot = strrchr(path, '.');
+    return dot && (!strcasecmp(dot, ".html") || !strcasecmp(dot, ".htm"));
+}
+
+brio_status cli_check_page(run *r, const char *name, const char *path) {
+    if (!path) return BRIO_OK;
+    if (!is_page(path)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a page is .html or .htm", path);
+    return cli_check_beside(r, name, path);
+}
+
+brio_status cli_write_page(run *r, const char *path, const brio_page_layer *const *layers, size_t num_layers,
+                           const brio_page_options *options) {
+    brio_page_stats stats = {.size = sizeof stats};
+    FORWARD(cli_check_interrupt(r));
+    cli_interrupt_writing(strcmp(path, "-") != 0);
+    brio_status status = brio_write_page(r->ctx, path, layers, num_layers, options, &stats);
+    cli_interrupt_writing(false);
+    cli_lap(r, "view");
+    if (status != BRIO_OK) return status;
+    cli_fact_bytes(&r->facts, r->common.view ? "view_bytes" : "bytes", stats.bytes);
+    if (!r->common.view) cli_fact_bool(&r->facts, "exact", stats.exact != 0);
+    if (stats.points_thinned) cli_warn(r, WARNING_PAGE, path, (unsigned long long)stats.points_thinned);
+    return BRIO_OK;
+}
+
+/* Returns the report so far as a text, to be freed; NULL without memory for it. */
+static char *report_of(run *r) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *memory = open_memstream(&text, &size);
+    if (!memory) return NULL;
+    cli_text_write(memory, &r->facts, r->command->name, false);
+    return fclose(memory) == 0 ? text : NULL;
+}
+
+brio_status cli_show(run *r, const brio_mesh *mesh) {
+    brio_status status = BRIO_OK;
+    char *report = NULL;
+    if (!r->common.view) return BRIO_OK;
+    report = report_of(r);
+    if (!report) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for the report on a page");
+    const brio_page_layer layer = {
+        .mesh = mesh, .name = r->common.output ? r->common.output : r->operands[0], .report = report};
+    const brio_page_layer *layers[] = {&layer};
+    status = cli_write_page(r, r->common.view, layers, 1, NULL);
+    r->shown = status == BRIO_OK;
+done:
+    free(report);
+    return status;
+}

@@ -1,0 +1,380 @@
+// What a page shows, in Chromium with its software renderer: node page_test.mjs BRIO [long]. Pages are made of files written here,
+// so that what has to be seen is known: silhouettes and colours of pictures, coordinates of picked vertices to the last bit, every
+// control, touch, keys, a narrow window, and what axe-core finds. No page may ask for anything, or complain on the console.
+//
+// Exit status 77, with the reason: a part is missing (sh scripts/setup.sh web).
+import { execFileSync } from "node:child_process";
+import { createRequire } from "node:module";
+import { existsSync, mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+
+const [, , brio, length = "short"] = process.argv;
+const root = new URL("../../", import.meta.url);
+const chromium = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
+const packages = new URL("out/web-env/package.json", root);
+function skip(reason) {
+    console.log(`skipped: ${reason} (sh scripts/setup.sh web)`);
+    process.exit(77);
+}
+if (!chromium) skip("there is no Chromium");
+if (!existsSync(packages)) skip("out/web-env is missing");
+const require = createRequire(packages);
+let playwright;
+try { playwright = require("playwright-core"); } catch { skip("playwright-core is missing"); }
+const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+
+const folder = mkdtempSync(join(tmpdir(), "brio-browser-"));
+const at = name => join(folder, name);
+const run = (...args) => execFileSync(brio, [...args, "--quiet"], { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
+let failures = 0, checks = 0;
+function expect(truth, words) {
+    checks++;
+    if (truth) return;
+    failures++;
+    console.log(`FAILED: ${words}`);
+}
+
+// --- files ---
+
+function ply(name, vertices, faces, { vertex = "", face = "", rows = () => "", marks = () => "" } = {}) {
+    const head = ["ply", "format ascii 1.0", `element vertex ${vertices.length}`, "property double x", "property double y", "property double z",
+        ...vertex.split(";").filter(Boolean).map(p => `property ${p}`), `element face ${faces.length}`, "property list uchar int vertex_indices",
+        ...face.split(";").filter(Boolean).map(p => `property ${p}`), "end_header"];
+    writeFileSync(at(name), [...head, ...vertices.map((v, i) => `${v.join(" ")} ${rows(i)}`), ...faces.map((f, i) => `${f.length} ${f.join(" ")} ${marks(i)}`), ""].join("\n"));
+}
+const CUBE = [0, 1].flatMap(x => [0, 1].flatMap(y => [0, 1].map(z => [x, y, z])));
+const QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+/** A grid of bumps over a square: coordinates that no float holds. */
+function bumps(n) {
+    const vertices = [], faces = [];
+    for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) vertices.push([i / (n - 1) + 1e-9 / 3, j / (n - 1) - 1 / 7e8, 0.2 * Math.sin(3 * i) * Math.cos(2 * j) / 3]);
+    for (let i = 0; i + 1 < n; i++) for (let j = 0; j + 1 < n; j++) faces.push([i * n + j, (i + 1) * n + j, (i + 1) * n + j + 1], [i * n + j, (i + 1) * n + j + 1, i * n + j + 1]);
+    return [vertices, faces];
+}
+
+// --- pages ---
+
+const browser = await playwright.chromium.launch({ executablePath: chromium, args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"] });
+
+/** Opens a page, and watches what it asks for and says. */
+async function open(name, { width = 900, height = 600, hash = "", ...more } = {}) {
+    const context = await browser.newContext({ viewport: { width, height }, offline: true, acceptDownloads: true, ...more });
+    const page = await context.newPage();
+    page.on("console", m => expect(m.type() === "log", `${name}: console ${m.type()}: ${m.text()}`));
+    page.on("pageerror", e => expect(false, `${name}: ${e.message}`));
+    page.on("request", r => expect(r.url().startsWith("file://" + folder) || r.url().startsWith("blob:"), `${name}: asks for ${r.url()}`));
+    await page.goto(`file://${at(name)}${hash}`);
+    await page.evaluate(() => window.brioPage.ready);
+    await settled(page);
+    return page;
+}
+/** Waits until the picture is whole, after frames that were asked for. */
+const settled = page => page.waitForFunction(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(window.brioPage.complete && !window.brioPage.dirty)))), null, { timeout: 60000 });
+
+/** The pixels of the canvas that differ from the background: their number, box and mean colour. In the page, since a picture is large. */
+const picture = page => page.evaluate(() => {
+    const app = window.brioPage, gl = app.renderer.gl, { width, height } = app.canvas, pixels = new Uint8Array(4 * width * height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const back = app.look().background.map(c => Math.round(255 * c)), sum = [0, 0, 0];
+    let count = 0, box = [width, height, 0, 0], opaque = true;
+    for (let i = 0; i < width * height; i++) {
+        if (pixels[4 * i + 3] !== 255) opaque = false;
+        if ([0, 1, 2].every(k => Math.abs(pixels[4 * i + k] - back[k]) < 3)) continue;
+        const x = i % width, y = Math.floor(i / width);
+        box = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)];
+        for (let k = 0; k < 3; k++) sum[k] += pixels[4 * i + k];
+        count++;
+    }
+    return { width, height, count, box, opaque, mean: sum.map(s => s / Math.max(1, count)) };
+});
+/** Where a place of the file is on the page. */
+const placeOf = (page, p) => page.evaluate(p => {
+    const app = window.brioPage, { width, height } = app.canvas, m = app.camera.matrix(width, height), q = app.scene.fromFile(p);
+    const row = r => m[r] * q[0] + m[4 + r] * q[1] + m[8 + r] * q[2] + m[12 + r], box = app.canvas.getBoundingClientRect();
+    return [box.left + (row(0) / row(3) + 1) / 2 * box.width, box.top + (1 - row(1) / row(3)) / 2 * box.height];
+}, p);
+const camera = page => page.evaluate(() => window.brioPage.camera.toArray());
+const moved = (a, b) => a.some((x, i) => Math.abs(x - b[i]) > 1e-4);
+async function press(page, ...keys) {
+    for (const key of keys) await page.keyboard.press(key);
+    await settled(page);
+}
+/** Fails where axe finds something serious. */
+async function accessible(page, name) {
+    await page.evaluate(axe);
+    const found = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
+    for (const v of found.violations.filter(v => ["serious", "critical"].includes(v.impact)))
+        expect(false, `${name}: axe: ${v.id}: ${v.nodes.map(n => n.html).join(" ").slice(0, 300)}`);
+    checks++;
+}
+
+// --- tests ---
+
+/** A red square, seen from above in parallel projection, has its silhouette, to a pixel, and its colour. */
+async function silhouetteAndColour() {
+    ply("red.ply", [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]], { vertex: "uchar red;uchar green;uchar blue", rows: () => "200 30 20" });
+    run("view", "red.ply", "-o", "red.html");
+    const page = await open("red.html");
+    await page.uncheck("text=boundary");
+    await page.focus("#canvas");
+    await press(page, "o", "5");
+    const seen = await picture(page);
+    const [low, high] = [await placeOf(page, [0, 0, 0]), await placeOf(page, [2, 1, 0])];
+    const [w, h] = [high[0] - low[0], low[1] - high[1]];
+    expect(seen.opaque, "the canvas is not opaque");
+    expect(Math.abs(w - 2 * h) < 1, `the square is ${w} by ${h}`);
+    expect(Math.abs(seen.box[2] - seen.box[0] + 1 - w) <= 3 && Math.abs(seen.box[3] - seen.box[1] + 1 - h) <= 5, `silhouette ${seen.box}, expected ${w} by ${h}`);
+    expect(Math.abs(seen.count - w * h) < 0.03 * w * h, `${seen.count} pixels of ${w * h}`);
+    expect(seen.mean[0] > 120 && seen.mean[1] < 60 && seen.mean[2] < 60, `colour ${seen.mean}`);
+    await page.context().close();
+}
+
+/** Picking ten vertices gives the coordinates of the file, to the last bit, with number and properties. */
+async function picking() {
+    const [vertices, faces] = bumps(14);
+    ply("bumps.ply", vertices, faces, { vertex: "double depth;float size", rows: i => `${i / 3} ${Math.fround(i / 7)}`, face: "uchar bridge", marks: i => i % 5 === 0 ? 1 : 0 });
+    run("view", "bumps.ply", "-o", "bumps.html");
+    const page = await open("bumps.html");
+    await page.focus("#canvas");
+    await press(page, "5");
+    for (const v of [15, 30, 47, 61, 76, 92, 108, 121, 140, 165]) {
+        const [x, y] = await placeOf(page, vertices[v]);
+        await page.mouse.click(x, y);
+        await page.waitForSelector("#card:not([hidden])");
+        const card = await page.evaluate(() => [...document.querySelectorAll("#card dt")].map(e => [e.textContent, e.nextSibling.textContent]));
+        const facts = Object.fromEntries(card), title = await page.textContent("#card h2 span");
+        expect(title === `vertex ${v} of bumps.ply`, `picked ${title}, not vertex ${v}`);
+        "xyz".split("").forEach((axis, k) => expect(Object.is(+facts[axis], vertices[v][k]), `vertex ${v}: ${axis} is ${facts[axis]}, not ${vertices[v][k]}`));
+        expect(+facts.depth === v / 3, `depth ${facts.depth}`);
+        expect(Math.fround(+facts.size) === Math.fround(v / 7) && facts.size.length < 12, `size ${facts.size}`);
+        expect(faces[+facts.face].includes(v) && +facts["bridge of the face"] === (+facts.face % 5 === 0 ? 1 : 0), `face ${facts.face}`);
+    }
+    // the distance of two of them
+    await press(page, "Escape", "m");
+    for (const v of [15, 165]) { await page.mouse.click(...await placeOf(page, vertices[v])); await page.waitForFunction(v => window.brioPage.picker.picks.at(-1)?.number === v, v); }
+    await page.waitForFunction(() => window.brioPage.picker.distance !== null);
+    const distance = await page.evaluate(() => window.brioPage.picker.distance);
+    expect(Math.abs(distance - Math.hypot(...vertices[15].map((x, k) => x - vertices[165][k]))) < 1e-15, `distance ${distance}`);
+    expect((await page.textContent("#overlay")).length > 2, "the distance is not in the picture");
+    await press(page, "Escape");
+    expect(await page.isHidden("#card"), "Escape closes the card");
+    await page.context().close();
+}
+
+/** Every control changes the picture, and the address brings it back. */
+async function controls() {
+    const [vertices, faces] = bumps(14);
+    ply("flaws.ply", [...vertices, [0.5, 0.5, 0.7], [0.2, 0.2, -0.3], [0.8, 0.3, -0.3], [0.4, 0.6, 0.5]], [...faces, [15, 29, 196], [197, 198, 199]],
+        { vertex: "double depth", rows: i => i / 3, face: "uchar bridge", marks: i => i % 5 === 0 ? 1 : 0 });
+    run("view", "flaws.ply", "bumps.ply", "--self-intersections", "-o", "flaws.html");
+    const page = await open("flaws.html");
+    const colours = () => picture(page).then(p => JSON.stringify([p.count, p.mean.map(x => x.toFixed(3))]));
+    let before = await colours();
+    const changes = async (words, act) => {
+        await act();
+        await settled(page);
+        const after = await colours();
+        expect(after !== before, `${words} changes nothing in the picture`);
+        before = after;
+    };
+    const part = page.locator("section.layer").first();
+    await changes("hiding a layer", () => page.uncheck("#visible1"));
+    for (const name of ["wireframe", "points", "boundary", "edges of over two faces", "crossing faces", "bridges", "flat shading", "faces"])
+        await changes(name, () => part.getByLabel(name, { exact: true }).click());
+    await part.getByLabel("faces", { exact: true }).check();
+    await settled(page);
+    before = await colours();
+    for (const value of ["z", "v0", "f0", "plain"]) await changes(`colour by ${value}`, () => part.getByLabel("Colour by").selectOption(value));
+    await changes("colour by depth", () => part.getByLabel("Colour by").selectOption("v0"));
+    await changes("the colour map", () => part.getByLabel("Colour map").selectOption("turbo"));
+    await changes("the range", async () => { await part.getByRole("textbox", { name: "from" }).fill("30"); await part.getByRole("textbox", { name: "from" }).press("Enter"); });
+    const histogram = await part.locator(".histogram").boundingBox();
+    await changes("a drag over the histogram", async () => {
+        await page.mouse.move(histogram.x + 40, histogram.y + 20);
+        await page.mouse.down();
+        await page.mouse.move(histogram.x + 120, histogram.y + 20, { steps: 3 });
+        await page.mouse.up();
+    });
+    await changes("opacity", () => part.getByLabel("Opacity").fill("0.4"));
+    await changes("size of points", async () => { await part.getByLabel("points", { exact: true }).check(); await part.getByLabel("Point size").fill("9"); });
+    await changes("the cutting plane", () => page.getByLabel("cutting plane").check());
+    await changes("its place", () => page.getByLabel("Place").fill("0.3"));
+    await changes("its other side", () => page.getByLabel("other side").check());
+    await changes("across", () => page.getByLabel("Across").selectOption("1"));
+    await changes("upright", () => page.getByLabel("Upright").selectOption("1"));
+    await changes("parallel projection", () => page.getByRole("button", { name: "Parallel projection" }).click());
+    await changes("dark", () => page.getByRole("button", { name: "Dark" }).click());
+    const address = await page.evaluate(() => location.hash);
+    await changes("both layers side by side", async () => { await page.check("#visible1"); await page.getByRole("button", { name: "Side by side" }).click(); });
+    expect((await page.locator("#names span").allTextContents()).join() === "flaws.ply,bumps.ply", "names over the views");
+    const hidden = await page.evaluate(() => document.getElementById("hint").getBoundingClientRect().width);
+    await page.getByRole("button", { name: "Help" }).click();
+    expect(hidden > 0, "the hint");
+    await page.getByRole("button", { name: "Layers" }).click();
+    expect(await page.isHidden("#panel"), "the panel folds");
+    await settled(page);
+    const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save a picture" }).click()]);
+    const png = readFileSync(await download.path());
+    expect(png.subarray(1, 4).toString() === "PNG" && png.length > 5000, "the saved picture");
+    await page.getByRole("button", { name: "Copy the address of this view" }).click();
+    expect(/address/.test(await page.textContent("#status")), "the address is announced");
+    await page.context().close();
+    const again = await open("flaws.html", { hash: address });
+    const state = await again.evaluate(() => { const a = window.brioPage; return { map: a.drawings[0].state.map, source: a.drawings[0].state.source, visible: a.drawings[1].state.visible, opacity: a.drawings[0].state.opacity, parallel: a.camera.parallel, cut: a.scene.cutting.at, theme: a.theme }; });
+    expect(JSON.stringify(state) === JSON.stringify({ map: "turbo", source: "v0", visible: false, opacity: 0.4, parallel: true, cut: 0.3, theme: "dark" }), `the address brings back ${JSON.stringify(state)}`);
+    expect(await again.evaluate(() => location.hash) === address, "the address stays as it was");
+    await again.context().close();
+    for (const nonsense of ["#%7B", "#null", "#[1]", "#" + encodeURIComponent('{"c":["a"],"l":{"0":{"source":"<b>","map":"constructor","opacity":"x"}},"p":[1,9,"z"]}')])
+        await (await open("flaws.html", { hash: nonsense })).context().close();
+}
+
+/** Drags, the wheel, keys and fingers move the camera; the place under the pointer stays where it is. */
+async function moving() {
+    const page = await open("bumps.html", { hasTouch: true });
+    const box = await page.locator("#canvas").boundingBox(), [cx, cy] = [box.x + box.width / 2, box.y + box.height / 2];
+    let before = await camera(page);
+    const moves = async (words, act, which) => {
+        await act();
+        await settled(page);
+        const after = await camera(page);
+        expect(moved(after, before) && which(after, before), `${words}: ${before} to ${after}`);
+        before = after;
+    };
+    const drag = (dx, dy, button = "left") => async () => {
+        await page.mouse.move(cx, cy);
+        await page.mouse.down({ button });
+        await page.mouse.move(cx + dx, cy + dy, { steps: 4 });
+        await page.mouse.up({ button });
+    };
+    await moves("a drag turns", drag(60, 20), (a, b) => a[0] < b[0] && a[1] > b[1] && a[3] === b[3]);
+    await moves("the right button pans", drag(50, 10, "right"), (a, b) => a[0] === b[0] && a[3] !== b[3]);
+    const place = [0.3, 0.4, 0], [px, py] = await placeOf(page, place);
+    await moves("the wheel zooms", async () => { await page.mouse.move(px, py); await page.mouse.wheel(0, -300); }, (a, b) => a[2] < b[2]);
+    const [qx, qy] = await placeOf(page, place);
+    expect(Math.hypot(qx - px, qy - py) < 25, `what is under the pointer went ${[qx - px, qy - py]}`);
+    await page.focus("#canvas");
+    await moves("arrows turn", () => press(page, "ArrowLeft", "ArrowUp"), (a, b) => a[0] > b[0] && a[1] < b[1]);
+    await moves("Shift and arrows pan", () => press(page, "Shift+ArrowRight"), (a, b) => a[3] !== b[3] || a[4] !== b[4]);
+    await moves("plus zooms", () => press(page, "+"), (a, b) => a[2] < b[2]);
+    await moves("minus zooms out", () => press(page, "-"), (a, b) => a[2] > b[2]);
+    await moves("3 looks from behind", () => press(page, "3"), a => Math.abs(a[0] - Math.PI) < 1e-3 && a[1] === 0);
+    await moves("0 resets", () => press(page, "0"), a => a[3] === 0 && a[2] === 3.9);
+    await press(page, "5", "Enter");
+    await page.waitForSelector("#card:not([hidden])");
+    const client = await page.context().newCDPSession(page);
+    const touch = (type, points) => client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    before = await camera(page);
+    await moves("a finger turns", async () => {
+        await touch("touchStart", [[cx, cy]]);
+        for (let i = 1; i < 5; i++) await touch("touchMove", [[cx + 15 * i, cy]]);
+        await touch("touchEnd", []);
+    }, (a, b) => a[0] < b[0] && a[2] === b[2]);
+    await moves("two fingers zoom", async () => {
+        await touch("touchStart", [[cx - 40, cy], [cx + 40, cy]]);
+        for (let i = 1; i < 5; i++) await touch("touchMove", [[cx - 40 - 12 * i, cy], [cx + 40 + 12 * i, cy]]);
+        await touch("touchEnd", []);
+    }, (a, b) => a[2] < 0.8 * b[2] && Math.abs(a[0] - b[0]) < 1e-4);
+    await page.context().close();
+}
+
+/** Tetrahedra: the section with the plane is seen, picked and coloured. */
+async function tetrahedra() {
+    run("generate", "cube", "-n", "300", "-o", "cube.xyz");
+    run("delaunay", "cube.xyz", "-o", "cube.vtu");
+    run("view", "cube.vtu", "-o", "cube.html");
+    const page = await open("cube.html");
+    await page.focus("#canvas");
+    await press(page, "1");
+    const box = await page.locator("#canvas").boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    await page.waitForSelector("#card:not([hidden])");
+    const pick = await page.evaluate(() => ({ tetrahedron: window.brioPage.picker.picks[0].tetrahedron, y: window.brioPage.scene.toFile(window.brioPage.picker.picks[0].point)[1] }));
+    expect(pick.tetrahedron !== null && Math.abs(pick.y - 0.5) < 0.02, `picked ${JSON.stringify(pick)}`);
+    const area = await page.evaluate(() => {
+        const d = window.brioPage.drawings[0], p = d.section.places, s = d.layer.meta.step;
+        let sum = 0;
+        for (let i = 0; i < p.length; i += 9) {
+            const [u, v] = [0, 2].map(k => [p[i + 3 + k] - p[i + k], p[i + 6 + k] - p[i + k]]);
+            sum += Math.abs(u[0] * v[1] - u[1] * v[0]) / 2 * s * s;
+        }
+        return sum;
+    });
+    expect(area > 0.85 && area < 1, `the section of a cube has the area ${area}`);
+    await page.context().close();
+}
+
+/** At 400 pixels nothing is wider than the window, and what axe calls serious is nowhere, dark or light. */
+async function narrow() {
+    const page = await open("flaws.html", { width: 400, height: 760 });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    expect(wide <= 400, `the page is ${wide} pixels wide`);
+    const box = await page.locator("#canvas").boundingBox();
+    expect(box.width > 390 && box.height > 250, `the picture is ${box.width} by ${box.height}`);
+    expect((await picture(page)).count > 2000, "the narrow picture is empty");
+    await accessible(page, "narrow");
+    await page.getByRole("button", { name: "Dark" }).click();
+    await accessible(page, "narrow and dark");
+    await page.context().close();
+}
+
+/** Texts of files are texts. */
+async function injection() {
+    const evil = "<img src=x onerror=alert(1)>";
+    writeFileSync(at(`${evil}.csv`), "x,y,z,</script><script>alert(2)</script>\n0,0,0,1\n1,0,0,2\n0,1,0,3\n");
+    run("view", `${evil}.csv`, "--title", evil, "-o", "evil.html");
+    const page = await open("evil.html");
+    page.on("dialog", () => expect(false, "a script of a file's name ran"));
+    expect(await page.textContent("h1") === evil && await page.locator("img").count() === 0, "a name became an element");
+    expect((await page.getByLabel("Colour by").textContent()).includes("script"), "the property is listed by its name");
+    await page.context().close();
+}
+
+/** Clouds, also of a million points: thinned while it moves; no frame blocks. */
+async function large() {
+    const measure = async (name, words) => {
+        const began = Date.now(), page = await open(name), seconds = (Date.now() - began) / 1000, first = await page.evaluate(() => window.brioPage.firstPicture / 1000);
+        await page.evaluate(() => { window.brioPage.longest = 0; });
+        const box = await page.locator("#canvas").boundingBox();
+        await page.mouse.move(box.x + 300, box.y + 300);
+        await page.mouse.down();
+        for (let i = 0; i < 20; i++) { await page.mouse.move(box.x + 300 + 5 * i, box.y + 300); await page.waitForTimeout(30); }
+        const longest = await page.evaluate(() => window.brioPage.longest);
+        await page.mouse.up();
+        await settled(page);
+        const size = statSync(at(name)).size / 1e6;
+        console.log(`${words}: ${size.toFixed(1)} MB, ${first.toFixed(1)} s to the first picture, ${seconds.toFixed(1)} s to the whole one, longest block while moving ${longest.toFixed(0)} ms`);
+        await page.context().close();
+        return { size, longest };
+    };
+    let state = 1;
+    const noise = () => (state = (state * 48271) % 2147483647) / 2147483647;
+    const n = 1001, vertices = [], faces = [];
+    for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) vertices.push([i + 0.3 * noise(), j + 0.3 * noise(), 30 * Math.sin(i / 60) * Math.cos(j / 45) + 0.3 * noise()]);
+    for (let i = 0; i + 1 < n; i++) for (let j = 0; j + 1 < n; j++) faces.push([i * n + j, (i + 1) * n + j, (i + 1) * n + j + 1], [i * n + j, (i + 1) * n + j + 1, i * n + j + 1]);
+    ply("large.ply", vertices, faces);
+    run("view", "large.ply", "-o", "large.html");
+    const mesh = await measure("large.html", "2 million triangles");
+    expect(mesh.size < 15, `the page of 2 million triangles has ${mesh.size} MB`);
+    expect(mesh.longest < 100, `a frame took ${mesh.longest} ms`);
+    run("generate", "sphere", "-n", "2000000", "-o", "cloud.npy");
+    run("view", "cloud.npy", "-o", "cloud.html");
+    const cloud = await measure("cloud.html", "2 million points");
+    expect(cloud.longest < 100, `a frame took ${cloud.longest} ms`);
+}
+
+const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection };
+const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, narrow, injection, large };
+try {
+    for (const [name, test] of Object.entries(length === "long" ? LONG : SHORT)) {
+        const began = Date.now();
+        try { await test(); } catch (error) { expect(false, `${name}: ${error.stack}`); }
+        if (length === "long") console.log(`${name}: ${((Date.now() - began) / 1000).toFixed(1)} s`);
+    }
+} finally {
+    await browser.close();
+    rmSync(folder, { recursive: true, force: true });
+}
+console.log(`${checks} checks, ${failures} failures`);
+process.exit(failures ? 1 : 0);

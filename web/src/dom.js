@@ -1,0 +1,33 @@
+// Elements of the page. Texts of files become text nodes only.
+
+export function make(name, properties = {}, ...children) {
+    const element = document.createElement(name);
+    for (const [key, value] of Object.entries(properties)) {
+        if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
+        else if (key in element && !key.startsWith("aria")) element[key] = value;
+        else element.setAttribute(key, value);
+    }
+    element.append(...children.filter(child => child !== null && child !== undefined));
+    return element;
+}
+export const at = id => document.getElementById(id);
+
+let number = 0;
+/** A control with its words before it, or behind it for a box to tick. */
+export function labelled(words, control) {
+    control.id ||= `c${number++}`;
+    const label = make("label", { htmlFor: control.id }, words);
+    return make("div", { className: control.type === "checkbox" ? "tick" : "field" }, ...(control.type === "checkbox" ? [control, label] : [label, control]));
+}
+
+/** The shortest decimal that reads back as the same number; `single` for numbers of single precision. */
+export function exactly(x, single = false) {
+    if (!single || !Number.isFinite(x)) return String(x);
+    for (let digits = 1; digits < 10; digits++) {
+        const text = x.toPrecision(digits);
+        if (Math.fround(+text) === x) return String(+text);
+    }
+    return String(x);
+}
+export const short = x => Number.isFinite(x) ? String(+x.toPrecision(6)) : "—";
+export const count = x => x.toLocaleString("en");

@@ -1,0 +1,212 @@
+// A layer on the graphics card: buffers, made when something first needs them, and the list of what to draw.
+import { inParts } from "./decode.js";
+import { LAYER_COLOURS } from "./colours.js";
+
+const NOTHING = 3.4e38; // a value that is no number
+
+/** How a layer is shown, at first. */
+export function defaultState(layer) {
+    const m = layer.meta, colours = layer.colours("v");
+    const few = edges => Math.max(edges, m.nonmanifold) < Math.max(1000, 0.1 * m.triangles); // more would hide the faces
+    const state = {
+        visible: true, faces: m.triangles > 0 || m.hull > 0, points: layer.kind === "cloud", wire: false, edges: m.edges > 0,
+        boundary: few(m.boundary), nonmanifold: few(m.nonmanifold), flipped: few(m.flipped), crossing: true, bridges: false,
+        flat: layer.sharp > 0.12, opacity: 1, pointSize: m.vertices < 5000 ? 6 : m.vertices < 100000 ? 4 : 3,
+        source: "plain", map: "viridis", low: 0, high: 1,
+    };
+    if (colours) state.source = "colours";
+    else if (layer.colours("f")) state.source = "face-colours";
+    else if (layer.kind === "cloud") {
+        const value = m.properties.find(p => ["confidence", "distance", "intensity", "value", "radius"].includes(p.name));
+        state.source = value ? value.block : "z";
+    }
+    return state;
+}
+
+export class Drawing {
+    constructor(gl, layer, state) {
+        this.gl = gl;
+        this.layer = layer;
+        this.state = state;
+        this.buffers = {};
+        this.arrays = {};
+        this.colour = LAYER_COLOURS[layer.number % LAYER_COLOURS.length].map(c => c / 255);
+        const n = layer.meta.vertices;
+        // A cloud is stored in an order whose beginnings are even choices of its points: place j has vertex j * stride % n.
+        this.stride = 1;
+        if (layer.kind === "cloud" && n > 2) {
+            const common = (a, b) => b ? common(b, a % b) : a;
+            this.stride = Math.max(1, Math.round(n * 0.6180339887));
+            while (common(this.stride, n) !== 1) this.stride++;
+        }
+    }
+    vertexAt(j) { return this.stride === 1 ? j : (j * this.stride) % this.layer.meta.vertices; }
+
+    buffer(name, data, target = this.gl.ARRAY_BUFFER) {
+        const gl = this.gl;
+        if (!this.buffers[name]) this.buffers[name] = { handle: gl.createBuffer(), count: 0 };
+        gl.bindVertexArray(null);
+        gl.bindBuffer(target, this.buffers[name].handle);
+        gl.bufferData(target, data, gl.STATIC_DRAW);
+        this.buffers[name].count = data.length;
+    }
+    indices(name, data) { this.buffer(name, data, this.gl.ELEMENT_ARRAY_BUFFER); }
+
+    /** Returns rows of `width` numbers in the order of the buffers. */
+    arranged(rows, width) {
+        if (this.stride === 1 || !rows) return rows;
+        const out = new rows.constructor(rows.length), n = this.layer.meta.vertices;
+        for (let j = 0, v = 0; j < n; j++, v = (v + this.stride) % n)
+            for (let k = 0; k < width; k++) out[width * j + k] = rows[width * v + k];
+        return out;
+    }
+
+    async prepare(budget) {
+        const l = this.layer;
+        this.buffer("place", this.arranged(l.positions, 3));
+        if (l.normals) this.buffer("normal", this.arranged(l.normals, 4));
+        if (l.triangles.length) this.indices("triangles", l.triangles);
+        if (l.hull.length) this.indices("hull", l.hull);
+        if (l.edges.length) this.indices("edges", l.edges);
+        for (const name of ["boundary", "nonmanifold", "flipped"]) this.wide(name, l[name]);
+        if (l.crossing) this.indices("crossing", l.trianglesWhere(f => l.crossing[f]));
+        const bridge = l.meta.face_properties.find(p => p.name === "bridge");
+        if (bridge) {
+            const values = await l.property("f", bridge);
+            const chosen = l.trianglesWhere(f => values[f]);
+            if (chosen.length) this.indices("bridges", chosen);
+        }
+        await this.recolour();
+        const all = l.triangles.length || l.hull.length;
+        if (all / 3 > budget / 4) {
+            let coarse = await l.coarse(96);
+            if (coarse.length / 3 > budget) coarse = await l.coarse(48);
+            if (coarse.length < all * 0.7) this.indices("coarse", coarse);
+        }
+    }
+    wide(name, list) {
+        if (!list.length) return;
+        const p = this.layer.positions, ends = new Float32Array(3 * list.length);
+        list.forEach((v, i) => ends.set(p.subarray(3 * v, 3 * v + 3), 3 * i));
+        this.buffer(name, ends);
+    }
+    async wireframe() {
+        if (!this.buffers.wire) this.indices("wire", await this.layer.wireframe());
+    }
+
+    /** Fills the buffers of colours as the state asks. `values` and the range stay for the histogram. */
+    async recolour() {
+        const s = this.state, l = this.layer;
+        const byFace = s.source === "face-colours" ? "f" : null;
+        this.mode = 0;
+        this.values = null;
+        this.expanded = false;
+        if (s.source === "colours" || byFace) {
+            const list = l.colours(byFace || "v"), count = byFace ? l.meta.faces : l.meta.vertices;
+            const channels = [];
+            for (const p of list) channels.push(await l.property(byFace || "v", p));
+            const most = channels.reduce((m, c) => c.reduce((a, x) => Math.max(a, x), m), 0);
+            const real = ["float32", "float64"].includes(list[0].type), scale = real && most <= 1 ? 255 : most > 255 ? 255 / 65535 : 1;
+            const rgba = new Uint8Array(4 * count).fill(255);
+            channels.forEach((c, k) => { for (let i = 0; i < count; i++) rgba[4 * i + k] = c[i] * scale; });
+            this.mode = 1;
+            if (byFace) await this.expand("rgba", rgba, 4);
+            else this.buffer("rgba", this.arranged(rgba, 4));
+        } else if (s.source !== "plain") {
+            const source = l.sources().find(x => x.id === s.source);
+            const values = await source.values();
+            let least = Infinity, most = -Infinity;
+            for (const x of values) { if (x < least && x > -Infinity) least = x; if (x > most && x < Infinity) most = x; }
+            if (least > most) least = most = 0;
+            Object.assign(this, { values, least, most, mode: 2 });
+            if (this.shownSource !== s.source && !s.keepRange) [s.low, s.high] = [least, most];
+            s.keepRange = false;
+            const width = most - least || 1;
+            const scaled = Float32Array.from(values, x => Number.isFinite(x) ? (x - least) / width : NOTHING);
+            if (source.where === "f") await this.expand("value", scaled, 1);
+            else this.buffer("value", this.arranged(scaled, 1));
+        }
+        this.shownSource = s.source;
+    }
+    /** The range of colours in the unit of the buffer. */
+    range() {
+        const s = this.state, width = this.most - this.least || 1;
+        return [(s.low - this.least) / width, (s.high - this.least) / width];
+    }
+
+    /** Triangles with corners of their own, for colours of faces. */
+    async expand(name, rows, width) {
+        const l = this.layer, t = l.triangles;
+        if (!this.buffers.placeX) {
+            const place = new Float32Array(3 * t.length), normal = new Int8Array(4 * t.length);
+            await inParts(t.length, (from, to) => {
+                for (let i = from; i < to; i++) {
+                    for (let k = 0; k < 3; k++) place[3 * i + k] = l.positions[3 * t[i] + k];
+                    for (let k = 0; k < 4; k++) normal[4 * i + k] = l.normals[4 * t[i] + k];
+                }
+            });
+            this.buffer("placeX", place);
+            this.buffer("normalX", normal);
+        }
+        const out = new rows.constructor(width * t.length);
+        await inParts(t.length, (from, to) => {
+            for (let i = from; i < to; i++) {
+                const f = l.faceAt(Math.floor(i / 3));
+                for (let k = 0; k < width; k++) out[width * i + k] = rows[width * f + k];
+            }
+        });
+        this.buffer(`${name}X`, out);
+        this.expanded = true;
+    }
+
+    /** The section with the plane; `values` of the vertices colour it. */
+    cutAt(normal, at) {
+        const l = this.layer, cut = l.section(normal, at), gl = this.gl;
+        this.section = cut;
+        this.buffer("placeS", cut.places);
+        if (this.mode === 2 && this.values && this.values.length === l.meta.vertices) {
+            const width = this.most - this.least || 1;
+            this.buffer("valueS", Float32Array.from(cut.weights, ([a, b, f]) => (this.values[a] + f * (this.values[b] - this.values[a]) - this.least) / width));
+        }
+        const lines = new Uint32Array(6 * cut.of.length);
+        let n = 0; // the outlines of the polygons: triangles of one tetrahedron follow each other
+        for (let i = 0; i < cut.of.length; i++) {
+            const first = i === 0 || cut.of[i - 1] !== cut.of[i], last = i + 1 === cut.of.length || cut.of[i + 1] !== cut.of[i];
+            if (first) lines[n++] = 3 * i, lines[n++] = 3 * i + 1;
+            lines[n++] = 3 * i + 1, lines[n++] = 3 * i + 2;
+            if (last) lines[n++] = 3 * i + 2, lines[n++] = 3 * i;
+        }
+        this.buffer("linesS", lines.subarray(0, n), gl.ELEMENT_ARRAY_BUFFER);
+    }
+
+    /** What to draw: [{program, set, index, primitive, count, mode, colour, ...}].   moving  fewer of it. */
+    items(moving, budget, cutting, colours) {
+        const s = this.state, b = this.buffers, gl = this.gl, out = [], l = this.layer;
+        if (!s.visible) return out;
+        const put = (program, more) => out.push({ drawing: this, program, set: "", index: null, primitive: gl.TRIANGLES, mode: this.mode,
+            colour: this.colour, size: 1, lit: true, back: true, opacity: s.opacity, ...more });
+        const solid = l.triangles.length ? "triangles" : "hull";
+        if (s.faces && b[solid]) {
+            if (moving && b.coarse) put("faces", { index: "coarse", mode: this.expanded ? 0 : this.mode, pick: false });
+            else if (this.expanded) put("faces", { set: "X", count: b.placeX.count / 3, pick: "corner" });
+            else put("faces", { index: solid, pick: "triangle" });
+        }
+        const small = !moving || !b.coarse;
+        if (small && s.faces && s.crossing && b.crossing) put("marks", { index: "crossing", mode: 0, colour: [0.92, 0.16, 0.24], back: false, opacity: 1 });
+        if (small && s.faces && s.bridges && b.bridges) put("marks", { index: "bridges", mode: 0, colour: [0.98, 0.66, 0.1], back: false, opacity: 1 });
+        if (cutting && b.placeS && this.section && this.section.of.length && s.faces) {
+            put("faces", { set: "S", count: b.placeS.count / 3, mode: this.mode === 2 && b.valueS ? 2 : 0, colour: this.colour.map(c => 0.85 * c), lit: false, uncut: true, back: false, pick: "section", opacity: 1 });
+            if (!moving || b.linesS.count < 2e5) put("lines", { set: "S", index: "linesS", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, uncut: true, opacity: this.section.of.length > 10000 ? 0.35 : 0.75 });
+        }
+        if (s.wire && b.wire && small) put("lines", { index: "wire", primitive: gl.LINES, mode: s.faces ? 0 : this.mode, colour: s.faces ? colours.line : this.colour, lit: false, opacity: s.faces ? 0.55 : 1 });
+        if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, lit: false, pick: "edge", opacity: 1 });
+        const wides = { boundary: [0.1, 0.62, 1], nonmanifold: [1, 0.24, 0.65], flipped: [0.95, 0.85, 0.1] };
+        for (const [name, colour] of Object.entries(wides))
+            if (s[name] && b[name] && s.faces) put("wide", { wide: name, count: b[name].count / 6, mode: 0, colour, size: 2.5, lit: false, opacity: 1 });
+        if (s.points) {
+            const all = l.meta.vertices, count = moving ? Math.min(all, 2 * budget) : all;
+            put("points", { count, primitive: gl.POINTS, size: s.pointSize, pick: "point" });
+        }
+        return out;
+    }
+}

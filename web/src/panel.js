@@ -1,0 +1,112 @@
+// The panel: for each layer what is shown of it, its colours, counts and certificate.
+import { MAPS, colourAt } from "./colours.js";
+import { count, labelled, make, short } from "./dom.js";
+
+const BINS = 64;
+
+const rows = list => make("dl", {}, ...list.filter(Boolean).flatMap(([k, v, bad]) => [make("dt", {}, k), make("dd", { className: bad ? "bad" : "" }, v)]));
+
+/** What a layer holds. */
+function counts(m) {
+    return rows([
+        ["vertices", count(m.all_vertices)],
+        m.all_vertices > m.vertices && ["of these on the page", count(m.vertices)],
+        m.all_faces && ["faces", count(m.all_faces)],
+        m.all_faces > m.faces && ["of these under three corners", count(m.all_faces - m.faces)],
+        m.tetrahedra && ["tetrahedra", count(m.tetrahedra)],
+        m.edges && ["edges", count(m.edges)],
+    ]);
+}
+function certificate(c) {
+    const yes = x => x ? "yes" : "no";
+    return rows([
+        ["closed", yes(c.closed)], ["manifold", yes(c.manifold), !c.manifold], ["oriented", yes(c.oriented), !c.oriented],
+        ["components", count(c.components)], ["genus", count(c.genus)],
+        c.boundary_edges && ["boundary", `${count(c.boundary_edges)} edges, ${count(c.boundary_loops)} ${c.boundary_loops === 1 ? "loop" : "loops"}`],
+        c.nonmanifold_edges && ["edges of over two faces", count(c.nonmanifold_edges), true],
+        c.nonmanifold_vertices && ["pinched vertices", count(c.nonmanifold_vertices), true],
+        c.flipped_edges && ["edges whose faces disagree", count(c.flipped_edges), true],
+        ["crossing faces", c.self_intersections < 0 ? "not counted" : `${count(c.self_intersections)} pairs`, c.self_intersections > 0],
+        c.area !== null && ["area", short(c.area)], c.closed && c.volume !== null && ["volume", short(c.volume)],
+    ]);
+}
+
+/** The histogram of the values, in the colours that they have. A drag over it sets the range. */
+function histogram(drawing, changed) {
+    const canvas = make("canvas", { className: "histogram", width: 256, height: 56, role: "img" });
+    const bins = new Float64Array(BINS), width = drawing.most - drawing.least || 1;
+    for (const x of drawing.values) if (Number.isFinite(x)) bins[Math.min(BINS - 1, Math.floor((x - drawing.least) / width * BINS))]++;
+    const most = Math.max(1, ...bins), state = drawing.state;
+    canvas.setAttribute("aria-label", `Histogram of ${count(drawing.values.length)} values from ${short(drawing.least)} to ${short(drawing.most)}`);
+    const draw = () => {
+        const c = canvas.getContext("2d");
+        c.clearRect(0, 0, 256, 56);
+        for (let i = 0; i < BINS; i++) {
+            const value = drawing.least + (i + 0.5) / BINS * width, t = state.high > state.low ? (value - state.low) / (state.high - state.low) : 0.5;
+            c.fillStyle = `rgb(${colourAt(state.map, t)})`;
+            const h = bins[i] ? Math.max(2, 46 * Math.sqrt(bins[i] / most)) : 0;
+            c.fillRect(4 * i, 48 - h, 4, h);
+            c.fillRect(4 * i, 50, 4, 6);
+        }
+    };
+    let from = null;
+    const valueAt = e => { const r = canvas.getBoundingClientRect(); return drawing.least + Math.max(0, Math.min(1, (e.clientX - r.left) / r.width)) * width; };
+    canvas.addEventListener("pointerdown", e => { from = valueAt(e); canvas.setPointerCapture(e.pointerId); });
+    canvas.addEventListener("pointermove", e => {
+        if (from === null) return;
+        const to = valueAt(e);
+        if (Math.abs(to - from) < width / 100) return;
+        [state.low, state.high] = [Math.min(from, to), Math.max(from, to)];
+        changed();
+    });
+    canvas.addEventListener("pointerup", () => { from = null; });
+    canvas.addEventListener("dblclick", () => { [state.low, state.high] = [drawing.least, drawing.most]; changed(); });
+    return { canvas, draw };
+}
+
+/** The part of the panel about one layer.   app  has redraw() and recolour(drawing). */
+export function layerPanel(drawing, app) {
+    const { layer, state } = drawing, m = layer.meta, name = m.name || `layer ${layer.number + 1}`;
+    const tick = (key, words, there, then = () => {}) => there ? labelled(words, make("input", {
+        type: "checkbox", checked: state[key], onchange: async e => { state[key] = e.target.checked; await then(); app.redraw(); },
+    })) : null;
+    const slide = (key, words, least, most, step) => labelled(words, make("input", {
+        type: "range", min: least, max: most, step, value: state[key], oninput: e => { state[key] = +e.target.value; app.redraw(true); },
+    }));
+    const b = drawing.buffers, surface = m.triangles > 0 || m.hull > 0;
+    const range = make("div", { className: "range" });
+    const map = make("select", { onchange: e => { state.map = e.target.value; refresh(); app.redraw(); } }, ...Object.keys(MAPS).map(x => make("option", { value: x, selected: x === state.map }, x)));
+    let shown = null;
+    const number = (key, words) => labelled(words, make("input", {
+        type: "text", inputMode: "decimal", value: short(state[key]),
+        onchange: e => { if (Number.isFinite(+e.target.value) && e.target.value.trim()) state[key] = +e.target.value; refresh(); app.redraw(); },
+    }));
+    const refresh = () => {
+        range.replaceChildren();
+        if (drawing.mode !== 2) return;
+        if (!shown || shown.values !== drawing.values) shown = { values: drawing.values, ...histogram(drawing, () => { refresh(); app.redraw(true); }) };
+        shown.draw();
+        range.append(labelled("Colour map", map), shown.canvas, make("div", { className: "pair" }, number("low", "from"), number("high", "to")));
+    };
+    const sources = [["plain", "one colour"], layer.colours("v") && ["colours", "colours of the file"], layer.colours("f") && ["face-colours", "colours of the faces"],
+        ...layer.sources().map(s => [s.id, s.label])].filter(Boolean);
+    const source = make("select", {
+        onchange: async e => { state.source = e.target.value; await app.recolour(drawing); refresh(); app.redraw(); },
+    }, ...sources.map(([value, words]) => make("option", { value, selected: value === state.source }, words)));
+    refresh();
+    drawing.refreshPanel = () => { source.value = state.source; map.value = state.map; refresh(); };
+    const shownParts = make("fieldset", {}, make("legend", {}, "Show"),
+        tick("faces", "faces", surface), tick("wire", "wireframe", surface, () => drawing.wireframe()), tick("points", "points", true),
+        tick("edges", "edges", m.edges > 0), tick("boundary", "boundary", m.boundary > 0), tick("nonmanifold", "edges of over two faces", m.nonmanifold > 0),
+        tick("flipped", "edges whose faces disagree", m.flipped > 0), tick("crossing", "crossing faces", !!(b.crossing && b.crossing.count)),
+        tick("bridges", "bridges", !!b.bridges), tick("flat", "flat shading", surface));
+    const notes = [!m.exact && `Coordinates are rounded to ${short(m.step)}, properties to 16 bits of their range: brio view --exact keeps all.`,
+        m.all_vertices > m.vertices && `An even choice of ${count(m.vertices)} of ${count(m.all_vertices)} points.`].filter(Boolean);
+    return make("section", { className: "layer", "aria-label": name },
+        make("h2", {}, make("input", { type: "checkbox", id: `visible${layer.number}`, checked: state.visible, onchange: e => { state.visible = e.target.checked; app.redraw(); } }),
+            make("label", { htmlFor: `visible${layer.number}`, className: "name" }, make("span", { className: "swatch", style: `background: rgb(${drawing.colour.map(c => Math.round(255 * c))})` }), name)),
+        counts(m), ...notes.map(words => make("p", { className: "note" }, words)), shownParts, labelled("Colour by", source), range,
+        surface ? slide("opacity", "Opacity", 0.1, 1, 0.05) : null, slide("pointSize", "Point size", 1, 16, 1),
+        m.certificate ? make("details", { open: true }, make("summary", {}, "Certificate"), certificate(m.certificate)) : null,
+        m.report ? make("details", {}, make("summary", {}, "Report"), make("pre", { tabIndex: 0 }, m.report)) : null);
+}

@@ -1,0 +1,80 @@
+// The scene: all layers in one box of about [-1, 1], the cutting plane, and what stands at a place of the picture.
+import { dot, length, sub } from "./matrix.js";
+
+export class Scene {
+    constructor(layers) {
+        this.layers = layers;
+        const low = [0, 0, 0], high = [0, 0, 0];
+        for (let k = 0; k < 3; k++) {
+            low[k] = Math.min(...layers.map(l => l.meta.low[k]));
+            high[k] = Math.max(...layers.map(l => l.meta.low[k] + l.meta.step * l.size[k]));
+        }
+        this.centre = low.map((x, k) => x / 2 + high[k] / 2);
+        const half = Math.max(...low.map((x, k) => high[k] / 2 - x / 2));
+        this.unit = half > 0 ? half : 1;
+        this.half = low.map((x, k) => (high[k] / 2 - x / 2) / this.unit);
+        this.cutting = { on: false, axis: 0, at: 0.5, flip: false };
+    }
+    /** Where the whole numbers of a layer are in the scene: xyz, and the length of a step. */
+    placeOf(layer) {
+        const m = layer.meta;
+        return Float32Array.from([...m.low.map((x, k) => 2 * ((x / 2 - this.centre[k] / 2) / this.unit)), m.step / this.unit]);
+    }
+    fromFile(p) { return p.map((x, k) => 2 * ((x / 2 - this.centre[k] / 2) / this.unit)); }
+    toFile(p) { return p.map((x, k) => this.centre[k] + this.unit * x); }
+
+    /** The plane: what has normal . p > offset is cut away. Null without one. */
+    get cut() {
+        const c = this.cutting;
+        if (!c.on) return null;
+        const normal = [0, 0, 0], sign = c.flip ? -1 : 1;
+        normal[c.axis] = sign;
+        return [...normal, sign * this.half[c.axis] * (2 * c.at - 1) * 1.0001];
+    }
+    /** The plane in the steps of a layer. */
+    cutIn(place) {
+        const [x, y, z, d] = this.cut;
+        return [[x, y, z], (d - dot([x, y, z], place)) / place[3]];
+    }
+
+    /** What a pick of the renderer found: {drawing, vertex, face, tetrahedron, point}. */
+    identify(found) {
+        const { drawing, kind, id, point } = found, l = drawing.layer, place = drawing.place;
+        const q = point.map((x, k) => (x - place[k]) / place[3]);
+        const at = v => [0, 1, 2].map(k => l.positions[3 * v + k]);
+        const nearest = list => list.reduce((a, v) => length(sub(at(v), q)) < length(sub(at(a), q)) ? v : a);
+        const out = { drawing, point, vertex: 0, face: null, tetrahedron: null };
+        if (kind === "point") out.vertex = drawing.vertexAt(id);
+        else if (kind === "edge") out.vertex = id;
+        else if (kind === "section") {
+            out.tetrahedron = drawing.section.of[Math.floor(id / 3)];
+            out.vertex = nearest(Array.from(l.tetrahedra.subarray(4 * out.tetrahedron, 4 * out.tetrahedron + 4)));
+        } else {
+            const t = l.triangles.length ? l.triangles : l.hull;
+            const chosen = kind === "corner" ? Math.floor(id / 3) : nearestTriangle(t, id, q, at);
+            out.vertex = nearest(Array.from(t.subarray(3 * chosen, 3 * chosen + 3)));
+            if (l.triangles.length) out.face = l.faceAt(chosen);
+        }
+        return out;
+    }
+}
+
+/** Of the triangles whose last corner is v, the one that is nearest to q. */
+function nearestTriangle(triangles, v, q, at) {
+    let best = 0, least = Infinity;
+    for (let i = 2; i < triangles.length; i += 3) {
+        if (triangles[i] !== v) continue;
+        const a = at(triangles[i - 2]), b = at(triangles[i - 1]), c = at(v);
+        const far = distanceTo(a, b, c, q);
+        if (far < least) least = far, best = (i - 2) / 3;
+    }
+    return best;
+}
+
+function distanceTo(a, b, c, q) {
+    const u = sub(b, a), w = sub(c, a), p = sub(q, a);
+    const uu = dot(u, u), uw = dot(u, w), ww = dot(w, w), pu = dot(p, u), pw = dot(p, w), d = uu * ww - uw * uw || 1e-30;
+    let s = Math.max(0, Math.min(1, (ww * pu - uw * pw) / d)), t = Math.max(0, Math.min(1, (uu * pw - uw * pu) / d));
+    if (s + t > 1) { const over = s + t; s /= over; t /= over; }
+    return length([0, 1, 2].map(k => p[k] - s * u[k] - t * w[k]));
+}
