@@ -185,8 +185,9 @@ static brio_status check_periodic(run *r, const arguments *a) {
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->tiles;
     if (a->periodic.cell && open)
-        return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--cell goes with --verify and weights, not with --plane, --tiles, orders, locations or records");
+        return cli_fail(
+            r, BRIO_ERR_ARGUMENT,
+            "--cell goes with --verify and weights, not with --plane, --tiles, orders, locations or records");
     return BRIO_OK;
 }
 
