@@ -3,7 +3,6 @@
 #include "predicates/lanes_avx512.h"
 
 #include "triangulation/conflict_lanes.h"
-#include "triangulation/sweep_lanes.h"
 #include "triangulation/walk_lanes.h"
 
 #define WALK    walk

@@ -2,7 +2,6 @@
 #include "predicates/lanes_plain.h"
 
 #include "triangulation/conflict_lanes.h"
-#include "triangulation/sweep_lanes.h"
 
 #define WALK    brio_locate_walk
 #define ABREAST brio_locate_abreast
