@@ -174,7 +174,7 @@ static void a_run_is_resumed(void) {
     EXPECT(rename(left, kept) == 0); /* as if the process were killed: nothing is removed */
     brio_tiles_free(t);
     EXPECT(rename(kept, left) == 0);
-    snprintf(kept, sizeof kept, "%s/tile-2", left);
+    snprintf(kept, sizeof kept, "%.110s/tile-2", left);
     EXPECT(truncate(kept, 100) == 0); /* not whole: made again */
     t = tiles_of(ctx, 4, n, false, 99);
     EXPECT(brio_tiles_has_points(t));
