@@ -127,10 +127,52 @@ static PyObject *convert(PyObject *module, PyObject *args) {
     return result;
 }
 
+/* --- pages --- */
+
+enum { MOST_LAYERS = 12 }; /* as brio view shows: the page has as many colours */
+
+static PyObject *refuse_layers(module_state *state) {
+    raise_argument(state, PyUnicode_FromFormat("a page shows at most %d meshes", MOST_LAYERS));
+    return NULL;
+}
+
+/* write_page(path, ((mesh, name, report), ...), (title, most_points, exact, self_intersections, side_by_side), threads,
+ * progress); name, report and title may be None */
+static PyObject *write_page(PyObject *module, PyObject *args) {
+    PyObject *given, *progress;
+    brio_page_options o = {.size = sizeof o};
+    brio_page_layer layers[MOST_LAYERS] = {{0}};
+    const brio_page_layer *list[MOST_LAYERS];
+    Py_ssize_t points;
+    const char *path;
+    int threads;
+    call c;
+    brio_status status;
+    if (!PyArg_ParseTuple(args, "yO!(znppp)iO", &path, &PyTuple_Type, &given, &o.title, &points, &o.exact,
+                          &o.self_intersections, &o.side_by_side, &threads, &progress))
+        return NULL;
+    Py_ssize_t count = PyTuple_Size(given);
+    if (count > MOST_LAYERS) return refuse_layers(state_of(module));
+    for (Py_ssize_t i = 0; i < count; i++) {
+        PyObject *object;
+        if (!PyArg_ParseTuple(PyTuple_GetItem(given, i), "Ozz", &object, &layers[i].name, &layers[i].report))
+            return NULL;
+        layers[i].mesh = handle_object(state_of(module), object, KIND_MESH);
+        if (!layers[i].mesh) return NULL;
+        list[i] = &layers[i];
+    }
+    o.most_points = (size_t)points;
+    if (call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_write_page(c.ctx, path, list, (size_t)count, &o, NULL));
+    if (call_end(&c, status)) return NULL;
+    Py_RETURN_NONE;
+}
+
 PyMethodDef files_methods[] = {
     {"read", read_mesh, METH_VARARGS, "read(path, format, columns, threads, progress): a mesh."},
     {"write", write_mesh, METH_VARARGS, "write(path, mesh, (ascii, float32, compress, comment), threads, progress)"},
     {"convert", convert, METH_VARARGS,
      "convert(from, to, columns, write options, box, (neighbours, factor, thin, merge, distance), threads, progress)"},
+    {"write_page", write_page, METH_VARARGS, "write_page(path, layers, options, threads, progress)"},
     {NULL, NULL, 0, NULL},
 };

@@ -10,7 +10,7 @@ import subprocess
 import formats
 from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
-COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "generate", "subdivide", "simplify", "terrain",
+COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "view", "generate", "subdivide", "simplify", "terrain",
             "locate", "interpolate", "voronoi", "restricted", "tree", "balls"]
 COMMON_OPTIONS = ["--output", "--view", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]

@@ -551,10 +551,14 @@ class Mesh:
         comment : str, optional
             A line for the header.
         """
-        handle = self._copy(scalars(self._sound_properties()), scalars(self._sound_face_properties()))
+        handle = self._for_files()
         comment = None if comment is None else as_text(comment, "comment")
         with reporting(progress) as report:
             _native.write(as_path(path), handle, (ascii, float32, compress, comment), 0, report)
+
+    def _for_files(self) -> Any:
+        """The mesh with properties of the types that files have."""
+        return self._copy(scalars(self._sound_properties()), scalars(self._sound_face_properties()))
 
     # --- for other packages, none of which is needed otherwise ---
 

@@ -1,0 +1,105 @@
+"""Pages that show meshes in a browser, or in a cell of a notebook."""
+
+from __future__ import annotations
+
+import html
+import os
+import tempfile
+import webbrowser
+from collections.abc import Sequence
+from typing import Any
+
+from . import _native
+from ._arrays import as_count, as_path, as_text
+from ._calls import Progress, reporting
+from ._files import Path
+from ._mesh import Mesh
+from .errors import ArgumentError
+
+__all__ = ["Page", "view"]
+
+
+class Page:
+    """A page that `view` made. As the last value of a notebook's cell it is shown there.
+
+    Attributes
+    ----------
+    html : str
+        The whole page.
+    height : int
+        Of the cell's frame, in pixels.
+    """
+
+    def __init__(self, text: str, height: int = 520) -> None:
+        self.html, self.height = text, height
+
+    def __repr__(self) -> str:
+        return "<brio.Page of %.1f MB: save(path), open()>" % (len(self.html) / 1e6)
+
+    def save(self, path: Path) -> None:
+        """Writes the page to a file, such as page.html."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.html)
+
+    def open(self) -> str:
+        """Opens the page in a browser; returns the file that it wrote for that."""
+        number, path = tempfile.mkstemp(suffix=".html", prefix="brio-")
+        os.close(number)
+        self.save(path)
+        webbrowser.open("file://" + path)
+        return path
+
+    def _repr_html_(self) -> str:
+        return ('<iframe srcdoc="%s" style="width: 100%%; height: %dpx; border: 0" title="brio"></iframe>'
+                % (html.escape(self.html), self.height))
+
+
+def view(*meshes: Any, names: Sequence[str] | None = None, title: str | None = None, points: int = 0, exact: bool = False,
+         self_intersections: bool = False, side_by_side: bool = False, height: int = 520, threads: int = 0,
+         progress: bool | Progress | None = None) -> Page:
+    """Makes a page that shows meshes, or arrays of points, in a browser or in a cell of a notebook.
+
+    The page needs no network. It shows points, faces, edges and tetrahedra, properties as colours, and the certificate;
+    docs/view.md describes it.
+
+    Parameters
+    ----------
+    meshes : Mesh or array_like, shape (n, 3)
+        One to twelve: layers of one scene.
+    names : sequence of str, optional
+        A name for each.
+    title : str, optional
+    points : int
+        Clouds of more points are thinned evenly to this number; 0 stands for 5,000,000.
+    exact : bool
+        Every number to the last bit, also of more than 250,000 vertices.
+    self_intersections : bool
+        Finds the faces that run through each other.
+    side_by_side : bool
+        Opens with the meshes side by side, instead of over each other.
+    height : int
+        Of the frame in a notebook, in pixels.
+
+    Returns
+    -------
+    Page
+
+    Examples
+    --------
+    >>> import brio
+    >>> page = brio.view(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), names=["a triangle"])
+    >>> "a triangle" in page.html
+    True
+    """
+    list_of = [m if isinstance(m, Mesh) else Mesh(m) for m in meshes]
+    words = [as_text(name, "names") for name in names] if names is not None else [None] * len(list_of)
+    if len(words) != len(list_of):
+        raise ArgumentError("names: %d for %d meshes" % (len(words), len(list_of)))
+    layers = tuple((m._for_files(), name, None) for m, name in zip(list_of, words))
+    options = (None if title is None else as_text(title, "title"), as_count(points, "points"), exact, self_intersections, side_by_side)
+    with tempfile.TemporaryDirectory(prefix="brio-") as folder:
+        path = os.path.join(folder, "page.html")
+        with reporting(progress) as report:
+            _native.write_page(as_path(path), layers, options, threads, report)
+        with open(path, encoding="utf-8") as file:
+            return Page(file.read(), as_count(height, "height", 1))

@@ -1,0 +1,48 @@
+"""Pages of brio.view: what they hold is tested in tests/cli/test_view.py, what they show in tests/browser."""
+
+import html
+import re
+
+import numpy as np
+import pytest
+
+import brio
+
+TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+
+
+def test_a_page_holds_every_mesh_by_its_name():
+    page = brio.view(brio.Mesh(TRIANGLE, [[0, 1, 2]]), np.random.default_rng(1).random((50, 3)), names=["one", "<b>two"],
+                     title="both", side_by_side=True)
+    assert page.html.count('class="layer"') == 2
+    assert '"name":"one"' in page.html and '"name":"\\u003cb\\u003etwo"' in page.html
+    assert '"title":"both","beside":1' in page.html
+
+
+def test_properties_of_numpys_types_are_taken():
+    mesh = brio.Mesh(TRIANGLE, [[0, 1, 2]], properties={"count": np.arange(3, dtype=np.int64)})
+    assert re.search(r'"name":"count","type":"int32"', brio.view(mesh).html)
+
+
+def test_a_cell_shows_the_page_and_nothing_of_it_is_taken_for_the_notebooks():
+    page = brio.view(TRIANGLE, height=300)
+    frame = re.fullmatch(r'<iframe srcdoc="([^"]*)" style="width: 100%; height: 300px; border: 0" title="brio"></iframe>', page._repr_html_())
+    assert frame and html.unescape(frame.group(1)) == page.html
+
+
+def test_a_page_is_saved(tmp_path):
+    page = brio.view(TRIANGLE)
+    page.save(tmp_path / "p.html")
+    assert (tmp_path / "p.html").read_text(encoding="utf-8") == page.html
+    assert "save" in repr(page)
+
+
+def test_wrong_calls():
+    with pytest.raises(brio.ArgumentError):
+        brio.view()
+    with pytest.raises(brio.ArgumentError):
+        brio.view(TRIANGLE, names=["a", "b"])
+    with pytest.raises(brio.ArgumentError):
+        brio.view(*[TRIANGLE] * 13)
+    with pytest.raises(brio.ArgumentError):
+        brio.view(TRIANGLE, title=3)
