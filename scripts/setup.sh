@@ -1,6 +1,6 @@
 #!/bin/sh
 # setup.sh PURPOSE: sees to the tools that building, testing or measuring needs; the purposes are those at the end of this file.
-# `check` makes the environment of the tests' Python packages, and `packages` fills it, so that this can go on beside a build.
+# `check` makes the environment of the tests' Python packages; `packages` fills it and sets up `web`, which goes on beside a build.
 # What is missing is installed where that is possible (Debian, as root); otherwise it is named, and the exit status is 1. For
 # `build` nothing is installed unless BRIO_SETUP is 1, as `make setup` and `make demo` set it.
 set -eu
@@ -125,10 +125,10 @@ missing_peers() {
         has clang-tidy || echo clang-tidy
         has cppcheck || echo cppcheck
     fi
-    if [ "$1" = web ] || [ "$1" = check ]; then
+    if [ "$1" = web ]; then
         has chromium || echo chromium
         has npm || echo nodejs npm
-        [ "$1" = check ] || return 0
+        return 0
     fi
     case $1 in build | model | threads | analyze | fuzz | coverage | oracles | quality | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
@@ -273,6 +273,7 @@ purpose=${1:-build}
 case $purpose in
 packages)
     install_tests_packages
+    sh "$0" web || true
     exit 0
     ;;
 build | check | web | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | deb) ;;
@@ -295,7 +296,7 @@ if [ -z "$packages" ]; then
     [ "$purpose" != rivals ] || install_open3d
     [ "$purpose" != targets ] || install_cross_compiler
     [ "$purpose" != check ] || make_tests_environment
-    case $purpose in check | web) install_web ;; esac
+    [ "$purpose" != web ] || install_web
     exit 0
 fi
 echo "setup: these are needed and missing: $packages" >&2
