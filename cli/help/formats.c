@@ -16,7 +16,6 @@ static const struct {
             {BRIO_HOLDS_NAMES, "names", "their names"},
             {BRIO_HOLDS_COLOURS, "colours", "colours"},
             {BRIO_HOLDS_NORMALS, "normals", "normals"},
-            {BRIO_HOLDS_INTENSITY, "intensity", "intensity"},
             {BRIO_HOLDS_DOUBLES, "doubles", "double precision"},
             {BRIO_HOLDS_SINGLES, "singles", "single precision"},
             {BRIO_HOLDS_ORIGIN, "origin", "an origin"},
@@ -27,6 +26,22 @@ static const struct {
             {BRIO_HOLDS_RARE_DOUBLES, "rare_doubles", "--float32 for most readers"}};
 
 enum { NUM_HELD = sizeof held / sizeof *held };
+
+/* Returns word i of what a written format holds, for programs or for a sentence; NULL after the last. Single properties
+ * that it holds come after the normals, by their names.   name  room for one. */
+static const char *word_of(const brio_format_info *info, size_t i, bool json, char name[32]) {
+    for (size_t k = 0; k < NUM_HELD && info->written[0]; k++) {
+        if (info->holds & held[k].bit && i-- == 0) return json ? held[k].key : held[k].words;
+        const char *at = held[k].bit == BRIO_HOLDS_NORMALS && info->properties ? info->properties : "";
+        for (; *at; at += *at == ' ') {
+            size_t length = strcspn(at, " ");
+            snprintf(name, 32, "%.*s", (int)length, at);
+            if (i-- == 0) return name;
+            at += length;
+        }
+    }
+    return NULL;
+}
 
 /* Adds a list of extensions, "ply vtu", as .ply and .vtu. */
 static void list_extensions(facts *f, const char *name, const char *extensions) {
@@ -47,6 +62,7 @@ static void print_formats_for_programs(FILE *out) {
     for (int i = 1; i <= BRIO_FORMAT_MOST; i++) {
         const brio_format_info *info = brio_format_facts((brio_format)i);
         char name[32];
+        const char *word;
         if (!info) continue;
         snprintf(name, sizeof name, "%.*s", (int)strcspn(info->extensions, " "), info->extensions);
         cli_fact_open(&f, NULL, FACT_OBJECT);
@@ -56,8 +72,7 @@ static void print_formats_for_programs(FILE *out) {
         list_extensions(&f, "read", info->extensions);
         list_extensions(&f, "written", info->written);
         cli_fact_open(&f, "holds", FACT_LIST);
-        for (size_t k = 0; k < NUM_HELD && info->written[0]; k++)
-            if (info->holds & held[k].bit) cli_fact_text(&f, NULL, held[k].key);
+        for (size_t k = 0; (word = word_of(info, k, true, name)); k++) cli_fact_text(&f, NULL, word);
         cli_fact_close(&f);
         cli_fact_close(&f);
     }
@@ -67,7 +82,8 @@ static void print_formats_for_programs(FILE *out) {
 }
 
 static void print_format(FILE *out, const brio_format_info *info) {
-    char left[128] = "", meaning[512];
+    char left[128] = "", meaning[512], name[32];
+    const char *word;
     size_t used = 0, length = 0;
     for (const char *e = info->extensions; *e && used + 3 < sizeof left; e++) {
         if (e == info->extensions || e[-1] == ' ') left[used++] = '.';
@@ -75,9 +91,8 @@ static void print_format(FILE *out, const brio_format_info *info) {
     }
     length = (size_t)snprintf(meaning, sizeof meaning, "%s", info->name);
     const char *separator = ": ";
-    for (size_t k = 0; k < NUM_HELD && info->written[0]; k++) {
-        if (!(info->holds & held[k].bit)) continue;
-        length += (size_t)snprintf(meaning + length, sizeof meaning - length, "%s%s", separator, held[k].words);
+    for (size_t k = 0; (word = word_of(info, k, false, name)); k++) {
+        length += (size_t)snprintf(meaning + length, sizeof meaning - length, "%s%s", separator, word);
         separator = ", ";
     }
     if (!info->written[0]) snprintf(meaning + length, sizeof meaning - length, ", read only");

@@ -86,12 +86,11 @@ enum {
     BRIO_HOLDS_COMPRESSED = 512,       /* brio_write_options.compress has a meaning */
     BRIO_HOLDS_COLOURS = 1024,         /* red, green and blue, though not all properties */
     BRIO_HOLDS_NORMALS = 2048,         /* nx, ny and nz, though not all properties */
-    BRIO_HOLDS_INTENSITY = 4096,       /* intensity, though not all properties */
+    BRIO_HOLDS_RARE_DOUBLES = 4096,    /* doubles that the usual readers of the format take for zeros: not singles */
     BRIO_HOLDS_FACE_PROPERTIES = 8192, /* of the faces, any of them */
     BRIO_HOLDS_FACE_COLOURS = 16384,   /* red, green, blue and alpha of the faces, though not all properties */
     BRIO_HOLDS_ORIGIN = 32768,         /* an origin, from which coordinates in single precision are counted */
-    BRIO_HOLDS_PLACES = 65536,         /* places of its parts, known at its end: it goes to a file, not into a pipe */
-    BRIO_HOLDS_RARE_DOUBLES = 131072   /* doubles that the usual readers of the format take for zeros: not singles */
+    BRIO_HOLDS_PLACES = 65536          /* places of its parts, known at its end: it goes to a file, not into a pipe */
 };
 
 /** What is known of a format. */
@@ -104,6 +103,8 @@ typedef struct brio_format_info {
     const char *written;      /* those of them that are written; "" if the format is read only */
     unsigned holds;           /* BRIO_HOLDS_FACES and so on: what a file that brio writes can hold */
     unsigned most_properties; /* in a file; 0: any number */
+    const char *properties;   /* names of single ones that are held though not all are, such as "intensity", blanks
+                                 between them; NULL: none */
 } brio_format_info;
 
 /** Returns what is known of a format, valid for ever; NULL for BRIO_FORMAT_AUTO and what is no format. */

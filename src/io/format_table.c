@@ -24,92 +24,96 @@ extern const brio_codec brio_ply_codec, brio_off_codec, brio_vtp_codec, brio_vtu
 /* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
 static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_PLY, "a PLY file", "ply", "ply",
-      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, BRIO_MOST_NUMBERS - 3},
+      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, BRIO_MOST_NUMBERS - 3,
+      NULL},
      .codec = &brio_ply_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_OFF, "an OFF file", "off", "off",
-      BRIO_HOLDS_FACES | BRIO_HOLDS_FACE_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_FACES | BRIO_HOLDS_FACE_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
      .codec = &brio_off_codec,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTP, "a VTP file", "vtp", "vtp",
-      POINTS | FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS},
+      POINTS | FACES | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS,
+      NULL},
      .codec = &brio_vtp_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTU, "a VTU file", "vtu", "vtu",
       POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_COMPRESSED,
-      BRIO_MOST_NUMBERS},
+      BRIO_MOST_NUMBERS, NULL},
      .codec = &brio_vtu_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_VTK, "a legacy VTK file", "vtk", "vtk",
-      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 4096},
+      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, 4096, NULL},
      .codec = &brio_vtk_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},
-    {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "laz", POINTS | BRIO_HOLDS_BINARY, 0},
+    {{sizeof(brio_format_info), BRIO_FORMAT_LAZ, "a LAZ file", "laz", "laz", POINTS | BRIO_HOLDS_BINARY, 0, NULL},
      .codec = &brio_laz_codec,
      .colours = BRIO_COLOURS_16,
      .keeps = "crs. las."},
-    {{sizeof(brio_format_info), BRIO_FORMAT_LAS, "a LAS file", "las", "las", POINTS | BRIO_HOLDS_BINARY, 0},
+    {{sizeof(brio_format_info), BRIO_FORMAT_LAS, "a LAS file", "las", "las", POINTS | BRIO_HOLDS_BINARY, 0, NULL},
      .codec = &brio_las_codec,
      .colours = BRIO_COLOURS_16,
      .keeps = "crs. las."},
     {{sizeof(brio_format_info), BRIO_FORMAT_PCD, "a PCD file", "pcd", "pcd",
-      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_RARE_DOUBLES | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS - 3},
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_RARE_DOUBLES | BOTH_FORMS | BRIO_HOLDS_COMPRESSED, BRIO_MOST_NUMBERS - 3,
+      NULL},
      .codec = &brio_pcd_codec,
      .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPY, "an NPY file", "npy", "npy",
-      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, BRIO_MOST_NUMBERS - 3},
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY, BRIO_MOST_NUMBERS - 3, NULL},
      .codec = &brio_npy_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_GLB, "a GLB file", "glb gltf", "glb",
-      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BRIO_HOLDS_SINGLES | BRIO_HOLDS_ORIGIN | BRIO_HOLDS_BINARY, 256},
+      POINTS | BRIO_HOLDS_FACES | BRIO_HOLDS_EDGES | BRIO_HOLDS_SINGLES | BRIO_HOLDS_ORIGIN | BRIO_HOLDS_BINARY, 256,
+      NULL},
      .codec = &brio_glb_codec,
      .colours = BRIO_COLOURS_NORMALIZED},
     {{sizeof(brio_format_info), BRIO_FORMAT_E57, "an E57 file", "e57", "e57",
-      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY | BRIO_HOLDS_PLACES, 252},
+      POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY | BRIO_HOLDS_PLACES, 252, NULL},
      .codec = &brio_e57_codec,
      .colours = BRIO_COLOURS_8_OR_16,
      .scans = true,
      .keeps = "crs.wkt"},
     {{sizeof(brio_format_info), BRIO_FORMAT_NPZ, "an NPZ file", "npz", "", POINTS | BOTH_PRECISIONS | BRIO_HOLDS_BINARY,
-      0},
+      0, NULL},
      .codec = &brio_npz_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_STL, "an STL file", "stl", "stl",
-      BRIO_HOLDS_FACES | BRIO_HOLDS_SINGLES | BOTH_FORMS, 0},
+      BRIO_HOLDS_FACES | BRIO_HOLDS_SINGLES | BOTH_FORMS, 0, NULL},
      .codec = &brio_stl_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_OBJ, "an OBJ file", "obj", "obj",
-      BRIO_HOLDS_FACES | BRIO_HOLDS_COLOURS | BRIO_HOLDS_NORMALS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_FACES | BRIO_HOLDS_COLOURS | BRIO_HOLDS_NORMALS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
      .codec = &brio_obj_codec,
      .colours = BRIO_COLOURS_UNIT},
     {{sizeof(brio_format_info), BRIO_FORMAT_NODE, "a NODE file", "node ele", "node",
-      BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS},
+      BRIO_HOLDS_PROPERTIES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS, NULL},
      .codec = &brio_node_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_PTX, "a PTX file", "ptx", "ptx",
-      BRIO_HOLDS_COLOURS | BRIO_HOLDS_INTENSITY | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, "intensity"},
      .codec = &brio_ptx_codec,
      .colours = BRIO_COLOURS_8,
      .scans = true},
     {{sizeof(brio_format_info), BRIO_FORMAT_BNPTS, "a BNPTS file", "bnpts", "", BRIO_HOLDS_SINGLES | BRIO_HOLDS_BINARY,
-      0},
+      0, NULL},
      .codec = &brio_bnpts_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_CHEMICAL, "a chemical XYZ file", "chemical extxyz", "",
-      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
      .codec = &brio_chemical_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_PTS, "a PTS file", "pts", "pts",
-      BRIO_HOLDS_COLOURS | BRIO_HOLDS_INTENSITY | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, "intensity"},
      .codec = &brio_pts_codec,
      .colours = BRIO_COLOURS_8},
     {{sizeof(brio_format_info), BRIO_FORMAT_XYZRGB, "a text of points with colours", "xyzrgb", "xyzrgb",
-      BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
      .codec = &brio_xyzrgb_codec,
      .colours = BRIO_COLOURS_UNIT},
     {{sizeof(brio_format_info), BRIO_FORMAT_XYZN, "a text of points with normals", "xyzn", "xyzn",
-      BRIO_HOLDS_NORMALS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0},
+      BRIO_HOLDS_NORMALS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
      .codec = &brio_xyzn_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_XYZ, "a text of points", "xyz txt csv asc tsv dat", "xyz txt csv asc tsv",
-      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS - 3},
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, BRIO_MOST_NUMBERS - 3, NULL},
      .codec = &brio_xyz_codec}};
 
 enum { NUM_FORMATS = sizeof table / sizeof *table };
@@ -130,12 +134,22 @@ bool brio_format_holds(brio_format format, unsigned what) {
     return row && (row->info.holds & what);
 }
 
+/* Returns whether a list has a name. */
+static bool is_listed(const char *list, const char *name) {
+    for (const char *at = list ? list : ""; *at; at += *at == ' ') {
+        size_t length = strcspn(at, " ");
+        if (length == strlen(name) && !strncmp(at, name, length)) return true;
+        at += length;
+    }
+    return false;
+}
+
 bool brio_format_holds_property(brio_format format, const brio_mesh *m, size_t i) {
     brio_channels colour = brio_colour_of(m), normal = brio_normal_of(m);
     const brio_property *p = &m->properties[i];
     if (brio_format_holds(format, BRIO_HOLDS_PROPERTIES)) return true;
     if (colour.count > 3) colour.count = 3;
-    if (brio_format_holds(format, BRIO_HOLDS_INTENSITY) && !strcmp(p->name, "intensity")) return true;
+    if (is_listed(brio_format_facts(format)->properties, p->name)) return true;
     return (brio_format_holds(format, BRIO_HOLDS_COLOURS) && brio_channels_have(&colour, p)) ||
            (brio_format_holds(format, BRIO_HOLDS_NORMALS) && brio_channels_have(&normal, p));
 }
