@@ -194,6 +194,7 @@ void cli_name_input(run *r, brio_status status) {
     if (!about_input || !r->command || r->command->first_input >= r->num_operands) return;
     const char *input = r->operands[r->command->first_input];
     snprintf(message, sizeof message, "%s", cli_message(r, status));
+    if (names(message, input)) return;
     if (!strcmp(input, "-")) input = "standard input";
     if (names(message, input)) return;
     snprintf(r->message, sizeof r->message, "%.300s: %.700s", input, message);
