@@ -245,7 +245,7 @@ static void all_points_move(void) {
         insert_many(&w, n);
         remove_some(&w, 40);
         for (size_t i = 0; i < sizeof SHARE / sizeof *SHARE; i++) {
-            brio_dynamic_stats before = {sizeof before}, after = {sizeof after};
+            brio_dynamic_stats before = {.size = sizeof before}, after = {.size = sizeof after};
             EXPECT(brio_dynamic_facts(w.d, &before) == BRIO_OK);
             move_all(&w, SHARE[i] / cbrt((double)n) * (s ? 1e-3 : 1));
             EXPECT(brio_dynamic_facts(w.d, &after) == BRIO_OK);
@@ -408,7 +408,7 @@ static void questions_are_answered_between_changes(void) {
     for (int round = 0; round < 20; round++) {
         insert_some(&w, 40);
         remove_some(&w, 20);
-        brio_dynamic_stats s = {sizeof s};
+        brio_dynamic_stats s = {.size = sizeof s};
         size_t kinds[5] = {0}, ends = 0;
         EXPECT(brio_dynamic_facts(w.d, &s) == BRIO_OK && s.points == w.num_points && s.indices == w.num_indices);
         for (uint32_t i = 0; i < w.num_indices; i++) {
