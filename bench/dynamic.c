@@ -74,7 +74,7 @@ static void batches(brio_context *ctx, brio_dynamic *d, size_t n) {
 }
 
 static void move_all(brio_context *ctx, brio_dynamic *d, double share) {
-    brio_dynamic_stats s = {sizeof s}, after = {sizeof after};
+    brio_dynamic_stats s = {.size = sizeof s}, after = {.size = sizeof after};
     check(ctx, brio_dynamic_facts(d, &s));
     size_t n = s.points;
     double *p = malloc(3 * n * sizeof *p), step = share / cbrt((double)n);

@@ -78,9 +78,12 @@ brio_status brio_dynamic_locate(brio_dynamic *d, const double position[3], uint3
     for (int c = 0; c < 3; c++)
         BRIO_EXPECT(d->ctx, isfinite(record[c]), BRIO_ERR_NOT_FINITE, "the position is not finite");
     if (d->dimension < 3) return BRIO_OK;
-    brio_live_admit(d, record);
+    brio_filter filter = d->filter; /* wider for this position alone: one far away would slow all later changes */
+    double extent[4];
+    for (int c = 0; c < 4; c++) extent[c] = fmax(d->high[c], record[c]) - fmin(d->low[c], record[c]);
+    brio_filter_set(&filter, extent, extent[3], d->weighted);
     brio_live_approach(d, record);
-    uint32_t tet = d->engine->walk(&d->t, NULL, &d->filter, &d->walk, record, UINT64_MAX);
+    uint32_t tet = d->engine->walk(&d->t, NULL, &filter, &d->walk, record, UINT64_MAX);
     d->walk.start = tet;
     if (brio_is_infinite(&d->t, tet)) return BRIO_OK;
     for (int k = 0; k < 4; k++) vertices[k] = d->row[d->t.tet[tet].vertex[k]].name;

@@ -254,9 +254,9 @@ static inline __attribute__((always_inline)) unsigned batch_in_conflict(const br
  *
  * With all rows relative to vertex a, the in-sphere determinant of (a, b, c, d) and a query e is
  *   e.x X + e.y Y + e.z Z - lift(e) V,   V = det [b, c, d],   X, Y, Z = V with a column replaced by the lifts,
- * so the minors of a tetrahedron are computed once for the vertices behind all of its facets. First-order errors: minors
- * 13 u of their permanents, products 15 u, the sum 18 u; one and a half times the static bound, which is 18 u, covers
- * the rest. On a lattice everything is exact, as above. */
+ * so the minors of a tetrahedron are computed once for the vertices behind all of its facets. First-order errors:
+ * minors 13 u of their permanents, products 15 u, the sum 18 u; one and a half times the static bound, which is 18 u,
+ * covers the rest. On a lattice everything is exact, as above. */
 
 /* Returns the determinant of three columns of three rows. */
 static inline lanes determinant3(const lanes p[3], const lanes q[3], const lanes r[3]) {

@@ -217,7 +217,7 @@ static void any_changes_end_as_built(void) {
 /* --- many at once --- */
 
 static void insert_many(world *w, size_t n) {
-    double *p = calloc(n, 3 * sizeof *p);
+    double *p = calloc(3 * n, sizeof *p);
     uint32_t first;
     for (size_t i = 0; i < n; i++) draw_point(w->shape, p + 3 * i);
     EXPECT(brio_dynamic_insert(w->d, p, NULL, n, &first) == BRIO_OK, "%s", brio_message(w->ctx));
@@ -226,7 +226,7 @@ static void insert_many(world *w, size_t n) {
 }
 
 static void move_all(world *w, double step) {
-    double *p = malloc(3 * w->num_points * sizeof *p);
+    double *p = calloc(3 * w->num_points, sizeof *p);
     brio_dynamic_points(w->d, NULL, p, NULL);
     for (size_t i = 0; i < 3 * w->num_points; i++) p[i] += step * (draw() - 0.5);
     EXPECT(brio_dynamic_move(w->d, NULL, p, NULL, w->num_points) == BRIO_OK, "%s", brio_message(w->ctx));
@@ -353,7 +353,7 @@ static void cancelled_changes_leave_all(void) {
     EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
     insert_many(&w, 3000);
     size_t n = 20000, cancelled = 0, left = 0;
-    double *p = malloc(3 * n * sizeof *p);
+    double *p = calloc(3 * n, sizeof *p);
     for (size_t i = 0; i < 3 * n; i++) p[i] = draw();
     brio_context_set_progress(w.ctx, stop_at, &left);
     for (size_t k = 1; k < 40; k += BRIEF_TESTS ? 7 : 2) {
@@ -429,7 +429,7 @@ static void questions_are_answered_between_changes(void) {
         /* Euler's relation of a ball: vertices - edges + facets - tetrahedra = 1 */
         EXPECT(s.vertices - ends / 2 + (4 * s.tetrahedra + s.hull_facets) / 2 - s.tetrahedra == 1);
         for (int i = 0; i < 20; i++) {
-            double x[3] = {draw(), draw(), draw()};
+            double x[3] = {draw(), draw(), i ? draw() : 1e300}; /* the first is far away */
             uint32_t v[4];
             EXPECT(brio_dynamic_locate(w.d, x, v) == BRIO_OK);
             for (int k = 0; k < 4 && v[0] != BRIO_INFINITE; k++) {
