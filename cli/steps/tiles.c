@@ -60,7 +60,10 @@ done:
 
 static int take_block(const brio_mesh *block, void *user) {
     intake *in = user;
+    run *r = in->r;
     in->status = add_block(in, block);
+    if (in->status != BRIO_OK && !r->message[0]) /* the reader will say that it was cancelled */
+        cli_fail(r, in->status, "%s", brio_message(r->ctx));
     return in->status != BRIO_OK;
 }
 

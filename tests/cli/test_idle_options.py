@@ -21,7 +21,7 @@ VALUES = {
     "view": ["v.html"], "title": ["other"],
     "format": ["zzz"], "input-format": ["obj", "zzz"], "columns": ["-,x,y,z"], "weights": ["w.txt"], "weights-mod": ["-9"],
     "order": ["random", "hilbert"], "block-size": ["7"], "round-ratio": ["0.9"], "locate": ["jump"], "record-every": ["5"],
-    "subgraph": ["tree"], "page-size": ["4K"], "surface": ["mesh.ply"], "cache-size": ["64K"], "plane": ["xy"], "method": ["cocone", "linear", "voronoi"], "labeling": ["naive"], "noise": ["smooth", "0.5"],
+    "subgraph": ["tree"], "tiles": ["3"], "page-size": ["4K"], "surface": ["mesh.ply"], "cache-size": ["64K"], "plane": ["xy"], "method": ["cocone", "linear", "voronoi"], "labeling": ["naive"], "noise": ["smooth", "0.5"],
     "open": ["4"], "from": ["0,0,9"], "crs": ["crs.prj"], "error": ["0.05", "1e-9"], "spacing": ["0.2"], "left-out": ["left.ply"], "normals": ["n.ply"], "sampling-density": ["0.3"], "theta": ["0.1"], "pieces": ["3"],
     "extraction": ["candidates"], "min-component": ["100000", "2"], "sides": ["outer"], "scale": ["1.5"], "scale-axis": ["1.5"], "rho": ["0.5"], "redundancy": ["0.5"],
     "crust": ["c.ply"], "alpha": ["0.5"], "filtration": ["f.txt"], "distance": ["0.2"], "box": ["0,0,0,1,1,1"],

@@ -86,9 +86,9 @@ class Tiles(CliTest):
         self.assertEqual(os.listdir(self.scratch()), [])
 
     def test_too_little_memory_is_said_before_the_work(self):
-        run = self.expect(2, "delaunay", self.rows("a.csv", 30000), "--tiles", "2", "--scratch", self.scratch(),
-                          "--max-memory", "4M")
-        self.assertRegex(run.err, r"the largest of 2 tiles has \d+ points.*take about \d+ tiles|memory")
+        run = self.expect(4, "delaunay", self.rows("a.csv", 60000), "--tiles", "2", "--scratch", self.scratch(),
+                          "--max-memory", "13M")
+        self.assertRegex(run.err, r"the largest of 2 tiles has \d+ points.*take about \d+ tiles")
         self.assertEqual(os.listdir(self.scratch()), [])
 
     def test_flat_points(self):

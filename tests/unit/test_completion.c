@@ -257,7 +257,7 @@ static void complete_once(brio_rng *rng, int kind, bool weighted, way how) {
 
 static void stars_are_those_of_the_whole(void) {
     brio_rng rng = brio_rng_new(5);
-    for (int i = 0; i < (BRIEF_TESTS ? 150 : SHORT_TESTS ? 600 : 6000); i++)
+    for (int i = 0; i < (BRIEF_TESTS ? 144 : SHORT_TESTS ? 480 : 6000); i++)
         complete_once(&rng, i % 6, i / 6 % 2, (way)(i / 12 % SOURCES));
 }
 
