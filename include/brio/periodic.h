@@ -20,7 +20,7 @@ typedef struct brio_periodic_options {
     const double *cell; /* 3 by 3: the vectors a, b, c; those that do not repeat are not read */
     uint64_t seed;      /* as in brio_delaunay_options; the result does not depend on it, but for its order */
     double halo; /* translates within so many spacings of the points are triangulated at once; others are looked for
-                      where they are needed. 0: the usual 3.5. The result does not depend on it, but for its order */
+                      where they are needed. 0: the usual 2.5. The result does not depend on it, but for its order */
     int open[3]; /* 1 for a direction that does not repeat */
     int reserved_int; /* 0 */
 } brio_periodic_options;
@@ -60,7 +60,7 @@ typedef struct brio_periodic brio_periodic;
  *  adds to such multiples; where there are no ties, by any rounding.
  *  points, weights, num_points  as brio_delaunay.
  *  options  with the cell.   out  owned by the caller, freed with brio_periodic_free; NULL on error.
- *  Cost: as brio_delaunay for the points and the translates in a margin of 3.5 spacings.
+ *  Cost: as brio_delaunay for the points and the translates in a margin of 2.5 spacings.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no direction repeats; the vectors span nothing, or are too skewed; a point is
  *  more than 2^30 cells away), and as brio_delaunay.
  *  Based on: [Caroli Teillaud 2016] for triangulations of closed Euclidean manifolds; [Devillers Teillaud 2011] for

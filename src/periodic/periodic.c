@@ -16,7 +16,7 @@
 #include <string.h>
 
 /* The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it. Measured. */
-static const double HALO = 3.5;
+static const double HALO = 2.5;
 
 void brio_periodic_free(brio_periodic *t) {
     if (!t) return;

@@ -346,7 +346,7 @@ static void halos_do_not_matter(void) {
             uint64_t sum[3];
             for (size_t i = 0; i < 3 * n; i++) points[i] = pow(brio_rng_double(&rng), clustered ? 4 : 1);
             for (int h = 0; h < 3; h++) {
-                brio_periodic_options o = {.size = sizeof o, .cell = cell, .halo = h == 0 ? 0.5 : h == 1 ? 3.5 : 12};
+                brio_periodic_options o = {.size = sizeof o, .cell = cell, .halo = h == 0 ? 0.5 : h == 1 ? 2.5 : 12};
                 memcpy(o.open, open, sizeof open);
                 brio_periodic *t = NULL;
                 EXPECT(brio_delaunay_periodic(ctx, points, NULL, n, &o, &t) == BRIO_OK, "%s", brio_message(ctx));

@@ -212,7 +212,8 @@ class PeriodicVoronoi:
         walls = None if box is None else as_box(box, 3)
         with _calls.reporting(progress) as report:
             raw = _native.periodic_cells(self.delaunay._handle, walls, int(vertices), threads, report)
-        c = {name: part if isinstance(part, float) or part is None else np.asarray(part) for name, part in raw.items()}
+        c: dict[str, Any] = {name: part if isinstance(part, float) or part is None else np.asarray(part)
+                             for name, part in raw.items()}
         site, count = c["site"].astype(np.int64), self.npoints
         self.volumes, self.areas, self.centroids = np.zeros(count), np.zeros(count), np.full((count, 3), np.nan)
         self.volumes[site], self.areas[site], self.centroids[site] = c["volume"], c["area"], c["centroid"]
