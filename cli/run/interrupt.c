@@ -4,15 +4,16 @@
 #include "cli/report/plain.h"
 #include "platform/file.h"
 #include "platform/program.h"
+#include <stdio.h>
 
-static int requested, writing_now; /* atomic */
+static int requested, writing_now, lost; /* atomic */
 
 enum { INTERRUPTED = 130, NO_MEMORY = 4 /* exit codes */ };
 
 #define LOST "a scratch file was cut from outside, or its disk failed"
 
 static struct {
-    char folder[512]; /* as it can be shown */
+    char sentence[600];
     bool json;
 } scratch;
 
@@ -26,16 +27,18 @@ static void say(int file, const char *text) {
     if (!brio_program_say(file, text)) brio_program_end(NO_MEMORY);
 }
 
+/* Says it once: several threads may come to pages that are lost, and all but the first wait for the end. */
 static void on_lost_page(void) {
+    while (__atomic_exchange_n(&lost, 1, __ATOMIC_RELAXED)) brio_wait_milliseconds(1000);
     if (scratch.json) say(BRIO_OUTPUT, "{\"error\": \"" LOST "\", \"exit\": 4}\n");
-    say(BRIO_MESSAGES, "brio: ");
-    say(BRIO_MESSAGES, scratch.folder);
-    say(BRIO_MESSAGES, ": " LOST "\n");
+    say(BRIO_MESSAGES, scratch.sentence);
     brio_program_end(NO_MEMORY);
 }
 
 void cli_interrupt_scratch(const char *folder, bool json) {
-    cli_copy_plain(scratch.folder, sizeof scratch.folder, folder);
+    char shown[512];
+    cli_copy_plain(shown, sizeof shown, folder);
+    snprintf(scratch.sentence, sizeof scratch.sentence, "brio: %s: " LOST "\n", shown);
     scratch.json = json;
     brio_program_on_lost_page(on_lost_page);
 }

@@ -1,7 +1,7 @@
 /* What a program of the command line asks of its system: arguments, signals, terminals. libbrio has none of this.
  *
  * The handlers that these functions install call functions of the program, in a thread that may be anywhere in its
- * work: what they call may set a flag, and call brio_program_say and brio_program_end, and nothing else. */
+ * work: what they call may set a flag, wait, and call brio_program_say and brio_program_end, and nothing else. */
 #ifndef BRIO_PLATFORM_PROGRAM_H
 #define BRIO_PLATFORM_PROGRAM_H
 

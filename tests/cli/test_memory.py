@@ -90,7 +90,7 @@ class Memory(CliTest):
         return cut
 
     def test_scratch_file_that_is_cut_ends_the_run_with_a_message(self):
-        """It was the end of the process by SIGBUS."""
+        """It was the end of the process by SIGBUS; then two threads said it in each other's words."""
         points, folder = self.cloud("a.ply", 200000), os.path.realpath(self.folder)
         os.mkdir(self.path("scratch"))
         for extra in [], ["--json"], ["--threads", "1"]:
@@ -104,6 +104,7 @@ class Memory(CliTest):
             self.assertGreater(cut, 0)
             self.assertEqual(process.returncode, 4, err)
             self.assertRegex(err.decode(), r"brio: scratch: a scratch file was cut from outside")
+            self.assertEqual(err.count(b"cut from outside"), 1, err)
             if extra == ["--json"]:
                 self.assertEqual(json.loads(out)["exit"], 4)
             self.assert_only(self.folder, "a.ply", "scratch")

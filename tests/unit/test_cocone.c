@@ -39,7 +39,7 @@ static int is_certified(brio_context *ctx, const double *p, size_t n, const brio
 }
 
 /* Small inputs to try. */
-enum { TRIALS = BRIEF_TESTS ? 500 : SHORT_TESTS ? 2500 : 10000 };
+enum { TRIALS = BRIEF_TESTS ? 300 : SHORT_TESTS ? 2500 : 10000 };
 
 static void small_inputs_are_manifold_oriented(void) {
     double p[3 * 40];

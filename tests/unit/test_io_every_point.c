@@ -35,7 +35,7 @@ static int cancel_when_due(const char *stage, double fraction, void *user) {
 
 static void expect_cancelled_at_every_report(work_fn work) {
     bool cancelled = true;
-    for (size_t k = 1; k < 3000 && cancelled; k += BRIEF_TESTS ? 11 : SHORT_TESTS ? 3 : 1) {
+    for (size_t k = 1; k < 3000 && cancelled; k += BRIEF_TESTS ? 19 : SHORT_TESTS ? 3 : 1) {
         size_t left = k;
         brio_context *ctx;
         EXPECT(brio_context_new(NULL, &ctx) == BRIO_OK);

@@ -10,7 +10,7 @@ enum {
     REPETITIONS = BRIEF_TESTS   ? 2
                   : SHORT_TESTS ? 4
                                 : 20,
-    SPARSE = BRIEF_TESTS   ? 12
+    SPARSE = BRIEF_TESTS   ? 24
              : SHORT_TESTS ? 4
                            : 1,
     LEAST_THREADS = BRIEF_TESTS   ? 8
@@ -95,7 +95,7 @@ static void shuffled_points_give_the_same_checksum(void) {
     static size_t to[N];
     uint64_t expected = 0;
     make_set(1);
-    for (int run = 0; run < 6; run++) {
+    for (int run = 0; run < (BRIEF_TESTS ? 4 : 6); run++) {
         brio_context *ctx = new_context();
         brio_triangulation *t = NULL;
         uint64_t sum = 0;

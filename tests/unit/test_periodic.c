@@ -187,7 +187,7 @@ static void is_the_triangulation_of_many_copies(void) {
     brio_rng rng = brio_rng_new(3);
     for (int round = 0; round < (SHORT_TESTS ? 1 : 6); round++)
         for (int i = 0; i < NUM_CELLS; i++)
-            for (int n = 1; n <= 9; n += 4)
+            for (int n = 1; n <= (BRIEF_TESTS ? 5 : 9); n += 4)
                 for (int weighted = 0; weighted < 2; weighted++) {
                     bool skewed = i == 5 || i == 6 || i == 7 || i == 9;
                     if (skewed) continue; /* the copies would be too few, or too many */
@@ -283,7 +283,7 @@ static void origins_and_representatives_do_not_matter(void) {
         uint64_t first, sum;
         EXPECT(brio_periodic_checksum(ctx, t, &first) == BRIO_OK, "%s", brio_message(ctx));
         brio_periodic_free(t);
-        for (int round = 0; round < (SHORT_TESTS ? 25 : 250); round++) {
+        for (int round = 0; round < (BRIEF_TESTS ? 8 : SHORT_TESTS ? 25 : 250); round++) {
             crystal d = c;
             double origin[3];
             for (int k = 0; k < 3; k++) origin[k] = brio_rng_double(&rng) * 10 - 5; /* not on the grid */
@@ -319,7 +319,7 @@ static void checksum_tells_triangulations_apart(void) {
 
 static void slabs_and_wires_are_those_of_many_copies(void) {
     brio_rng rng = brio_rng_new(11);
-    for (int round = 0; round < (SHORT_TESTS ? 2 : 10); round++)
+    for (int round = 0; round < (BRIEF_TESTS ? 1 : SHORT_TESTS ? 2 : 10); round++)
         for (int i = 0; i < 3; i++)
             for (int directions = 1; directions < 7; directions++)
                 for (int weighted = 0; weighted < 2; weighted++) {
@@ -336,7 +336,7 @@ static void slabs_and_wires_are_those_of_many_copies(void) {
 
 /* Points of a slab: the layer at its faces needs translates from all over the cell. */
 static void halos_do_not_matter(void) {
-    size_t n = SHORT_TESTS ? 2000 : 20000;
+    size_t n = BRIEF_TESTS ? 800 : SHORT_TESTS ? 2000 : 20000;
     brio_rng rng = brio_rng_new(13);
     double *points = malloc(3 * n * sizeof *points);
     for (int directions = 1; directions < 8; directions++)

@@ -26,7 +26,7 @@ static int crust_is_certified(brio_context *ctx, const double *p, size_t n, bool
 }
 
 /* Small inputs to try. */
-enum { TRIALS = BRIEF_TESTS ? 500 : SHORT_TESTS ? 2500 : 10000 };
+enum { TRIALS = BRIEF_TESTS ? 300 : SHORT_TESTS ? 2500 : 10000 };
 
 /* TRIALS inputs of 4 to 40 points on small grids and in clusters, one in four cut into triangles. */
 static void small_inputs_are_closed_manifold_oriented(void) {

@@ -453,7 +453,7 @@ static void the_walk_finds_dense_surfaces(void) {
 static void the_walk_ends_on_anything(void) {
     double p[3 * 60];
     brio_context *ctx = context_of(1);
-    for (uint64_t trial = 0; trial < (BRIEF_TESTS ? 250 : SHORT_TESTS ? 500 : 2000); trial++) {
+    for (uint64_t trial = 0; trial < (BRIEF_TESTS ? 150 : SHORT_TESTS ? 500 : 2000); trial++) {
         size_t n = 5 + trial % 50;
         brio_surface_stats s;
         if (trial % 2)
