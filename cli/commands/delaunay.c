@@ -157,6 +157,7 @@ static brio_status check_tiles(run *r, const arguments *a) {
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING || a->verify ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->order.block_size ||
                 !isnan(a->order.round_ratio);
+    if (r->common.view) return cli_fail(r, BRIO_ERR_ARGUMENT, "--view: not with --tiles");
     if (once)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles goes with weights and -o, not with --plane, --verify, orders, "
@@ -184,6 +185,7 @@ static brio_status check_periodic(run *r, const arguments *a) {
     bool open = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->tiles;
+    if (a->periodic.cell && r->common.view) return cli_fail(r, BRIO_ERR_ARGUMENT, "--view: not with --cell");
     if (a->periodic.cell && open)
         return cli_fail(
             r, BRIO_ERR_ARGUMENT,

@@ -28,11 +28,6 @@ static const option options[] = {
 
 static const arguments defaults = {0};
 
-static const char *name_of(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash && slash[1] ? slash + 1 : path;
-}
-
 static void report(run *r, brio_mesh *const *meshes, int count) {
     uint64_t vertices = 0, faces = 0, tetrahedra = 0, edges = 0;
     for (int i = 0; i < count; i++) {
@@ -73,7 +68,7 @@ static brio_status view(run *r) {
     for (int i = 0; i < r->num_operands; i++) {
         TRY(cli_read(r, r->operands[i], &meshes[i]));
         layers[i].mesh = meshes[i];
-        layers[i].name = name_of(r->operands[i]);
+        layers[i].name = cli_page_name(r->operands[i]);
         list[i] = &layers[i];
     }
     report(r, meshes, r->num_operands);

@@ -11,6 +11,11 @@ static bool is_page(const char *path) {
     return dot && (!strcasecmp(dot, ".html") || !strcasecmp(dot, ".htm"));
 }
 
+const char *cli_page_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return !strcmp(path, "-") ? "a stream" : slash && slash[1] ? slash + 1 : path;
+}
+
 brio_status cli_check_page(run *r, const char *name, const char *path) {
     if (!path) return BRIO_OK;
     if (!is_page(path)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a page is .html or .htm", path);
@@ -48,8 +53,8 @@ brio_status cli_show(run *r, const brio_mesh *mesh) {
     if (!r->common.view) return BRIO_OK;
     report = report_of(r);
     if (!report) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for the report on a page");
-    const brio_page_layer layer = {
-        .mesh = mesh, .name = r->common.output ? r->common.output : r->operands[0], .report = report};
+    const char *path = r->common.output ? r->common.output : r->operands[0];
+    const brio_page_layer layer = {.mesh = mesh, .name = cli_page_name(path), .report = report};
     const brio_page_layer *layers[] = {&layer};
     status = cli_write_page(r, r->common.view, layers, 1, NULL);
     r->shown = status == BRIO_OK;

@@ -47,6 +47,8 @@ brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh);
 
 /* --- pages that show meshes in a browser (page.c) --- */
 
+/** Returns what a page calls a file: its name without the folders. */
+const char *cli_page_name(const char *path);
 /** Finds everything wrong with the name of a page that can be found before the work.   name  the option's; path NULL:
  *  no page. */
 brio_status cli_check_page(run *r, const char *name, const char *path);

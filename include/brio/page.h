@@ -8,8 +8,8 @@
 extern "C" {
 #endif
 
-/** A mesh on a page, with what is written beside it. Texts are UTF-8; bytes that are no UTF-8 count as Latin-1. They
- *  are shown as they are: nothing in them is taken for HTML. */
+/** A mesh on a page, with what is written beside it. Texts are UTF-8; bytes that are no UTF-8 count as Latin-1.
+ *  Nothing in them is taken for HTML. Marks that turn the direction of text are shown as U+FFFD, all else as it is. */
 typedef struct brio_page_layer {
     size_t size;
     const brio_mesh *mesh;

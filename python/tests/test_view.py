@@ -37,6 +37,16 @@ def test_a_page_is_saved(tmp_path):
     assert "save" in repr(page)
 
 
+def test_a_page_is_opened_from_a_folder_whose_name_no_address_may_have(tmp_path, monkeypatch):
+    folder, opened = tmp_path / "a b#c", []
+    folder.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(folder))
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    path = brio.view(TRIANGLE).open()
+    assert path.startswith(str(folder)) and opened[0].endswith(path.split("/")[-1])
+    assert "/a%20b%23c/" in opened[0]
+
+
 def test_wrong_calls():
     with pytest.raises(brio.ArgumentError):
         brio.view()

@@ -18,7 +18,7 @@
  * name. */
 enum { QUANTUM = (1 << 21) - 1, NAME_BYTES = 32 };
 
-/* The greatest number for the values of a property in 16 bits; 0 stands for those that are no numbers. */
+/* The greatest number for the values of a property in 16 bits; 0 stands for NaN and infinities. */
 static const double STEPS = 65534;
 
 typedef struct {
@@ -302,6 +302,12 @@ static bool is_left_out(const layer *l, const brio_property *p) {
     return !l->how->exact && normal && l->order.num_faces;
 }
 
+static bool leaves_normals_out(const layer *l) {
+    for (size_t i = 0; i < l->mesh->num_properties; i++)
+        if (is_left_out(l, &l->mesh->properties[i])) return true;
+    return false;
+}
+
 /* The properties of the vertices or of the faces. */
 typedef struct {
     const char *title; /* in the description */
@@ -400,6 +406,7 @@ static brio_status describe(layer *l, const brio_certificate *c, size_t hull) {
     BRIO_FORWARD(brio_output_string(out, "]"));
     BRIO_FORWARD(put_real(out, "step", l->step));
     BRIO_FORWARD(put_count(out, "exact", l->how->exact));
+    BRIO_FORWARD(put_count(out, "normals_left_out", leaves_normals_out(l)));
     BRIO_FORWARD(put_count(out, "vertices", o->num_vertices));
     BRIO_FORWARD(put_count(out, "all_vertices", m->num_vertices));
     BRIO_FORWARD(put_count(out, "faces", o->num_faces));

@@ -11,8 +11,8 @@
  *     tetrahedra-0 to -3        corners; hull-0 to -2: those of facets with one tetrahedron
  *     v0 v1 f0 f1 ...           properties of vertices and faces
  *
- * Without brio_page_how.exact the blocks of exact coordinates and of numbers are missing, and properties in floating
- * point are whole numbers of 16 bits, 0 for what is no number, 1 to 65535 from the least to the greatest value.
+ * Without brio_page_how.exact the blocks of exact coordinates and of numbers are missing. Properties in floating point
+ * are whole numbers of 16 bits then: 0 for NaN and infinities, 1 to 65535 from the least to the greatest value.
  *
  * All name vertices as the page numbers them (sent_order.h). The description has what the numbers mean, all counts, the
  * properties' names and types, and the certificate. Blocks that nothing needs are not there. */

@@ -322,13 +322,113 @@ async function narrow() {
 /** Texts of files are texts. */
 async function injection() {
     const evil = "<img src=x onerror=alert(1)>";
-    writeFileSync(at(`${evil}.csv`), "x,y,z,</script><script>alert(2)</script>\n0,0,0,1\n1,0,0,2\n0,1,0,3\n");
+    writeFileSync(at(`${evil}.csv`), "x,y,z,</script><script>alert(2)</script>,\u202e\u2028turned\n0,0,0,1,1\n1,0,0,2,2\n0,1,0,3,3\n");
     run("view", `${evil}.csv`, "--title", evil, "-o", "evil.html");
     const page = await open("evil.html");
     page.on("dialog", () => expect(false, "a script of a file's name ran"));
     expect(await page.textContent("h1") === evil && await page.locator("img").count() === 0, "a name became an element");
-    expect((await page.getByLabel("Colour by").textContent()).includes("script"), "the property is listed by its name");
+    const names = await page.getByLabel("Colour by").textContent();
+    expect(names.includes("script"), "the property is listed by its name");
+    expect(names.includes("turned") && !names.includes("\u202e"), "a mark of direction turns what stands behind it");
     await page.context().close();
+}
+
+/** What an address says of layers is taken only where it makes sense; a new address sets the panel and the buttons, too. */
+async function addresses() {
+    const page = await open("heights.html", { hash: "#" + encodeURIComponent('{"l":{"0":{"map":"constructor","low":1}}}') });
+    expect((await picture(page)).count > 50, "a map that there is not empties the picture");
+    await page.context().close();
+    await (await open("heights.html", { hash: "#" + encodeURIComponent('{"c":[0,0,0,0,0,0,2,0],"l":{"0":5}}') })).context().close();
+    const other = await open("bumps.html");
+    await other.evaluate(() => { location.hash = encodeURIComponent('{"d":1,"l":{"0":{"wire":true}}}'); });
+    await settled(other);
+    expect(await other.getByLabel("wireframe").isChecked(), "a new address ticks the wireframe");
+    expect(await other.getByRole("button", { name: "Dark" }).getAttribute("aria-pressed") === "true", "a new address presses Dark");
+    await other.getByLabel("wireframe").focus();
+    await press(other, "o");
+    expect(await other.evaluate(() => window.brioPage.camera.parallel), "a letter works while a box to tick has the focus");
+    await other.context().close();
+}
+
+/** Values whose difference is no double, infinities and NaN; coordinates of such a box; a layer without points beside others. */
+async function extremes() {
+    const rows = ["-1.5e308", "1.5e308", "nan", "inf", "0", "7e307"];
+    writeFileSync(at("heights.csv"), ["x,y,z,value", ...rows.map((v, i) => `${i},${i % 2},${i % 3},${v}`)].join("\n") + "\n");
+    run("view", "heights.csv", "-o", "heights.html");
+    let page = await open("heights.html");
+    const shown = await page.evaluate(() => { const d = window.brioPage.drawings[0]; return [...d.values].map(x => d.part(x)).sort((a, b) => a - b); });
+    expect(shown.slice(0, 4).every((x, i) => Math.abs(x - [0, 0.5, 0.7333333, 1][i]) < 1e-6) && shown[4] > 1e30, `parts ${shown}`);
+    expect((await page.evaluate(() => { const d = window.brioPage.drawings[0].range(); return d.join(); })) === "0,1", "the range is that of the finite values");
+    await page.context().close();
+    writeFileSync(at("wide.csv"), "x,y,z\n-1e308,0,0\n1e308,1,2\n5e307,-8e307,1e308\n");
+    run("view", "wide.csv", "-o", "wide.html");
+    page = await open("wide.html");
+    expect((await picture(page)).count > 20, "a box wider than doubles is empty");
+    await page.context().close();
+    writeFileSync(at("empty.ply"), "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n");
+    writeFileSync(at("far.csv"), "x,y,z\n500000,5000000,100\n500001,5000000,100\n500000,5000001,101\n");
+    run("view", "empty.ply", "far.csv", "-o", "beside.html");
+    page = await open("beside.html");
+    expect(await page.evaluate(() => window.brioPage.scene.unit) < 1, "a layer without points draws the scene to the origin");
+    await page.context().close();
+    run("view", "empty.ply", "-o", "empty.html");
+    await (await open("empty.html")).context().close();
+}
+
+/** A large mesh is rounded, and what is picked says so, in digits that mean something. */
+async function rounded() {
+    const [vertices, faces] = bumps(501);
+    ply("rounded.ply", vertices, faces, { vertex: "double depth;float nx;float ny;float nz", rows: i => `${i === 7 ? "inf" : i / 3} 0 0 1` });
+    run("view", "rounded.ply", "-o", "rounded.html");
+    const page = await open("rounded.html"), box = await page.locator("#canvas").boundingBox();
+    const notes = await page.locator("#panel .note").allTextContents();
+    expect(notes.some(n => /16 bits/.test(n) && /no numbers/.test(n)) && notes.some(n => /normals/.test(n)), `notes ${notes}`);
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    await page.waitForSelector("#card:not([hidden])");
+    const card = await page.evaluate(() => [...document.querySelectorAll("#card dt")].map(e => [e.textContent, e.nextSibling.textContent]));
+    for (const [name, value] of card) expect(!/^-?\d/.test(value) || value.replace(/e.*|[-.]/g, "").replace(/^0+/, "").length < 9, `${name} ${value} has digits that say nothing`);
+    expect(/16 bits/.test(await page.textContent("#card .note")), "the card does not say that properties are rounded");
+    const value = await page.evaluate(async () => { const l = window.brioPage.drawings[0].layer, p = l.meta.properties.find(p => p.name === "depth"); return (await l.property("v", p)).findIndex(Number.isNaN); });
+    expect(value >= 0, "an infinite value is no number where it is rounded");
+    await page.context().close();
+}
+
+/** Colours of faces are none of points; those of vertices come back; the section of tetrahedra has no stale colours. */
+async function coloursOfFaces() {
+    ply("faces.ply", CUBE, QUADS, { vertex: "double depth", rows: i => i, face: "double mark", marks: i => 10 * i });
+    run("view", "faces.ply", "-o", "faces.html");
+    const page = await open("faces.html");
+    await page.getByLabel("Colour by").selectOption("v0");
+    await page.getByLabel("points", { exact: true }).check();
+    await page.getByLabel("faces", { exact: true }).uncheck();
+    await page.getByLabel("Colour by").selectOption("f0");
+    await page.waitForFunction(() => window.brioPage.drawings[0].expanded);
+    const modes = await page.evaluate(() => { const a = window.brioPage; return a.drawings[0].items(false, 1e6, null, a.look().colours).map(i => [i.program, i.mode].join()); });
+    expect(modes.includes("points,0"), `points have colours of faces: ${modes}`);
+    await page.context().close();
+}
+
+/** The graphics card goes and comes back: the picture is as before. Browsers without what the page needs get a sentence. */
+async function lost() {
+    const page = await open("faces.html");
+    const before = await picture(page);
+    await page.evaluate(() => { window.losing = window.brioPage.renderer.gl.getExtension("WEBGL_lose_context"); window.losing.loseContext(); });
+    await page.waitForFunction(() => /graphics card/.test(document.getElementById("status").textContent));
+    await page.mouse.click(200, 200);
+    await page.evaluate(() => window.losing.restoreContext());
+    await page.waitForFunction(() => !window.brioPage.lost);
+    await settled(page);
+    const after = await picture(page);
+    expect(after.count === before.count && after.mean.every((x, k) => Math.abs(x - before.mean[k]) < 0.5), `after the loss ${JSON.stringify(after)}, before ${JSON.stringify(before)}`);
+    await page.context().close();
+    for (const [words, without] of [["WebGL 2", "HTMLCanvasElement.prototype.getContext = () => null"], ["DecompressionStream", "delete window.DecompressionStream"]]) {
+        const context = await browser.newContext({ offline: true }), old = await context.newPage();
+        await old.addInitScript(without);
+        await old.goto(`file://${at("faces.html")}`);
+        await old.waitForSelector("#status.failed");
+        expect((await old.textContent("#status")).includes(words), `without ${words}: ${await old.textContent("#status")}`);
+        await context.close();
+    }
 }
 
 /** Clouds, also of a million points: thinned while it moves; no frame blocks. */
@@ -365,7 +465,7 @@ async function large() {
 }
 
 const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection };
-const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, narrow, injection, large };
+const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
     for (const [name, test] of Object.entries(length === "long" ? LONG : SHORT)) {
         const began = Date.now();

@@ -280,11 +280,19 @@ class Command(ViewTest):
         scan = self.cloud("scan.ply", 600, "scan")
         self.expect(0, "surface", scan, "-o", self.path("s.ply"), "--view", self.path("v.html"), "--quiet")
         self.assertTrue(os.path.exists(self.path("s.ply")))
-        self.assertEqual(self.read("v.html").layers[0]["name"], self.path("s.ply"))
+        self.assertEqual(self.read("v.html").layers[0]["name"], "s.ply")
 
     def test_a_page_on_standard_output(self):
         run = self.expect(0, "view", self.xyz("p.xyz", CUBE), "-o", "-", "--quiet")
         self.assertEqual(Page(run.out.decode()).layers[0]["vertices"], 8)
+
+    def test_layers_are_called_by_names_without_folders(self):
+        scan = self.xyz("p.xyz", CUBE)
+        with open(scan, "rb") as f:
+            page = self.page("-", stdin=f.read())
+        self.assertEqual(page.layers[0]["name"], "a stream")
+        self.expect(0, "hull", scan, "--view", self.path("v.html"), "--quiet")
+        self.assertEqual(self.read("v.html").layers[0]["name"], "p.xyz")
 
     def test_wrong_uses(self):
         p = self.xyz("p.xyz", CUBE)
@@ -293,6 +301,8 @@ class Command(ViewTest):
         self.usage("--view and the input name the same file|a page is .html", "hull", p, "--view", p)
         self.usage("--view has no meaning for check", "check", p, "--view", self.path("v.html"))
         self.usage("--view has no meaning for convert", "convert", p, self.path("q.ply"), "--view", self.path("v.html"))
+        for given in (["--tiles", 2, "--scratch", self.folder], ["--cell", "2,2,2"]):  # before the work
+            self.usage("--view: not with " + given[0], "delaunay", self.path("missing.xyz"), *given, "--view", self.path("v.html"))
         self.usage("name the same file", "hull", p, "-o", self.path("v.html"), "--view", self.path("v.html"), "--format", "ply")
         self.usage("--ascii has no meaning here", "view", p, "-o", self.path("page.html"), "--ascii")
         self.usage("too many: '13'", "view", *range(1, 14), "-o", self.path("page.html"))

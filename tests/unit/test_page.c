@@ -70,6 +70,17 @@ static void large_layers_are_rounded_unless_exact_is_asked_for(void) {
     brio_mesh_free(m);
 }
 
+static void normals_that_are_left_out_are_told(void) {
+    brio_mesh *m = io_make(250001, IO_FACES), *small = io_make(9, IO_FACES);
+    EXPECT(write_one(io_ctx, m, "m", NULL, NULL) == BRIO_OK && times("\"normals_left_out\":0") == 1);
+    EXPECT(brio_mesh_add_property(m, "nx", BRIO_SCALAR_FLOAT32, NULL) == BRIO_OK);
+    EXPECT(write_one(io_ctx, m, "m", NULL, NULL) == BRIO_OK && times("\"normals_left_out\":1") == 1);
+    EXPECT(brio_mesh_add_property(small, "nx", BRIO_SCALAR_FLOAT32, NULL) == BRIO_OK);
+    EXPECT(write_one(io_ctx, small, "m", NULL, NULL) == BRIO_OK && times("\"normals_left_out\":0") == 1);
+    brio_mesh_free(m);
+    brio_mesh_free(small);
+}
+
 static brio_status make_page(brio_context *ctx) {
     const double vertices[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
     const uint64_t offsets[] = {0, 3, 7};
@@ -112,6 +123,7 @@ SUITE(test_page) {
     RUN(wrong_meshes_are_refused_and_leave_no_page);
     RUN(texts_are_not_taken_for_html);
     RUN(large_layers_are_rounded_unless_exact_is_asked_for);
+    RUN(normals_that_are_left_out_are_told);
     RUN(out_of_memory_leaves_nothing_behind);
     RUN(a_page_can_be_stopped);
     return io_end();

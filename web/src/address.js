@@ -35,10 +35,10 @@ export function readAddress(app) {
     if ("d" in view) app.setTheme(view.d ? "dark" : "light");
     if (Array.isArray(view.p)) Object.assign(c, { on: !!view.p[0], axis: [0, 1, 2].includes(view.p[1]) ? view.p[1] : 0, at: Math.max(0, Math.min(1, +view.p[2] || 0)), flip: !!view.p[3] });
     app.drawings.forEach((d, i) => {
-        const layer = (view.l || {})[i] || {}, s = Object.assign(d.state, app.initial[i]);
+        const given = (view.l || {})[i], layer = given && typeof given === "object" ? given : {}, s = Object.assign(d.state, app.initial[i]);
         for (const key of SWITCHES) if (key in layer) s[key] = !!layer[key];
         if (["plain", "colours", "face-colours", ...d.layer.sources().map(x => x.id)].includes(layer.source)) s.source = layer.source;
-        if (layer.map in MAPS) s.map = layer.map;
+        if (Object.hasOwn(MAPS, layer.map)) s.map = layer.map;
         if (Number.isFinite(layer.opacity)) s.opacity = Math.max(0.1, Math.min(1, layer.opacity));
         if (Number.isFinite(layer.pointSize)) s.pointSize = Math.max(1, Math.min(16, layer.pointSize));
         if (Number.isFinite(layer.low) && Number.isFinite(layer.high)) Object.assign(s, { low: layer.low, high: layer.high, keepRange: true });

@@ -2,6 +2,7 @@
 import { add, cross, dot, multiply, sub, unit } from "./matrix.js";
 
 const FIELD = 35 * Math.PI / 180; // of view, the shorter side
+const NEAREST = 1e-5, FARTHEST = 200; // distances from the target
 
 export class Camera {
     constructor() {
@@ -36,7 +37,7 @@ export class Camera {
     }
     /** Scales the distance by f; what is at (x, y), in parts of the shorter side from the middle, stays there. */
     zoom(f, x = 0, y = 0) {
-        const to = Math.max(1e-5, Math.min(200, this.distance * f)) / this.distance;
+        const to = Math.max(NEAREST, Math.min(FARTHEST, this.distance * f)) / this.distance;
         this.pan(-x * (1 - to), y * (1 - to));
         this.distance *= to;
     }
@@ -66,7 +67,8 @@ export class Camera {
     toArray() { return [this.yaw, this.pitch, this.distance, ...this.target, this.up, +this.parallel].map(x => +x.toPrecision(6)); }
     fromArray(a) {
         if (a.length !== 8 || !a.every(Number.isFinite)) return;
-        [this.yaw, this.pitch, this.distance] = a;
+        [this.yaw, this.pitch] = a;
+        this.distance = Math.max(NEAREST, Math.min(FARTHEST, a[2]));
         this.target = a.slice(3, 6);
         this.up = Math.max(0, Math.min(2, Math.round(a[6])));
         this.parallel = !!a[7];

@@ -29,5 +29,17 @@ export function exactly(x, single = false) {
     }
     return String(x);
 }
+/** A number that was rounded to multiples of `step`, without the digits that say nothing; 0: exact. */
+export function about(x, step) {
+    if (!(step > 0) || !Number.isFinite(x)) return exactly(x);
+    if (x === 0) return "0";
+    const digits = 1 + Math.floor(Math.log10(Math.abs(x))) - Math.floor(Math.log10(step));
+    return String(+x.toPrecision(Math.max(1, Math.min(17, digits))));
+}
+/** The value of a property p: exact, or as exact as the page has it. */
+export function shown(p, x) {
+    if (!("low" in p)) return exactly(x, p.type === "float32");
+    return Number.isNaN(x) ? "no finite number" : about(x, 2 * ((p.high / 2 - p.low / 2) / 65534));
+}
 export const short = x => Number.isFinite(x) ? String(+x.toPrecision(6)) : "—";
 export const count = x => x.toLocaleString("en");

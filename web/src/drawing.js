@@ -28,8 +28,6 @@ export class Drawing {
         this.gl = gl;
         this.layer = layer;
         this.state = state;
-        this.buffers = {};
-        this.arrays = {};
         this.colour = LAYER_COLOURS[layer.number % LAYER_COLOURS.length].map(c => c / 255);
         const n = layer.meta.vertices;
         // A cloud is stored in an order whose beginnings are even choices of its points: place j has vertex j * stride % n.
@@ -50,6 +48,10 @@ export class Drawing {
         gl.bufferData(target, data, gl.STATIC_DRAW);
         this.buffers[name].count = data.length;
     }
+    drop(name) {
+        if (this.buffers[name]) this.gl.deleteBuffer(this.buffers[name].handle);
+        delete this.buffers[name];
+    }
     indices(name, data) { this.buffer(name, data, this.gl.ELEMENT_ARRAY_BUFFER); }
 
     /** Returns rows of `width` numbers in the order of the buffers. */
@@ -61,8 +63,10 @@ export class Drawing {
         return out;
     }
 
+    /** Fills the buffers; again after the graphics card lost them. */
     async prepare(budget) {
         const l = this.layer;
+        this.buffers = {};
         this.buffer("place", this.arranged(l.positions, 3));
         if (l.normals) this.buffer("normal", this.arranged(l.normals, 4));
         if (l.triangles.length) this.indices("triangles", l.triangles);
@@ -107,7 +111,7 @@ export class Drawing {
             for (const p of list) channels.push(await l.property(byFace || "v", p));
             const most = channels.reduce((m, c) => c.reduce((a, x) => Math.max(a, x), m), 0);
             const real = ["float32", "float64"].includes(list[0].type), scale = real && most <= 1 ? 255 : most > 255 ? 255 / 65535 : 1;
-            const rgba = new Uint8Array(4 * count).fill(255);
+            const rgba = new Uint8ClampedArray(4 * count).fill(255); // wrong colours do not wrap
             channels.forEach((c, k) => { for (let i = 0; i < count; i++) rgba[4 * i + k] = c[i] * scale; });
             this.mode = 1;
             if (byFace) await this.expand("rgba", rgba, 4);
@@ -118,21 +122,20 @@ export class Drawing {
             let least = Infinity, most = -Infinity;
             for (const x of values) { if (x < least && x > -Infinity) least = x; if (x > most && x < Infinity) most = x; }
             if (least > most) least = most = 0;
-            Object.assign(this, { values, least, most, mode: 2 });
+            Object.assign(this, { values, least, most, half: most / 2 - least / 2 || 1, mode: 2 });
             if (this.shownSource !== s.source && !s.keepRange) [s.low, s.high] = [least, most];
             s.keepRange = false;
-            const width = most - least || 1;
-            const scaled = Float32Array.from(values, x => Number.isFinite(x) ? (x - least) / width : NOTHING);
+            const scaled = Float32Array.from(values, x => this.part(x));
             if (source.where === "f") await this.expand("value", scaled, 1);
             else this.buffer("value", this.arranged(scaled, 1));
         }
         this.shownSource = s.source;
     }
+    /** Where a value is between the least and the greatest one, 0 to 1; in halves, since their difference may be no double. */
+    part(x) { return Number.isFinite(x) ? (x / 2 - this.least / 2) / this.half : NOTHING; }
+    valueAt(part) { return 2 * (this.least / 2 + part * this.half); }
     /** The range of colours in the unit of the buffer. */
-    range() {
-        const s = this.state, width = this.most - this.least || 1;
-        return [(s.low - this.least) / width, (s.high - this.least) / width];
-    }
+    range() { return [this.part(this.state.low), this.part(this.state.high)]; }
 
     /** Triangles with corners of their own, for colours of faces. */
     async expand(name, rows, width) {
@@ -164,9 +167,10 @@ export class Drawing {
         const l = this.layer, cut = l.section(normal, at), gl = this.gl;
         this.section = cut;
         this.buffer("placeS", cut.places);
-        if (this.mode === 2 && this.values && this.values.length === l.meta.vertices) {
-            const width = this.most - this.least || 1;
-            this.buffer("valueS", Float32Array.from(cut.weights, ([a, b, f]) => (this.values[a] + f * (this.values[b] - this.values[a]) - this.least) / width));
+        this.drop("valueS");
+        if (this.mode === 2 && !this.expanded) {
+            const v = this.values;
+            this.buffer("valueS", Float32Array.from(cut.weights, ([a, b, f]) => this.part((1 - f) * v[a] + f * v[b])));
         }
         const lines = new Uint32Array(6 * cut.of.length);
         let n = 0; // the outlines of the polygons: triangles of one tetrahedron follow each other
@@ -182,23 +186,24 @@ export class Drawing {
     /** What to draw: [{program, set, index, primitive, count, mode, colour, ...}].   moving  fewer of it. */
     items(moving, budget, cutting, colours) {
         const s = this.state, b = this.buffers, gl = this.gl, out = [], l = this.layer;
+        const single = this.expanded ? 0 : this.mode; // colours of faces are none of points and edges
         if (!s.visible) return out;
-        const put = (program, more) => out.push({ drawing: this, program, set: "", index: null, primitive: gl.TRIANGLES, mode: this.mode,
+        const put = (program, more) => out.push({ drawing: this, program, set: "", index: null, primitive: gl.TRIANGLES, mode: single,
             colour: this.colour, size: 1, lit: true, back: true, opacity: s.opacity, ...more });
         const solid = l.triangles.length ? "triangles" : "hull";
         if (s.faces && b[solid]) {
-            if (moving && b.coarse) put("faces", { index: "coarse", mode: this.expanded ? 0 : this.mode, pick: false });
-            else if (this.expanded) put("faces", { set: "X", count: b.placeX.count / 3, pick: "corner" });
+            if (moving && b.coarse) put("faces", { index: "coarse", pick: false });
+            else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner" });
             else put("faces", { index: solid, pick: "triangle" });
         }
         const small = !moving || !b.coarse;
         if (small && s.faces && s.crossing && b.crossing) put("marks", { index: "crossing", mode: 0, colour: [0.92, 0.16, 0.24], back: false, opacity: 1 });
         if (small && s.faces && s.bridges && b.bridges) put("marks", { index: "bridges", mode: 0, colour: [0.98, 0.66, 0.1], back: false, opacity: 1 });
         if (cutting && b.placeS && this.section && this.section.of.length && s.faces) {
-            put("faces", { set: "S", count: b.placeS.count / 3, mode: this.mode === 2 && b.valueS ? 2 : 0, colour: this.colour.map(c => 0.85 * c), lit: false, uncut: true, back: false, pick: "section", opacity: 1 });
+            put("faces", { set: "S", count: b.placeS.count / 3, mode: b.valueS ? 2 : 0, colour: this.colour.map(c => 0.85 * c), lit: false, uncut: true, back: false, pick: "section", opacity: 1 });
             if (!moving || b.linesS.count < 2e5) put("lines", { set: "S", index: "linesS", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, uncut: true, opacity: this.section.of.length > 10000 ? 0.35 : 0.75 });
         }
-        if (s.wire && b.wire && small) put("lines", { index: "wire", primitive: gl.LINES, mode: s.faces ? 0 : this.mode, colour: s.faces ? colours.line : this.colour, lit: false, opacity: s.faces ? 0.55 : 1 });
+        if (s.wire && b.wire && small) put("lines", { index: "wire", primitive: gl.LINES, mode: s.faces ? 0 : single, colour: s.faces ? colours.line : this.colour, lit: false, opacity: s.faces ? 0.55 : 1 });
         if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, lit: false, pick: "edge", opacity: 1 });
         const wides = { boundary: [0.1, 0.62, 1], nonmanifold: [1, 0.24, 0.65], flipped: [0.95, 0.85, 0.1] };
         for (const [name, colour] of Object.entries(wides))

@@ -79,9 +79,9 @@ export function listen(app) {
         app.redraw(true);
     });
     at("hint").addEventListener("click", () => document.body.classList.add("quiet"));
-    // Letters work wherever no text is typed.
+    // Letters work wherever no text is typed and no list is chosen from.
     document.addEventListener("keydown", e => {
-        if (e.ctrlKey || e.altKey || e.metaKey || /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName)) return;
+        if (e.ctrlKey || e.altKey || e.metaKey || e.target.tagName === "SELECT" || e.target.type === "text") return;
         const tool = app.tools.find(t => t.key === e.key.toLowerCase());
         if (tool) tool.button.click();
     });

@@ -14,6 +14,9 @@ export class Layer {
     }
     has(name) { return name in this.blocks; }
 
+    /** Coordinate k of a step, in halves: boxes may be wider than the largest double. */
+    coordinate(k, step) { return 2 * (this.meta.low[k] / 2 + this.meta.step / 2 * step); }
+
     /** Decodes a block once. */
     once(name, decode) {
         if (!this.cache.has(name))
@@ -135,7 +138,7 @@ export class Layer {
         const m = this.meta;
         const list = "xyz".split("").map((axis, k) => ({
             id: axis, label: `coordinate ${axis}`, where: "v",
-            values: async () => Float64Array.from({ length: m.vertices }, (_, i) => m.low[k] + m.step * this.positions[3 * i + k]),
+            values: async () => Float64Array.from({ length: m.vertices }, (_, i) => this.coordinate(k, this.positions[3 * i + k])),
         }));
         for (const p of m.properties) list.push({ id: p.block, label: p.name, where: "v", values: () => this.property("v", p) });
         for (const p of m.face_properties)
@@ -149,24 +152,24 @@ export class Layer {
         return found.every(Boolean) ? found : null;
     }
 
-    /** What is known of a vertex: its number in the file, its coordinates and properties. */
+    /** What is known of a vertex: its number in the file, its coordinates, and its properties, each with its value. */
     async vertex(v) {
         const m = this.meta, n = m.vertices;
         const number = this.has("vertices") ? (await this.column("vertices", n, 4))[v] : null;
         const place = [];
         for (let k = 0; k < 3; k++) {
             const name = `exact-${"xyz"[k]}`;
-            place.push(m.exact ? (await this.once(name, bytes => reals(bytes, n, 8)))[v] : m.low[k] + m.step * this.positions[3 * v + k]);
+            place.push(m.exact ? (await this.once(name, bytes => reals(bytes, n, 8)))[v] : this.coordinate(k, this.positions[3 * v + k]));
         }
         const properties = [];
-        for (const p of m.properties) properties.push([p.name, (await this.property("v", p))[v]]);
+        for (const p of m.properties) properties.push([p, (await this.property("v", p))[v]]);
         return { number, place, properties, exact: !!m.exact };
     }
     /** What is known of a face: its number in the file and its properties. */
     async face(f) {
         const number = this.has("faces") ? (await this.column("faces", this.meta.faces, 4))[f] : null;
         const properties = [];
-        for (const p of this.meta.face_properties) properties.push([p.name, (await this.property("f", p))[f]]);
+        for (const p of this.meta.face_properties) properties.push([p, (await this.property("f", p))[f]]);
         return { number, properties };
     }
 

@@ -17,6 +17,8 @@ const THEMES = {
     dark: { background: [0.086, 0.098, 0.114], line: [0.03, 0.04, 0.05], back: [0.55, 0.34, 0.31] },
 };
 const REST = 140; // milliseconds without a move after which the picture is drawn whole
+// Marks that turn the direction of text: a name with them would turn what stands behind it.
+const plain = (_, x) => typeof x === "string" ? x.replace(/[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, "\ufffd") : x;
 const A_FRAME = 450000; // vertices in a frame of a whole picture
 
 class App {
@@ -31,7 +33,8 @@ class App {
     }
 
     async start() {
-        const opening = JSON.parse(at("scene").textContent), metas = [...document.querySelectorAll("script.layer")].map(e => JSON.parse(e.textContent));
+        const opening = JSON.parse(at("scene").textContent, plain), metas = [...document.querySelectorAll("script.layer")].map(e => JSON.parse(e.textContent, plain));
+        if (!globalThis.DecompressionStream && document.querySelector('script[data-packed="1"]')) throw new Error("This browser is too old for the page: it cannot decompress (DecompressionStream). Browsers of 2023 and later can.");
         this.beside = !!opening.beside;
         document.title = opening.title || metas.map(m => m.name || "layer").join(", ");
         at("title").textContent = document.title;
@@ -53,9 +56,9 @@ class App {
         for (const d of this.drawings) {
             d.place = this.scene.placeOf(d.layer);
             if (d.layer.hull.length && !d.layer.triangles.length && !this.addressed) Object.assign(this.scene.cutting, { on: true, axis: 1, flip: true });
-            await d.prepare(this.renderer.budget);
-            if (d.state.wire) await d.wireframe();
         }
+        await this.prepare();
+        this.watchGraphics();
         this.picker = new Picker(this);
         this.fillPanel();
         this.tools = tools(this);
@@ -67,9 +70,33 @@ class App {
         addEventListener("hashchange", () => { if (readAddress(this)) this.recolourAll(); });
         this.say(this.summary());
     }
+    /** Brings the layers to the graphics card. */
+    async prepare() {
+        for (const d of this.drawings) {
+            await d.prepare(this.renderer.budget);
+            if (d.state.wire) await d.wireframe();
+        }
+    }
+    /** Browsers may take the graphics card away, and give it back: then everything is brought there again. */
+    watchGraphics() {
+        this.canvas.addEventListener("webglcontextlost", e => {
+            e.preventDefault();
+            this.lost = true;
+            this.complete = false;
+            this.say("The browser took the graphics card away. The picture comes back with it; if not, load the page again.");
+        });
+        this.canvas.addEventListener("webglcontextrestored", async () => {
+            this.renderer.forget();
+            await this.prepare();
+            this.recut();
+            this.lost = false;
+            this.say(this.summary());
+            this.redraw();
+        });
+    }
     summary() {
         const sum = key => this.drawings.reduce((n, d) => n + d.layer.meta[key], 0);
-        return [["vertices", "vertices"], ["faces", "faces"], ["tetrahedra", "tetrahedra"], ["edges", "edges"]].filter(([key]) => sum(key)).map(([key, words]) => `${count(sum(key))} ${words}`).join(", ");
+        return [["all_vertices", "vertices"], ["all_faces", "faces"], ["tetrahedra", "tetrahedra"], ["edges", "edges"]].filter(([key]) => sum(key)).map(([key, words]) => `${count(sum(key))} ${words}`).join(", ") || "There are no points.";
     }
     say(words) { at("status").textContent = words; }
 
@@ -81,10 +108,6 @@ class App {
         const on = make("input", { type: "checkbox", checked: c.on, onchange: e => { c.on = e.target.checked; changed(); } });
         const flip = make("input", { type: "checkbox", checked: c.flip, onchange: e => { c.flip = e.target.checked; changed(); } });
         const up = make("select", { onchange: e => { this.camera.up = +e.target.value; this.redraw(true); } }, ...["x", "y", "z"].map((name, k) => make("option", { value: k, selected: k === this.camera.up }, name)));
-        this.syncPanel = () => {
-            [axis.value, place.value, on.checked, flip.checked, up.value] = [c.axis, c.at, c.on, c.flip, this.camera.up];
-            this.drawings.forEach(d => d.refreshPanel());
-        };
         at("panel").replaceChildren(
             ...this.drawings.map(d => layerPanel(d, this)),
             make("section", { "aria-label": "Scene" }, make("h2", { className: "scene" }, "Scene"),
@@ -101,7 +124,8 @@ class App {
     async recolourAll() {
         for (const d of this.drawings) { await d.recolour(); if (d.state.wire) await d.wireframe(); }
         this.recut();
-        this.syncPanel();
+        this.fillPanel();
+        this.tools.forEach(t => t.sync());
         this.redraw();
     }
 
@@ -145,7 +169,7 @@ class App {
         requestAnimationFrame(() => { this.waiting = false; this.frame(); });
     }
     frame() {
-        if (!this.drawings || !this.picker) return;
+        if (!this.drawings || !this.picker || this.lost) return;
         const began = performance.now(), moving = began - this.moved < REST && !this.fast;
         if (this.dirty) {
             this.dirty = false;
@@ -174,6 +198,7 @@ class App {
         this.timed = true;
         gl.flush();
         const look = () => {
+            if (gl.isContextLost()) return;
             if (gl.getSyncParameter(sync, gl.SYNC_STATUS) !== gl.SIGNALED) return requestAnimationFrame(look);
             gl.deleteSync(sync);
             this.fast = performance.now() - began < 34;

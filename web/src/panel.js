@@ -34,15 +34,15 @@ function certificate(c) {
 /** The histogram of the values, in the colours that they have. A drag over it sets the range. */
 function histogram(drawing, changed) {
     const canvas = make("canvas", { className: "histogram", width: 256, height: 56, role: "img" });
-    const bins = new Float64Array(BINS), width = drawing.most - drawing.least || 1;
-    for (const x of drawing.values) if (Number.isFinite(x)) bins[Math.min(BINS - 1, Math.floor((x - drawing.least) / width * BINS))]++;
+    const bins = new Float64Array(BINS);
+    for (const x of drawing.values) if (Number.isFinite(x)) bins[Math.min(BINS - 1, Math.floor(drawing.part(x) * BINS))]++;
     const most = Math.max(1, ...bins), state = drawing.state;
     canvas.setAttribute("aria-label", `Histogram of ${count(drawing.values.length)} values from ${short(drawing.least)} to ${short(drawing.most)}`);
     const draw = () => {
         const c = canvas.getContext("2d");
         c.clearRect(0, 0, 256, 56);
         for (let i = 0; i < BINS; i++) {
-            const value = drawing.least + (i + 0.5) / BINS * width, t = state.high > state.low ? (value - state.low) / (state.high - state.low) : 0.5;
+            const [low, high] = drawing.range(), t = high > low ? ((i + 0.5) / BINS - low) / (high - low) : 0.5;
             c.fillStyle = `rgb(${colourAt(state.map, t)})`;
             const h = bins[i] ? Math.max(2, 46 * Math.sqrt(bins[i] / most)) : 0;
             c.fillRect(4 * i, 48 - h, 4, h);
@@ -50,13 +50,13 @@ function histogram(drawing, changed) {
         }
     };
     let from = null;
-    const valueAt = e => { const r = canvas.getBoundingClientRect(); return drawing.least + Math.max(0, Math.min(1, (e.clientX - r.left) / r.width)) * width; };
-    canvas.addEventListener("pointerdown", e => { from = valueAt(e); canvas.setPointerCapture(e.pointerId); });
+    const partAt = e => { const r = canvas.getBoundingClientRect(); return Math.max(0, Math.min(1, (e.clientX - r.left) / r.width)); };
+    canvas.addEventListener("pointerdown", e => { from = partAt(e); canvas.setPointerCapture(e.pointerId); });
     canvas.addEventListener("pointermove", e => {
         if (from === null) return;
-        const to = valueAt(e);
-        if (Math.abs(to - from) < width / 100) return;
-        [state.low, state.high] = [Math.min(from, to), Math.max(from, to)];
+        const to = partAt(e);
+        if (Math.abs(to - from) < 0.01) return;
+        [state.low, state.high] = [Math.min(from, to), Math.max(from, to)].map(x => drawing.valueAt(x));
         changed();
     });
     canvas.addEventListener("pointerup", () => { from = null; });
@@ -94,13 +94,13 @@ export function layerPanel(drawing, app) {
         onchange: async e => { state.source = e.target.value; await app.recolour(drawing); refresh(); app.redraw(); },
     }, ...sources.map(([value, words]) => make("option", { value, selected: value === state.source }, words)));
     refresh();
-    drawing.refreshPanel = () => { source.value = state.source; map.value = state.map; refresh(); };
     const shownParts = make("fieldset", {}, make("legend", {}, "Show"),
         tick("faces", "faces", surface), tick("wire", "wireframe", surface, () => drawing.wireframe()), tick("points", "points", true),
         tick("edges", "edges", m.edges > 0), tick("boundary", "boundary", m.boundary > 0), tick("nonmanifold", "edges of over two faces", m.nonmanifold > 0),
         tick("flipped", "edges whose faces disagree", m.flipped > 0), tick("crossing", "crossing faces", !!(b.crossing && b.crossing.count)),
         tick("bridges", "bridges", !!b.bridges), tick("flat", "flat shading", surface));
-    const notes = [!m.exact && `Coordinates are rounded to ${short(m.step)}, properties to 16 bits of their range: brio view --exact keeps all.`,
+    const notes = [!m.exact && `Rounded: coordinates to ${short(m.step)}, properties in floating point to 16 bits of their range. Vertices and faces have no numbers here. brio view --exact keeps all.`,
+        m.normals_left_out && "The normals of the file are left out: shades follow the faces. brio view --exact keeps them.",
         m.all_vertices > m.vertices && `An even choice of ${count(m.vertices)} of ${count(m.all_vertices)} points.`].filter(Boolean);
     return make("section", { className: "layer", "aria-label": name },
         make("h2", {}, make("input", { type: "checkbox", id: `visible${layer.number}`, checked: state.visible, onchange: e => { state.visible = e.target.checked; app.redraw(); } }),

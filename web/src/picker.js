@@ -1,6 +1,6 @@
 // What was picked: a card with coordinates and properties, a ring in the picture, and the distance of two picked vertices.
 import { project, length, sub } from "./matrix.js";
-import { at, exactly, make, short } from "./dom.js";
+import { about, at, make, shown, short } from "./dom.js";
 
 const NS = "http://www.w3.org/2000/svg";
 
@@ -12,6 +12,7 @@ export class Picker {
     }
     /** Picks at a place of the canvas; null where nothing is. */
     async pick(x, y) {
+        if (this.app.lost) return null;
         const app = this.app, { view, x: px, y: py } = app.viewAt(x, y);
         const found = app.renderer.pick(view, app.camera, app.look(), px, py);
         app.redraw();
@@ -34,13 +35,13 @@ export class Picker {
 
     show() {
         const pick = this.picks.at(-1), m = pick.drawing.layer.meta, list = [];
-        const single = name => m.properties.find(p => p.name === name)?.type === "float32";
-        if (this.distance !== null) list.push(["distance", exactly(this.distance)], ["difference", sub(this.picks[1].place, this.picks[0].place).map(short).join("  ")]);
-        "xyz".split("").forEach((axis, k) => list.push([axis, exactly(pick.place[k])]));
-        for (const [name, value] of pick.properties) list.push([name, exactly(value, single(name))]);
+        const step = pick.exact ? 0 : m.step;
+        if (this.distance !== null) list.push(["distance", about(this.distance, step)], ["difference", sub(this.picks[1].place, this.picks[0].place).map(short).join("  ")]);
+        "xyz".split("").forEach((axis, k) => list.push([axis, about(pick.place[k], step)]));
+        for (const [p, value] of pick.properties) list.push([p.name, shown(p, value)]);
         if (pick.face !== null) {
             list.push(["face", pick.faceFacts.number === null ? "without a number here" : String(pick.faceFacts.number)]);
-            for (const [name, value] of pick.faceFacts.properties) list.push([`${name} of the face`, exactly(value)]);
+            for (const [p, value] of pick.faceFacts.properties) list.push([`${p.name} of the face`, shown(p, value)]);
         }
         if (pick.tetrahedron !== null) list.push(["tetrahedron", String(pick.tetrahedron)]);
         const title = pick.number === null ? "a vertex" : `vertex ${pick.number}`;
@@ -48,7 +49,7 @@ export class Picker {
             make("h2", {}, make("span", {}, `${title} of ${m.name || `layer ${pick.drawing.layer.number + 1}`}`),
                 make("button", { "aria-label": "Close", onclick: () => { this.clear(); at("canvas").focus(); } }, "×")),
             make("dl", {}, ...list.flatMap(([k, v]) => [make("dt", {}, k), make("dd", {}, v)])),
-            ...(pick.exact ? [] : [make("p", { className: "note" }, `Rounded to ${short(m.step)}.`)]));
+            ...(pick.exact ? [] : [make("p", { className: "note" }, `Rounded: coordinates to ${short(m.step)}, properties in floating point to 16 bits of their range.`)]));
         at("card").hidden = false;
         this.app.say([title, ...list.slice(0, 5).map(([k, v]) => `${k} ${v}`)].join(", "));
     }

@@ -32,13 +32,16 @@ export class Renderer {
     constructor(canvas) {
         this.canvas = canvas;
         const gl = canvas.getContext("webgl2", { antialias: false, alpha: true, depth: false, preserveDrawingBuffer: true });
-        if (!gl) throw new Error("This browser shows no WebGL 2, which the picture needs.");
+        if (!gl) throw new Error("This browser shows no WebGL 2, which the picture needs. Another browser may, or this one with its graphics acceleration switched on.");
         this.gl = gl;
+        this.budget = 250000; // triangles or half the points while moving
+        this.forget();
+    }
+    /** Begins without anything on the graphics card. */
+    forget() {
         this.programs = {};
         this.palettes = {};
-        this.budget = 250000; // triangles or half the points while moving
-        this.target = null;
-        this.queue = null;
+        this.target = this.picked = this.queue = null;
     }
     program(name) { return this.programs[name] ||= compile(this.gl, PROGRAMS[name]); }
     palette(name) {

@@ -4,10 +4,10 @@ import { dot, length, sub } from "./matrix.js";
 export class Scene {
     constructor(layers) {
         this.layers = layers;
-        const low = [0, 0, 0], high = [0, 0, 0];
-        for (let k = 0; k < 3; k++) {
-            low[k] = Math.min(...layers.map(l => l.meta.low[k]));
-            high[k] = Math.max(...layers.map(l => l.meta.low[k] + l.meta.step * l.size[k]));
+        const low = [0, 0, 0], high = [0, 0, 0], full = layers.filter(l => l.meta.vertices); // an empty one has no place
+        for (let k = 0; k < 3 && full.length; k++) {
+            low[k] = Math.min(...full.map(l => l.meta.low[k]));
+            high[k] = Math.max(...full.map(l => l.coordinate(k, l.size[k])));
         }
         this.centre = low.map((x, k) => x / 2 + high[k] / 2);
         const half = Math.max(...low.map((x, k) => high[k] / 2 - x / 2));

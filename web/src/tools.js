@@ -18,6 +18,7 @@ async function save(app) {
     app.say("The picture was saved.");
 }
 async function copy(app) {
+    if (location.protocol === "about:") return app.say("A page within another one has no address. Save it as a file first.");
     try {
         await navigator.clipboard.writeText(location.href);
         app.say("The address of this view was copied.");

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import os
+import pathlib
 import tempfile
 import webbrowser
 from collections.abc import Sequence
@@ -42,11 +43,11 @@ class Page:
             file.write(self.html)
 
     def open(self) -> str:
-        """Opens the page in a browser; returns the file that it wrote for that."""
+        """Opens the page in a browser; returns the temporary file that it wrote for that, which stays."""
         number, path = tempfile.mkstemp(suffix=".html", prefix="brio-")
         os.close(number)
         self.save(path)
-        webbrowser.open("file://" + path)
+        webbrowser.open(pathlib.Path(path).as_uri())
         return path
 
     def _repr_html_(self) -> str:
