@@ -19,10 +19,10 @@ typedef struct brio_periodic_options {
     size_t size;
     const double *cell; /* 3 by 3: the vectors a, b, c; those that do not repeat are not read */
     uint64_t seed;      /* as in brio_delaunay_options; the result does not depend on it, but for its order */
-    double halo; /* translates within so many spacings of the points are triangulated at once; others are looked for
+    double halo;        /* translates within this number of spacings are triangulated at once; others are looked for
                       where they are needed. 0: the usual 2.5. The result does not depend on it, but for its order */
-    int open[3]; /* 1 for a direction that does not repeat */
-    int reserved_int; /* 0 */
+    int open[3];        /* 1 for a direction that does not repeat */
+    int reserved_int;   /* 0 */
 } brio_periodic_options;
 
 /** Facts of a periodic triangulation. */
@@ -51,10 +51,10 @@ typedef struct brio_periodic brio_periodic;
  *  tetrahedron of each class of translates.
  *  Every cell has a result: of one point, thin ones, and skewed ones, whose lattice is reduced first. Points may lie
  *  outside the cell.
- *  Grid: sums of doubles are no doubles, so vectors and points are put on a grid first, finer than 2^-47 of the longest
- *  vector of the reduced lattice in each coordinate, on which all translates that matter are exact. The result is exact
- *  for these, ties included (decision 018). Points at halves, quarters and eighths of the cell stay
- *  there, as do coordinates in which no vector of the cell goes anywhere.
+ *  Grid: sums of doubles are no doubles. So vectors and points are put on a grid first, on which all translates that
+ *  matter are exact. In each coordinate it is finer than 2^-47 of the longest vector of the reduced lattice. The result
+ *  is exact for these, ties included (decision 018). Points at halves, quarters and eighths of the cell stay there, as
+ *  do coordinates in which no vector of the cell goes anywhere.
  *  The result does not depend on the order of the points, on the number of threads, on which translate of a point is
  *  given, or on the origin: as long as these change positions by multiples of the grid, or by what rounding to doubles
  *  adds to such multiples; where there are no ties, by any rounding.

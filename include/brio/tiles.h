@@ -26,12 +26,12 @@ typedef struct brio_tiles brio_tiles;
 
 typedef struct brio_tiles_options {
     size_t size;
-    const char *scratch; /* a folder with room for about 40 bytes a point twice, and 18 a tetrahedron */
+    const char *scratch; /* a folder with room for about 190 bytes a point */
     uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
     int reserved_int;
-    uint64_t key; /* 0: a run that ends, in whatever way, leaves no file. Else a number that tells this input and
-                            this way to read it from others: the files of a process that was killed are then gone on
-                            with, by the next run in the same folder that has the same key and number of tiles */
+    uint64_t key; /* 0: no run goes on with what a killed process left. Else a number that tells this input and
+                            this way to read it from others. After a process was killed, the next run in the same
+                            folder with the same key and number of tiles goes on with its files */
 } brio_tiles_options;
 
 /** Facts of a triangulation in tiles. The first ones are those of brio_delaunay_stats. */
@@ -83,7 +83,7 @@ BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const doub
 
 /** Divides the points into tiles, and triangulates these. Call once, after all points were added. Where all points are
  *  in a plane there are no tetrahedra; the counts are those of brio_delaunay. With weights such points are refused.
- *  Memory: about 400 bytes a point of the largest tile, and one byte for each two of all points. Points whose
+ *  Memory: about 520 bytes a point of the largest tile, and one byte for each of all points. Points whose
  *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE,
  *  BRIO_ERR_OPEN (a scratch file was cut or removed), BRIO_ERR_NO_MEMORY (also where the memory limit of the context

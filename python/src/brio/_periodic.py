@@ -53,7 +53,7 @@ class PeriodicDelaunay:
     """The Delaunay triangulation of points in space that repeats or, with weights, the regular triangulation.
 
     ``brio.Delaunay(points, cell=...)`` makes it: one simplex of each class of translates. It is exact on a grid finer
-    than 2^-47 of the cell, and the same for every origin and every choice of translates.
+    than 2^-47 of the cell. Up to that grid the origin and the choice of translates do not matter.
 
     Parameters
     ----------
