@@ -49,7 +49,7 @@ typedef struct brio_page_stats {
  *  layers   num_layers pointers, 1 or more.
  *  options  NULL for the defaults.   stats  NULL, or receives facts.
  *  Cost: linear, and the sort of the edges for the certificate. Memory beside the meshes, for one layer at a time: 50
- *  bytes a triangle and 8 a vertex; for points 20 bytes each.
+ *  bytes a triangle, 45 a tetrahedron and 8 a vertex; for points 20 bytes each.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no layers, an index out of range, three tetrahedra share a facet),
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_write_page(brio_context *ctx, const char *path, const brio_page_layer *const *layers,

@@ -1,7 +1,7 @@
 /* Blocks of a page: bytes, compressed where zlib is there, as base 64 in an element of the page.
  *
  * A column is a sequence of numbers in a block: plane by plane, first the lowest byte of every number, last the highest
- * one, so that the bytes that hardly change stand together and pack well. Before that each number is replaced by how it
+ * one. So the bytes that hardly change stand together and pack well. Before that each number is replaced by how it
  * differs from the one before it (brio_page_mode). */
 #ifndef BRIO_PAGE_BLOCK_H
 #define BRIO_PAGE_BLOCK_H
