@@ -100,7 +100,7 @@ BRIO_API void brio_dynamic_points(const brio_dynamic *d, uint32_t *indices, doub
 /** Lists the vertices that are joined to a vertex by an edge, in no order.
  *  neighbours  receives a view of their indices, valid until the next call with d.   count  receives their number; 0
  *  for a point that is no vertex.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no such point), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no such point), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_dynamic_neighbours(brio_dynamic *d, uint32_t index, const uint32_t **neighbours,
                                              size_t *count);
 

@@ -52,9 +52,10 @@ typedef struct brio_periodic brio_periodic;
  *  Every cell has a result: of one point, thin ones, and skewed ones, whose lattice is reduced first. Points may lie
  *  outside the cell.
  *  Grid: sums of doubles are no doubles. So vectors and points are put on a grid first, on which all translates that
- *  matter are exact. In each coordinate it is finer than 2^-47 of the longest vector of the reduced lattice. The result
- *  is exact for these, ties included (decision 018). Points at halves, quarters and eighths of the cell stay there, as
- *  do coordinates in which no vector of the cell goes anywhere.
+ *  matter are exact. In each coordinate it is finer than 2^-47 of the longest vector of the reduced lattice, or of how
+ *  far the points reach where fewer than three directions repeat. For vectors it is 8 times as coarse. The result is
+ *  exact for these, ties included (decision 018). Points at halves, quarters and eighths of the cell stay there, as do
+ *  coordinates in which no vector of the cell goes anywhere.
  *  The result does not depend on the order of the points, on the number of threads, on which translate of a point is
  *  given, or on the origin: as long as these change positions by multiples of the grid, or by what rounding to doubles
  *  adds to such multiples; where there are no ties, by any rounding.
@@ -62,7 +63,7 @@ typedef struct brio_periodic brio_periodic;
  *  options  with the cell.   out  owned by the caller, freed with brio_periodic_free; NULL on error.
  *  Cost: as brio_delaunay for the points and the translates in a margin of 2.5 spacings.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no direction repeats; the vectors span nothing, or are too skewed; a point is
- *  more than 2^30 cells away), and as brio_delaunay.
+ *  more than 2^26 cells away), and as brio_delaunay.
  *  Based on: [Caroli Teillaud 2016] for triangulations of closed Euclidean manifolds; [Devillers Teillaud 2011] for
  *  ties. */
 BRIO_API brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, const double *weights,
@@ -97,10 +98,13 @@ BRIO_API const brio_image *brio_periodic_representatives(const brio_periodic *t)
 BRIO_API brio_status brio_periodic_checksum(brio_context *ctx, const brio_periodic *t, uint64_t *checksum);
 
 /** Checks a periodic triangulation exactly, without the code that made it: tetrahedra are positive; mates share facets;
- *  the volumes fill the cell; no vertex behind a facet is in conflict, ties included, which for a triangulation of all
- *  of space means that no vertex at all is; every point has a vertex that represents it. That hidden points are hidden
- *  is not checked.
- *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_NO_MEMORY. */
+ *  no vertex behind a facet is in conflict, ties included; every point has a vertex that represents it. Where all
+ *  directions repeat, the volumes fill the cell, so that no vertex at all is in conflict. With fewer, the hull is
+ *  convex at its edges; that space is covered only once is not checked. Where points and translates have dimension 2
+ *  or less, there are no tetrahedra: that the dimension is right is checked then, and which points are vertices is
+ *  not. That hidden points are hidden is not checked.
+ *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_periodic_check(brio_context *ctx, const brio_periodic *t);
 
 /** Computes the Voronoi cells, or power cells, of the vertices, as brio_voronoi_cells does. Cells are those of the

@@ -100,3 +100,32 @@ def test_threads_do_not_meet_in_one_triangulation():
     for thread in threads:
         thread.join()
     assert len(tri) == 500 + 20 * (90 - len(refused)) and is_as_built(tri)
+
+
+def test_points_that_change_places_keep_their_indices():
+    points = GENERATOR.random((1500, 3))
+    tri = brio.DynamicDelaunay(points)
+    for ring in (2, 3):
+        some = np.arange(ring) * 400 + 3
+        points[some] = np.roll(points[some], 1, axis=0)
+        tri.move_all(points)
+        assert np.array_equal(tri.points, points) and is_as_built(tri)
+
+
+def test_weights_without_points_are_refused():
+    with pytest.raises(brio.ArgumentError):
+        brio.DynamicDelaunay(weights=[1.0])
+    assert len(brio.DynamicDelaunay(weighted=True)) == 0
+
+
+def test_flat_points_and_none_have_answers():
+    for points in (np.zeros((0, 3)), [[0, 0, 0]], [[0, 0, 0], [0, 0, 0], [1, 0, 0]]):
+        tri = brio.DynamicDelaunay(points)
+        assert tri.facts["simplices"] == 0 and len(tri) == len(points)
+        assert all(tri.neighbors(i).tolist() == [] for i in range(len(points)))
+        assert tri.find_vertices([[0, 0, 0]]).tolist() == [[-1] * 4]
+        assert tri.find_vertices(np.zeros((0, 3))).shape == (0, 4)
+        tri.move_all(points)
+        tri.remove(tri.indices)
+        assert len(tri) == 0 and tri.points.shape == (0, 3)
+        assert tri.insert(np.zeros((0, 3))).tolist() == []

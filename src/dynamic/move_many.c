@@ -7,10 +7,11 @@
  * lacks join the hole. This does what flips do, and never sticks. Facets of the border are tested again. The points
  * that went back then move one by one.
  *
- * Whatever was done, that all tests hold in the end proves the triangulation, by the theorem of
- * triangulation/check.c: its tests 1 and 6 are made at every facet, test 5 at every edge of the hull, and test 4
- * holds for a point o at an inner vertex if o is strictly inside of all hull facets and a ray from o meets exactly
- * one of them: then c(o) = 1. The ray goes to a vertex of the hull, turned infinitesimally into one of its facets.
+ * Whatever was done, each repair leaves mates that are mates of each other, and that all tests hold in the end and no
+ * vertex was lost proves the triangulation, by the theorem of triangulation/check.c: its tests 1 and 6 are made at
+ * every facet, test 5 at every edge of the hull, and test 4 holds for a point o at an inner vertex if o is strictly
+ * inside of all hull facets and a ray from o meets exactly one of them: then c(o) = 1. The ray goes to a vertex of the
+ * hull, turned infinitesimally into one of its facets.
  * Where signs of 0 leave this open, or a hole grows large, all is built anew.
  *
  * Based on: de Castro, Tournois, Alliez, Devillers. Filtering relocations on a Delaunay triangulation. CGF 2009.
@@ -266,10 +267,20 @@ static bool hull_is_sound(brio_dynamic *d, uint32_t o) {
     return first != BRIO_NONE;
 }
 
+/* Returns whether no repair has left out a vertex. */
+static bool has_all_vertices(const brio_dynamic *d) {
+    for (uint32_t r = 1; r < d->num_rows; r++) {
+        if (brio_row_kind(d, r) != ROW_VERTEX) continue;
+        if (d->state[d->home[r]] & SLOT_UNUSED || brio_slot_of_vertex(d->t.tet[d->home[r]].vertex, r) > 3) return false;
+    }
+    return true;
+}
+
 /* Returns whether the triangulation is that of its points, all facets having been tested. */
 static bool is_sound(brio_dynamic *d) {
     enum { TRIES = 8 };
     int tries = 0;
+    if (!has_all_vertices(d)) return false;
     for (uint32_t r = (uint32_t)d->num_rows / 2; r < d->num_rows && tries < TRIES; r++) {
         if (brio_row_kind(d, r) != ROW_VERTEX || on_hull(d, r)) continue;
         if (hull_is_sound(d, r)) return true;
@@ -286,11 +297,13 @@ static brio_status sweep_new(brio_dynamic *d, sweep *s) {
     return BRIO_ALLOC(d->ctx, s->back, d->num_rows);
 }
 
-/* Moves one by one what went back. */
+/* Moves one by one what went back: by the names that the rows have before, since points that meet exchange theirs
+ * (place.c). */
 static brio_status move_back_again(sweep *s) {
     brio_dynamic *d = s->d;
+    for (size_t i = 0; i < s->num_back; i++) s->back[i] = d->row[s->back[i]].name;
     for (size_t i = 0; i < s->num_back; i++) {
-        BRIO_FORWARD(brio_live_move(d, d->row[s->back[i]].name, s->wish[i]));
+        BRIO_FORWARD(brio_live_move(d, s->back[i], s->wish[i]));
         BRIO_FORWARD(brio_look(d->ctx, 4));
     }
     return BRIO_OK;
@@ -333,8 +346,8 @@ brio_status brio_live_move_many(brio_dynamic *d, brio_record **record, size_t mo
     d->in_place += moved - s.num_back;
     if (status == BRIO_OK) status = move_back_again(&s);
     if (status != BRIO_OK) {
-        bool anew = d->needs_anew; /* what moved one by one goes back first, then what moved together */
-        status = brio_live_end(d, status);
+        bool anew = d->needs_anew && status == BRIO_ERR_INTERNAL; /* no other failure becomes a success */
+        status = brio_live_end(d, status); /* what moved one by one goes back first, then what moved together */
         exchange(d, record);
         brio_live_begin(d);
         d->needs_anew = anew;

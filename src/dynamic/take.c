@@ -139,8 +139,9 @@ static inline uint32_t border_at(const brio_dynamic *d, uint32_t x, uint32_t y, 
 }
 
 /* Lists the tetrahedra inside the link in hole.outer: those at the border, and a flood from there. Mates that are
- * facets of the border are marked. *met is the number of facets of the border that were met; where it is not all of
- * them, those have a mark in hole.fresh, and no tetrahedra are listed. */
+ * facets of the border are marked. *num_met is the number of facets of the border that were met; where it is not all of
+ * them, those have a mark in hole.fresh, and no tetrahedra are listed. It is 0 where the flood comes to a facet of the
+ * border from outside: then the hole covers some place twice, which moved points may do (move_many.c). */
 static brio_status flood(brio_dynamic *d, filling *f, size_t *num_inside, size_t *num_met) {
     brio_hole *h = &d->hole;
     size_t n = 0, met = 0;
@@ -172,7 +173,12 @@ static brio_status flood(brio_dynamic *d, filling *f, size_t *num_inside, size_t
     for (size_t i = 0; i < n; i++)
         for (int k = 0; k < 4; k++) {
             uint32_t mate = f->tet[h->outer[i]].mate[k], tet = brio_tet_of(mate);
-            if (mate & ON_BORDER || f->slot[tet] != BRIO_NONE) continue;
+            if (mate & ON_BORDER) continue;
+            if (f->tet[tet].mate[brio_slot_of(mate)] & ON_BORDER) {
+                *num_met = 0;
+                return BRIO_OK;
+            }
+            if (f->slot[tet] != BRIO_NONE) continue;
             f->slot[tet] = 0;
             h->outer[n++] = tet;
         }

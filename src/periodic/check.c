@@ -162,7 +162,35 @@ static double volume_sum(const brio_periodic *t) {
     return sum + lost;
 }
 
-/* Checks that representatives are vertices, and that vertices are those of the tetrahedra. */
+/* Checks that the points of dimension 2 or less lie in a plane or on a line with all their translates, which the first
+ * point and the vectors span, and that there are no tetrahedra. */
+static brio_status check_flat(const checking *c) {
+    const brio_images *m = &c->t->images;
+    const brio_lattice *l = m->lattice;
+    double first[3][3];
+    int count = 0, steps = m->num_points ? l->rank : 0;
+    for (size_t i = 0; i < m->num_points + (size_t)steps; i++) {
+        int32_t shift[3] = {0, 0, 0};
+        double x[3];
+        if (i > 0 && i <= (size_t)steps) shift[i - 1] = 1;
+        brio_lattice_move(l, m->x[i <= (size_t)steps ? 0 : i - (size_t)steps], shift, x);
+        if (count == 3) {
+            BRIO_EXPECT(c->ctx, brio_orient3d(first[0], first[1], first[2], x) == 0, BRIO_ERR_CHECK,
+                        "the points and their translates are not in one plane");
+            continue;
+        }
+        if (count == 1 && brio_same_position(first[0], x)) continue;
+        if (count == 2 && brio_collinear(first[0], first[1], x)) continue;
+        memcpy(first[count++], x, sizeof x);
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+    }
+    BRIO_EXPECT(c->ctx, count - 1 == c->t->stats.dimension, BRIO_ERR_CHECK,
+                "the points and their translates have dimension %d, not %d", count - 1, c->t->stats.dimension);
+    BRIO_EXPECT(c->ctx, c->count == 0, BRIO_ERR_CHECK, "%zu tetrahedra of points of dimension %d", c->count, count - 1);
+    return BRIO_OK;
+}
+
+/* Checks that representatives are vertices, and that vertices are those of the tetrahedra, where there are any. */
 static brio_status check_points(const checking *c) {
     const brio_periodic *t = c->t;
     size_t vertices = 0;
@@ -172,6 +200,7 @@ static brio_status check_points(const checking *c) {
     for (size_t i = 0; i < c->count; i++)
         for (int k = 0; k < 4; k++)
             if (t->tet[i].vertex[k] != BRIO_INFINITE) used[t->images.list[t->tet[i].vertex[k]].point] = 1;
+    for (size_t p = 0; p < t->stats.points && t->stats.dimension < 3; p++) used[p] = t->representative[p].point == p;
     for (size_t p = 0; p < t->stats.points; p++) {
         bool is_vertex = t->representative[p].point == p;
         vertices += is_vertex;
@@ -193,7 +222,10 @@ brio_status brio_periodic_check(brio_context *ctx, const brio_periodic *t) {
     checking c = {.ctx = ctx, .t = t, .count = t->stats.tetrahedra + t->stats.hull_facets};
     const brio_lattice *l = &t->lattice;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, least = 0, most = 0;
-    if (t->stats.dimension < 3) return BRIO_OK;
+    if (t->stats.dimension < 3) {
+        BRIO_FORWARD(check_flat(&c));
+        return check_points(&c);
+    }
     for (size_t i = 0; i < t->images.count; i++) {
         for (int k = 0; k < 3; k++) {
             low[k] = fmin(low[k], t->images.x[i][k]);

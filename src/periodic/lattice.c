@@ -17,10 +17,10 @@
 
 /* UNIT_BITS: a unit is this many binary digits below the size of a coordinate: 2^53 of them are 16 sizes. */
 enum { UNIT_BITS = 49, MOST_ROUNDS = 200, REDUCTIONS = 3 };
-static const double MOST_CHANGE = 0x1p30;
+static const double MOST_CHANGE = 0x1p26; /* so that all sums of shifts fit into an image */
 #define TOO_SKEWED                                                                                                     \
     "the cell is too large, too small or too skewed: its vectors as sums of the shortest ones of their lattice have "  \
-    "terms of more than 2^30"
+    "terms of more than 2^26"
 #define NO_SPAN "the periodic vectors of the cell span no %s"
 
 /* --- bases --- */
@@ -377,7 +377,7 @@ brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *opt
     memcpy(l->change, r.change, sizeof l->change);
     BRIO_EXPECT(ctx, complete(l->near, l->rank, l->near_dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
     BRIO_EXPECT(ctx, find_reach(l, points, num_points, reach), BRIO_ERR_ARGUMENT,
-                "a point is more than 2^30 cells away from the others");
+                "a point is more than 2^26 cells away from the others");
     BRIO_EXPECT(ctx, choose_units(l, (const double(*)[3])l->near, reach), BRIO_ERR_ARGUMENT, TOO_SKEWED);
     round_basis(l);
     find_used(l);

@@ -45,7 +45,7 @@ typedef struct brio_home {
 brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *options, const double *points,
                              size_t num_points, brio_lattice *lattice);
 
-/** Finds the translate of a point in the domain.   Returns false if it is more than 2^30 cells away. */
+/** Finds the translate of a point in the domain.   Returns false if it is more than 2^26 cells away. */
 bool brio_lattice_home(const brio_lattice *lattice, const double *point, brio_home *home);
 
 /** Writes a position moved by shift[i] basis[i]: exact (I2). */

@@ -42,7 +42,7 @@ static brio_status bring_home(brio_periodic *t, const double *points, size_t n, 
     for (size_t p = 0; p < n; p++) {
         brio_home h;
         BRIO_REQUIRE(t->ctx, brio_lattice_home(&t->lattice, points + 3 * p, &h), BRIO_ERR_ARGUMENT,
-                     "point %zu is more than 2^30 cells away from the others", p);
+                     "point %zu is more than 2^26 cells away from the others", p);
         memcpy(home[p], h.x, sizeof *home);
         for (int j = 0; j < 3; j++) t->home[p][j] = (int32_t)h.shift[j];
         t->stays &= !h.shift[0] && !h.shift[1] && !h.shift[2];
@@ -224,6 +224,7 @@ brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, cons
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_periodic_options, options, &o));
     BRIO_REQUIRE(ctx, o.cell, BRIO_ERR_ARGUMENT, "the options have no cell");
+    BRIO_REQUIRE(ctx, !o.reserved_int, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_int is not 0");
     BRIO_REQUIRE(ctx, o.halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o.halo);
     BRIO_REQUIRE(ctx, num_points < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", num_points);
     BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));

@@ -258,6 +258,75 @@ static void all_points_move(void) {
     EXPECT(together >= 4, "%zu moves without building anew", together);
 }
 
+/* Points that change places in one call: the first meets the second where that still is, and took its name for what
+ * followed, so that the second's wish went to the first. */
+static void points_change_places(void) {
+    size_t n = 1500;
+    world w = world_new(UNIFORM, 0, n + 1);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+    insert_many(&w, n);
+    double *p = calloc(3 * n, sizeof *p);
+    for (size_t ring = 2; ring <= 5; ring++) {
+        memcpy(p, w.point, 3 * n * sizeof *p);
+        for (size_t i = 0; i < ring; i++) {
+            size_t from = 7 + 211 * i, to = 7 + 211 * ((i + 1) % ring);
+            memcpy(p + 3 * from, w.point + 3 * to, 3 * sizeof *p);
+        }
+        EXPECT(brio_dynamic_move(w.d, NULL, p, NULL, n) == BRIO_OK, "%s", brio_message(w.ctx));
+        memcpy(w.point, p, 3 * n * sizeof *p);
+        EXPECT(is_as_built(&w), "%zu points", ring);
+        EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+    }
+    free(p);
+    world_free(&w);
+}
+
+/* Weights that hide neighbours, in calls that give all points their weight: a repair that took in the whole stars of
+ * both, the hidden point first, lost it. */
+static void weights_of_all_may_hide_some(void) {
+    size_t n = 1200;
+    double spacing = 1 / cbrt((double)n);
+    world w = world_new(UNIFORM, 1, n + 1);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 1, &w.d) == BRIO_OK);
+    insert_many(&w, n);
+    for (int round = 0; round < (BRIEF_TESTS ? 20 : 100); round++) {
+        for (size_t i = 0; i < n; i++) w.weight[i] = 0;
+        EXPECT(brio_dynamic_reweight(w.d, NULL, w.weight, n) == BRIO_OK, "%s", brio_message(w.ctx));
+        for (int some = 0; some < 3; some++) w.weight[draw_below(n)] = (0.2 + 1.3 * draw()) * spacing * spacing;
+        EXPECT(brio_dynamic_reweight(w.d, NULL, w.weight, n) == BRIO_OK, "%s", brio_message(w.ctx));
+        EXPECT(is_as_built(&w), "round %d", round);
+        EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+    }
+    world_free(&w);
+}
+
+/* Coordinates whose differences overflow, and those whose squares underflow. */
+static void coordinates_may_be_huge_or_tiny(void) {
+    static const double SCALE[] = {1.7e308, 1e160, 1e-160, 3e-323, 0};
+    for (size_t s = 0; s < sizeof SCALE / sizeof *SCALE; s++)
+        for (int weighted = 0; weighted < 2; weighted++) {
+            world w = world_new(UNIFORM, weighted, 200);
+            EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, weighted, &w.d) == BRIO_OK);
+            for (uint32_t i = 0; i < 40; i++) {
+                double p[3], q[3], weight = weighted ? 1e-3 * draw() * SCALE[s] : 0;
+                for (int c = 0; c < 3; c++) p[c] = (2 * draw() - 1) * SCALE[s], q[c] = (2 * draw() - 1) * SCALE[s];
+                EXPECT(brio_dynamic_insert(w.d, p, weighted ? &weight : NULL, 1, NULL) == BRIO_OK);
+                enter(&w, w.num_indices++, p, weight);
+                if (i % 3 == 0) {
+                    EXPECT(brio_dynamic_move(w.d, &i, q, NULL, 1) == BRIO_OK);
+                    enter(&w, i, q, weight);
+                }
+                uint32_t v[4];
+                EXPECT(brio_dynamic_locate(w.d, q, v) == BRIO_OK);
+                EXPECT(is_as_built(&w), "%g, weighted %d, %u", SCALE[s], weighted, i);
+            }
+            EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+            while (w.num_points > 0) remove_some(&w, 3);
+            EXPECT(is_as_built(&w));
+            world_free(&w);
+        }
+}
+
 /* Vertices whose stars have hundreds of tetrahedra: their links go through brio_delaunay; the whole star, anew. */
 static void centres_of_spheres_go(void) {
     world w = world_new(UNIFORM, 0, 2000);
@@ -446,6 +515,9 @@ static void questions_are_answered_between_changes(void) {
 SUITE(test_dynamic) {
     RUN(any_changes_end_as_built);
     RUN(all_points_move);
+    RUN(points_change_places);
+    RUN(weights_of_all_may_hide_some);
+    RUN(coordinates_may_be_huge_or_tiny);
     RUN(centres_of_spheres_go);
     RUN(failing_memory_leaves_all);
     RUN(cancelled_changes_leave_all);

@@ -361,6 +361,107 @@ static void halos_do_not_matter(void) {
     free(points);
 }
 
+/* --- extremes --- */
+
+/* Skewed cells and points far away: what an image says is where it is, or the input is refused. Sums of shifts did not
+ * fit into 32 bits. */
+static void shifts_fit_or_are_refused(void) {
+    size_t made = 0, refused = 0;
+    for (int bits = 10; bits <= 34; bits++)
+        for (int sign = -1; sign <= 1; sign++) {
+            double far = ldexp(1, bits), cell[9] = {1, 0, 0, far, 1, 0, far, 0, 1};
+            double points[6] = {0, 0, 0, sign * far + 0.5, 0.5, 0.5};
+            brio_periodic_options o = {.size = sizeof o, .cell = cell};
+            brio_periodic *t = NULL;
+            brio_status status = brio_delaunay_periodic(ctx, points, NULL, 2, &o, &t);
+            EXPECT(status == BRIO_OK || status == BRIO_ERR_ARGUMENT, "%s", brio_message(ctx));
+            refused += status != BRIO_OK;
+            if (status != BRIO_OK) continue;
+            made++;
+            const brio_image *image = brio_periodic_images(t);
+            size_t wrong = 0;
+            for (size_t i = 0; i < brio_periodic_facts(t)->images; i++) {
+                const int32_t *s = image[i].shift;
+                double x = points[3 * image[i].point] + s[0] + far * s[1] + far * s[2];
+                wrong += fabs(x - brio_periodic_positions(t)[3 * i]) > 1;
+            }
+            EXPECT(wrong == 0, "2^%d, %d: %zu images are elsewhere", bits, sign, wrong);
+            brio_periodic_free(t);
+        }
+    EXPECT(made > 20 && refused > 0, "%zu made, %zu refused", made, refused);
+}
+
+/* The check returned BRIO_OK without a look where there are no tetrahedra. */
+static void flat_points_are_checked(void) {
+    static const double points[3][9] = {{0}, {0, 0, 0, .5, 0, 0, .25, 0, 0}, {0, 0, 0, .5, .5, 0, .5, .5, 0}};
+    static const double slab[9] = {1, 0, 0, 0, 1, 0};
+    for (int i = 0; i < 3; i++)
+        for (int directions = 1; directions <= 3; directions++) {
+            double cell[9];
+            memcpy(cell, slab, sizeof cell);
+            cell[8] = 1;
+            brio_periodic_options o = {.size = sizeof o, .cell = cell, .open = {0, directions < 2, directions < 3}};
+            brio_periodic *t = NULL;
+            EXPECT(brio_delaunay_periodic(ctx, points[i], NULL, i ? 3 : 1, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+            if (!t) continue;
+            brio_periodic_stats *s = (brio_periodic_stats *)brio_periodic_facts(t);
+            int right = s->dimension;
+            EXPECT(right == (i == 2 && directions < 2 ? 2 : directions), "%d: dimension %d", i, right);
+            for (int said = 1; said <= 2; said++) {
+                s->dimension = said;
+                brio_status status = brio_periodic_check(ctx, t);
+                EXPECT((status == BRIO_OK) == (said == right), "%d: dimension %d of %d: %s", i, said, right,
+                       brio_message(ctx));
+            }
+            s->dimension = right;
+            check(t, "flat");
+            s->vertices++;
+            EXPECT(brio_periodic_check(ctx, t) == BRIO_ERR_CHECK, "%d: a vertex too many", i);
+            brio_periodic_free(t);
+        }
+}
+
+static void no_points_have_a_result(void) {
+    crystal c = {.count = 0};
+    set_cell(&c, CELLS[4]);
+    for (int directions = 1; directions < 8; directions++) {
+        for (int k = 0; k < 3; k++) c.periodic[k] = directions >> k & 1;
+        brio_periodic *t = build(&c);
+        brio_cells *cells = NULL;
+        if (!t) continue;
+        check(t, "no points");
+        EXPECT(brio_periodic_facts(t)->tetrahedra == 0 && brio_periodic_facts(t)->images == 0, "tetrahedra");
+        EXPECT(brio_periodic_cells(ctx, t, NULL, &cells) == BRIO_OK && cells->num_cells == 0, "%s", brio_message(ctx));
+        brio_cells_free(cells);
+        brio_periodic_free(t);
+    }
+}
+
+static void wrong_options_are_refused(void) {
+    static const double point[3] = {0, 0, 0}, cell[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    double flat[9] = {1, 0, 0, 2, 0, 0, 0, 0, 1}, other[9] = {1, 0, 0, NAN, 1, 0, 0, 0, 1};
+    brio_periodic_options wrong[] = {
+        {.cell = NULL},
+        {.cell = flat},
+        {.cell = other},
+        {.cell = cell, .halo = NAN},
+        {.cell = cell, .halo = -1},
+        {.cell = cell, .open = {1, 1, 1}},
+        {.cell = cell, .reserved_int = 1},
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        brio_periodic *t = NULL;
+        wrong[i].size = sizeof wrong[i];
+        EXPECT(brio_delaunay_periodic(ctx, point, NULL, 1, &wrong[i], &t) == BRIO_ERR_ARGUMENT && !t, "options %zu", i);
+        brio_periodic_free(t);
+    }
+    brio_periodic_options o = {
+        .size = sizeof o, .cell = other, .open = {0, 1, 0}}; /* what is not read may be anything */
+    brio_periodic *t = NULL;
+    EXPECT(brio_delaunay_periodic(ctx, point, NULL, 1, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    brio_periodic_free(t);
+}
+
 SUITE(test_periodic) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return 1;
     RUN(faces_of_lattices_are_right);
@@ -371,6 +472,10 @@ SUITE(test_periodic) {
     RUN(checksum_tells_triangulations_apart);
     RUN(slabs_and_wires_are_those_of_many_copies);
     RUN(halos_do_not_matter);
+    RUN(shifts_fit_or_are_refused);
+    RUN(flat_points_are_checked);
+    RUN(no_points_have_a_result);
+    RUN(wrong_options_are_refused);
     brio_context_free(ctx);
     return harness_end();
 }

@@ -69,6 +69,8 @@ class DynamicDelaunay:
         self._handle = _native.dynamic_new(int(self.weighted))
         if points is not None:
             self.insert(points, weights)
+        elif weights is not None:
+            raise ArgumentError("weights: there are no points; weighted=True allows weights of points that come later")
 
     # --- changes ---
 
