@@ -154,7 +154,7 @@ static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
     bool named = strcmp(path, "-") != 0;
     if (named && !brio_find_facts(path, &there)) return cli_fail(r, BRIO_ERR_OPEN, "%s: %s", path, strerror(errno));
     if (named && there.kind == BRIO_IS_FILE) status = brio_read_blocks(r->ctx, path, &how, take_block, v, &v->file);
-    if (v->failed) return BRIO_ERR_NO_MEMORY;
+    if (v->failed) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory");
     bool known = status == BRIO_OK;
     if (known && v->points > MOST_IN_MEMORY) {
         cli_tell_input(r, path);
@@ -165,7 +165,7 @@ static brio_status survey_file(run *r, survey *v, brio_mesh **mesh) {
     if (known) return BRIO_OK;
     free_survey(v);
     *v = (survey){.file.size = sizeof v->file};
-    if (take_block(*mesh, v)) return BRIO_ERR_NO_MEMORY;
+    if (take_block(*mesh, v)) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory");
 done:
     return status;
 }

@@ -10,14 +10,14 @@ static brio_status fail(run *r, const char *path) {
 }
 
 brio_status cli_new_file_open(run *r, const char *path, new_file *out) {
-    int file;
+    int file = -1;
     *out = (new_file){.target.folder = -1};
     cli_interrupt_writing(true);
-    if (!brio_target_find(&out->target, path) || !brio_target_create(&out->target, &file)) return fail(r, path);
-    out->file = brio_stream_of(file);
+    if (brio_target_find(&out->target, path) && brio_target_create(&out->target, &file))
+        out->file = brio_stream_of(file);
     if (out->file) return BRIO_OK;
     brio_status status = fail(r, path);
-    brio_close(file);
+    if (file >= 0) brio_close(file); /* it may be open without the permissions of the old file */
     return status;
 }
 

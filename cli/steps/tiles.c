@@ -27,8 +27,9 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     if (weights->file)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles: not with --weights FILE; the points can have a property weight or radius");
-    if (r->common.output && !ends_with(r->common.output, EXTENSION))
-        return cli_fail_output(r, "%s: --tiles writes .pvtu, with a file for each tile beside it", r->common.output);
+    const char *output = r->common.output;
+    if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
+        return cli_fail_output(r, "%s: --tiles writes .pvtu, with a file for each tile beside it", output);
     return BRIO_OK;
 }
 
@@ -62,8 +63,7 @@ static int take_block(const brio_mesh *block, void *user) {
     intake *in = user;
     run *r = in->r;
     in->status = add_block(in, block);
-    if (in->status != BRIO_OK && !r->message[0]) /* the reader will say that it was cancelled */
-        cli_fail(r, in->status, "%s", brio_message(r->ctx));
+    if (in->status != BRIO_OK) cli_keep_failure(r, in->status);
     return in->status != BRIO_OK;
 }
 
@@ -90,12 +90,21 @@ static uint64_t mix_text(uint64_t hash, const char *text) {
     return mix(hash, text != NULL);
 }
 
-/* Returns a number for the input as it is now and the way in which it is read, or 0 if it cannot be read again. */
+/* Returns whether the points may be in files beside the one that is named: .node beside .ele, buffers beside .gltf. */
+static bool has_files_beside(const run *r) {
+    const common_options *c = &r->common;
+    brio_format format = brio_format_of(c->input_format ? c->input_format : r->operands[0]);
+    return format == brio_format_of(".ele") || format == brio_format_of(".gltf");
+}
+
+/* Returns a number for the input as it is now and the way in which it is read, or 0 if it cannot be read again, or if
+ * the file does not tell whether the points are the same. */
 static uint64_t key_of(const run *r, const weights_options *w) {
     brio_place_facts file;
     const common_options *c = &r->common;
     const char *path = r->operands[0];
     if (!strcmp(path, "-") || !brio_find_facts(path, &file) || file.kind != BRIO_IS_FILE) return 0;
+    if (has_files_beside(r)) return 0;
     uint64_t hash = mix_text(1, path);
     hash = mix(mix(hash, file.number), file.volume);
     hash = mix(mix(hash, file.size), (uint64_t)file.seconds);
@@ -141,8 +150,9 @@ static brio_status report(run *r, brio_tiles *t, bool weighted) {
 
 /* --- output --- */
 
-/* Writes a tile. Its vertices have the property `point`, the index in the input, and `weight`. */
-static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, const char *path) {
+/* Writes a tile. Its vertices have the property `point`, the index in the input, and `weight` if points have weights:
+ * all files have the same properties, which the index names. */
+static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighted, const char *path) {
     brio_tile_part part = {.size = sizeof part};
     brio_mesh *mesh = NULL;
     brio_write_options how = {.size = sizeof how, .ascii = r->common.ascii, .compress = r->common.compress};
@@ -156,9 +166,9 @@ static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, const char *
     TRY(brio_mesh_add_property(mesh, "point", BRIO_SCALAR_FLOAT64, &data));
     values = data;
     for (size_t i = 0; i < part.num_vertices; i++) values[i] = (double)part.index[i];
-    if (part.weights) {
+    if (weighted) {
         TRY(brio_mesh_add_property(mesh, "weight", BRIO_SCALAR_FLOAT64, &data));
-        memcpy(data, part.weights, part.num_vertices * sizeof *part.weights);
+        if (part.num_vertices) memcpy(data, part.weights, part.num_vertices * sizeof *part.weights);
     }
     status = brio_write(r->ctx, path, mesh, &how);
 done:
@@ -167,10 +177,24 @@ done:
     return status;
 }
 
+/* Writes the name of a folder as text of XML. */
+static void write_name(FILE *file, const char *name) {
+    for (; *name; name++) {
+        const char *escape = *name == '&'   ? "&amp;"
+                             : *name == '<' ? "&lt;"
+                             : *name == '>' ? "&gt;"
+                             : *name == '"' ? "&quot;"
+                                            : NULL;
+        if (escape)
+            fputs(escape, file);
+        else
+            fputc(*name, file);
+    }
+}
+
 static brio_status write_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
     new_file f = {0};
     brio_status status = BRIO_OK;
-    const char *name = strrchr(folder, '/') ? strrchr(folder, '/') + 1 : folder;
     TRY(cli_new_file_open(r, r->common.output, &f));
     fprintf(f.file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" "
                     "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n"
@@ -178,7 +202,11 @@ static brio_status write_index(run *r, const char *folder, uint32_t tiles, bool 
                     "<PPointData>\n<PDataArray type=\"Float64\" Name=\"point\"/>\n");
     if (weighted) fprintf(f.file, "<PDataArray type=\"Float64\" Name=\"weight\"/>\n");
     fprintf(f.file, "</PPointData>\n");
-    for (uint32_t i = 0; i < tiles; i++) fprintf(f.file, "<Piece Source=\"%s/%u.vtu\"/>\n", name, i);
+    for (uint32_t i = 0; i < tiles; i++) {
+        fprintf(f.file, "<Piece Source=\"");
+        write_name(f.file, folder + brio_folder_length(folder));
+        fprintf(f.file, "/%u.vtu\"/>\n", i);
+    }
     fprintf(f.file, "</PUnstructuredGrid>\n</VTKFile>\n");
     status = cli_new_file_publish(r, r->common.output, &f);
 done:
@@ -186,8 +214,8 @@ done:
     return status;
 }
 
-/* Writes a file for each tile that has tetrahedra, then the index. Without the index there is no output: on failure the
- * tiles are removed. */
+/* Writes a file for each tile, then the index. Without the index there is no output: on failure the tiles are removed.
+ */
 static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weighted) {
     char folder[NAME_BYTES], path[NAME_BYTES + 32];
     brio_status status = BRIO_OK;
@@ -200,7 +228,7 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
         return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", folder, strerror(errno));
     for (; written < tiles; written++) {
         snprintf(path, sizeof path, "%s/%u.vtu", folder, written);
-        TRY(write_tile(r, t, written, path));
+        TRY(write_tile(r, t, written, weighted, path));
     }
     status = write_index(r, folder, tiles, weighted);
 done:

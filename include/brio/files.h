@@ -173,7 +173,8 @@ typedef struct brio_file_facts {
     char version[64]; /* of the file, where the format has versions, such as "1.2, point format 3"; else "" */
 } brio_file_facts;
 
-/** Receives a part of a file. `block` is valid during the call. A result other than 0 cancels the reading. */
+/** Receives a part of a file. `block` is valid during the call. A result other than 0 cancels the reading. If a call of
+ *  the callback with the same context failed, brio_message then still has the sentence of that failure. */
 typedef int (*brio_rows_fn)(const brio_mesh *block, void *user);
 
 /** Reads a file as brio_read does, and hands over its points in blocks of some 65,536, in the order of the file, each

@@ -67,7 +67,8 @@ typedef struct brio_tile_part {
 
 /** Makes an empty set of points, and a folder in the scratch folder.
  *  out  owned by the caller: brio_tiles_free; NULL on error.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, or in use by another process),
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, in use by another process, or laid
+ *  there by another user),
  *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options, brio_tiles **out);
 
@@ -81,9 +82,11 @@ BRIO_API int brio_tiles_has_points(const brio_tiles *t);
 BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const double *points, const double *weights,
                                     size_t num_points);
 
-/** Divides the points into tiles, and triangulates these. Call once, after all points were added. Where all points are
- *  in a plane there are no tetrahedra; the counts are those of brio_delaunay. With weights such points are refused.
- *  Memory: about 520 bytes a point of the largest tile, and one byte for each of all points. Points whose
+/** Divides the points into tiles, and triangulates these. Call once, after all points were added. After a failure while
+ *  tiles are triangulated, a further call goes on with those that are missing; after one before that, it is refused.
+ *  Where all points are in a plane there are no tetrahedra; the counts are those of brio_delaunay. With weights such
+ *  points are refused.
+ *  Memory: about 520 bytes a point of the largest tile, and one byte for each two of all points. Points whose
  *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE,
  *  BRIO_ERR_OPEN (a scratch file was cut or removed), BRIO_ERR_NO_MEMORY (also where the memory limit of the context

@@ -18,6 +18,7 @@ brio_status brio_fail(brio_context *ctx, brio_status status, const char *format,
     ctx->failure = ctx->next;
     ctx->failure.status = status;
     ctx->next = (brio_failure){0};
+    ctx->failures++;
     brio_mutex_unlock(&ctx->lock);
     va_end(arguments);
     return status;

@@ -47,6 +47,7 @@ struct brio_context {
     const struct brio_experiment *experiment; /* experiment.h; NULL: none */
     char message[512];
     brio_failure failure, next; /* of the message; what is known so far of the failure that is about to come */
+    uint64_t failures;          /* that were told in messages */
 };
 
 /** Stores a message in the context and returns the status. Threads may call this together. */

@@ -233,10 +233,12 @@ typedef struct {
     void *user;
 } block_call;
 
+/* Hands a block over. A callback that cancels because a call of its own failed leaves that call's sentence. */
 static brio_status call(void *user, const brio_mesh *block) {
     const block_call *c = user;
-    if (c->take(block, c->user)) return brio_fail(c->ctx, BRIO_ERR_CANCELLED, "cancelled");
-    return BRIO_OK;
+    uint64_t failures = c->ctx->failures;
+    if (!c->take(block, c->user)) return BRIO_OK;
+    return c->ctx->failures == failures ? brio_fail(c->ctx, BRIO_ERR_CANCELLED, "cancelled") : BRIO_ERR_CANCELLED;
 }
 
 brio_status brio_read_blocks(brio_context *ctx, const char *path, const brio_read_options *options, brio_rows_fn take,

@@ -6,12 +6,16 @@
 #include <stdbool.h>
 
 /** Makes a folder that only its owner may read (`ours`) or one with the usual rights. A folder that is there already is
- *  no failure.   made  receives whether there was none. */
+ *  no failure, except that `ours` refuses a link and the folder of another user: who may write into a folder for all,
+ *  such as /tmp, could lay one there under a name that can be guessed.   made  receives whether there was none. */
 bool brio_make_folder(const char *path, bool ours, bool *made);
 
 /** Opens a file, makes it if there is none, and locks it until it is closed or the process ends, in whatever way.
  *  Returns the descriptor, or -1; errno is EWOULDBLOCK if another process has it. Does not follow links. */
 int brio_lock_file(const char *path);
+
+/** Removes a file that is locked, and ends the lock. No other process gets the lock of the file that is removed. */
+void brio_unlock_file(int file, const char *path);
 
 /** Makes an empty file, to read and to write, in place of one of that name. Does not follow links. Returns -1 if it
  *  cannot. */

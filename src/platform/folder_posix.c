@@ -12,22 +12,64 @@
 #include <sys/file.h>
 #endif
 
-bool brio_make_folder(const char *path, bool ours, bool *made) {
-    *made = mkdir(path, ours ? 0700 : 0777) == 0;
-    return *made || errno == EEXIST;
+#ifdef __wasi__ /* which has one user and one process */
+
+static bool is_ours(const char *path) {
+    (void)path;
+    return true;
 }
 
 int brio_lock_file(const char *path) {
-    int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-#ifndef __wasi__ /* which has one process */
-    if (file >= 0 && flock(file, LOCK_EX | LOCK_NB) != 0) {
+    return open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+}
+
+void brio_unlock_file(int file, const char *path) {
+    close(file);
+    unlink(path);
+}
+
+#else
+
+/* Returns whether a path is a folder of this user, and no link. */
+static bool is_ours(const char *path) {
+    struct stat facts;
+    if (lstat(path, &facts) != 0) return false;
+    errno = S_ISDIR(facts.st_mode) ? EACCES : ENOTDIR;
+    return S_ISDIR(facts.st_mode) && facts.st_uid == geteuid();
+}
+
+/* Returns whether a path is still the name of an open file. */
+static bool has_name(int file, const char *path) {
+    struct stat open, named;
+    return fstat(file, &open) == 0 && lstat(path, &named) == 0 && open.st_dev == named.st_dev &&
+           open.st_ino == named.st_ino;
+}
+
+/* Opens and locks; begins again if another process removed the file between the two calls, for such a lock locks
+ * nothing. */
+int brio_lock_file(const char *path) {
+    for (;;) {
+        int file = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+        if (file < 0) return -1;
+        bool locked = flock(file, LOCK_EX | LOCK_NB) == 0;
+        if (locked && has_name(file, path)) return file;
         int error = errno;
         close(file);
         errno = error;
-        return -1;
+        if (!locked) return -1;
     }
+}
+
+void brio_unlock_file(int file, const char *path) {
+    unlink(path);
+    close(file);
+}
+
 #endif
-    return file;
+
+bool brio_make_folder(const char *path, bool ours, bool *made) {
+    *made = mkdir(path, ours ? 0700 : 0777) == 0;
+    return *made || (errno == EEXIST && (!ours || is_ours(path)));
 }
 
 int brio_make_file(const char *path) {

@@ -36,6 +36,13 @@ int brio_lock_file(const char *path) {
     return open_file(path, 0, OPEN_ALWAYS);
 }
 
+/* Closes the file first. If another process has it by now, it stays: a file that is open without sharing cannot be
+ * removed. */
+void brio_unlock_file(int file, const char *path) {
+    _close(file);
+    brio_remove_file(path);
+}
+
 int brio_make_file(const char *path) {
     return open_file(path, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, CREATE_ALWAYS);
 }

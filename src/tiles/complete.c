@@ -184,9 +184,10 @@ static bool take_finished(brio_tiles *t, uint32_t tile) {
 
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
     writing w = {.t = t, .facts = &t->tile[tile], .out.file = -1};
+    const brio_tile before = *w.facts;
     brio_status status = BRIO_OK;
     tile_head none = {.points = 0};
-    if (!w.facts->points) return BRIO_OK;
+    if (!before.points || before.finished) return BRIO_OK;
     if (t->key && take_finished(t, tile)) {
         t->stats.resumed++;
         return BRIO_OK;
@@ -196,6 +197,7 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
     BRIO_TRY(BRIO_ALLOC(t->ctx, w.buffer, BUFFER));
     status = complete(t, tile, &w);
 done:
+    if (status != BRIO_OK) *w.facts = before; /* the tile may be tried again */
     brio_store_close(&w.out);
     brio_release(t->ctx, w.buffer);
     brio_release(t->ctx, w.halo_row);

@@ -14,7 +14,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_SAMPLE = 1 << 17, MOST_SOME = 1 << 15, BUFFER = 1 << 10 };
+enum { MOST_SAMPLE = 1 << 17, MOST_SOME = 1 << 15 };
+enum { BUFFER = 1 << 10, LEAST_BUFFER = 1 << 4, ALL_BUFFERS = 1 << 20 }; /* points. Chosen */
 
 /* --- taking --- */
 
@@ -53,10 +54,10 @@ static void extend(brio_ball_box *box, const double *record) {
 }
 
 static brio_status begin_taking(brio_tiles *t) {
-    if (t->some) return BRIO_OK;
-    BRIO_FORWARD(brio_store_create(&t->folder, "raw", &t->raw));
-    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->sample, MOST_SAMPLE));
-    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->sample_hash, MOST_SAMPLE));
+    if (t->some) return BRIO_OK; /* what an earlier call made before it failed is not made again */
+    if (t->raw.file < 0) BRIO_FORWARD(brio_store_create(&t->folder, "raw", &t->raw));
+    if (!t->sample) BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->sample, MOST_SAMPLE));
+    if (!t->sample_hash) BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->sample_hash, MOST_SAMPLE));
     BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->some, MOST_SOME));
     t->most_hash = UINT64_MAX;
     for (int k = 0; k < 3; k++) t->all.low[k] = INFINITY, t->all.high[k] = -INFINITY;
@@ -189,17 +190,23 @@ static uint32_t tile_of(const brio_tiles *t, const double *record) {
 typedef struct {
     brio_store_file file;
     brio_set_point *buffer;
-    size_t count;
+    size_t count, room;
 } tray;
+
+/* Returns how many points wait for each tile's file: few if there are many tiles, so that all together fit. */
+static size_t room_of_tray(const brio_tiles *t) {
+    size_t share = ALL_BUFFERS / t->num_tiles;
+    return share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
+}
 
 static brio_status put(brio_tiles *t, tray *trays, const brio_set_point *p) {
     uint32_t tile = tile_of(t, p->record);
     tray *tr = &trays[tile];
     t->tile[tile].raw++;
     tr->buffer[tr->count++] = *p;
-    if (tr->count < BUFFER) return BRIO_OK;
+    if (tr->count < tr->room) return BRIO_OK;
     tr->count = 0;
-    return brio_store_append(&tr->file, tr->buffer, BUFFER * sizeof *p);
+    return brio_store_append(&tr->file, tr->buffer, tr->room * sizeof *p);
 }
 
 static brio_status distribute(brio_tiles *t, tray *trays) {
@@ -236,7 +243,9 @@ brio_status brio_tiles_divide(brio_tiles *t) {
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         snprintf(name, sizeof name, "divided-%u", i);
         BRIO_TRY(brio_store_create(&t->folder, name, &trays[i].file));
-        BRIO_TRY(BRIO_ALLOC(t->ctx, trays[i].buffer, BUFFER));
+        brio_store_shut(&trays[i].file);
+        trays[i].room = room_of_tray(t);
+        BRIO_TRY(BRIO_ALLOC(t->ctx, trays[i].buffer, trays[i].room));
     }
     BRIO_TRY(distribute(t, trays));
     brio_store_close(&t->raw);

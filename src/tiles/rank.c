@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { AT_ONCE = 1 << 11 };
+enum { AT_ONCE = 1 << 11, LEAST_AT_ONCE = 1 << 5, ALL_AT_ONCE = 1 << 20 }; /* vertices. Chosen */
 
 /* A vertex of a run. */
 typedef struct {
@@ -25,7 +25,7 @@ typedef struct {
 typedef struct {
     brio_store_file in, out;
     run_vertex *vertex; /* those at hand */
-    size_t at, count;
+    size_t at, count, room;
     uint64_t read; /* of the run, up to those at hand included */
     uint64_t *rank;
     size_t num_ranks;
@@ -84,7 +84,7 @@ done:
 static brio_status next_vertices(const brio_tiles *t, uint32_t tile, run *r) {
     uint64_t left = t->tile[tile].vertices - r->read;
     r->at = 0;
-    r->count = left < AT_ONCE ? (size_t)left : AT_ONCE;
+    r->count = left < r->room ? (size_t)left : r->room;
     BRIO_FORWARD(brio_store_read(&r->in, r->read * sizeof *r->vertex, r->vertex, r->count * sizeof *r->vertex));
     r->read += r->count;
     return BRIO_OK;
@@ -116,7 +116,7 @@ static brio_status merge_heap(brio_tiles *t, run *runs, uint32_t *heap, size_t n
     while (n > 0) {
         run *r = &runs[heap[0]];
         r->rank[r->num_ranks++] = rank++;
-        if (r->num_ranks == AT_ONCE) BRIO_FORWARD(flush_ranks(r));
+        if (r->num_ranks == r->room) BRIO_FORWARD(flush_ranks(r));
         if (++r->at == r->count) BRIO_FORWARD(next_vertices(t, heap[0], r));
         if (!r->count) heap[0] = heap[--n];
         if (n) sift(runs, heap, n, 0);
@@ -136,24 +136,33 @@ static void free_runs(brio_tiles *t, run *runs) {
     brio_release(t->ctx, runs);
 }
 
+/* Opens a tile's run, and the file of its ranks. */
+static brio_status open_run(brio_tiles *t, uint32_t tile, run *r) {
+    char name[32];
+    size_t share = ALL_AT_ONCE / t->num_tiles;
+    r->room = share < LEAST_AT_ONCE ? LEAST_AT_ONCE : share < AT_ONCE ? share : AT_ONCE;
+    snprintf(name, sizeof name, "run-%u", tile);
+    BRIO_FORWARD(brio_store_open(&t->folder, name, &r->in));
+    brio_store_shut(&r->in);
+    snprintf(name, sizeof name, "ranked-%u", tile);
+    BRIO_FORWARD(brio_store_create(&t->folder, name, &r->out));
+    brio_store_shut(&r->out);
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, r->vertex, r->room));
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, r->rank, r->room));
+    return next_vertices(t, tile, r);
+}
+
 static brio_status merge_runs(brio_tiles *t) {
     run *runs = NULL;
     uint32_t *heap = NULL;
     brio_status status = BRIO_OK;
     size_t n = 0;
-    char name[32];
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, runs, t->num_tiles));
     for (uint32_t i = 0; i < t->num_tiles; i++) runs[i].in.file = runs[i].out.file = -1;
     BRIO_TRY(BRIO_ALLOC(t->ctx, heap, t->num_tiles));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         if (!t->tile[i].vertices) continue;
-        snprintf(name, sizeof name, "run-%u", i);
-        BRIO_TRY(brio_store_open(&t->folder, name, &runs[i].in));
-        snprintf(name, sizeof name, "ranked-%u", i);
-        BRIO_TRY(brio_store_create(&t->folder, name, &runs[i].out));
-        BRIO_TRY(BRIO_ALLOC(t->ctx, runs[i].vertex, AT_ONCE));
-        BRIO_TRY(BRIO_ALLOC(t->ctx, runs[i].rank, AT_ONCE));
-        BRIO_TRY(next_vertices(t, i, &runs[i]));
+        BRIO_TRY(open_run(t, i, &runs[i]));
         heap[n++] = i;
     }
     BRIO_TRY(merge_heap(t, runs, heap, n));

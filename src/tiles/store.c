@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { AT_ONCE = 1 << 22 };
+enum { AT_ONCE = 1 << 22, FOLDER_TRIES = 100 };
 
 static const char LOCK[] = "lock";
 
@@ -25,9 +25,13 @@ brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *
                 *parent ? parent : "\"\"", strerror(*parent ? ENAMETOOLONG : ENOENT));
     BRIO_FORWARD(BRIO_ALLOC(ctx, out->path, size));
     snprintf(out->path, size, "%s/%s", parent, name);
-    bool made = false, there = brio_make_folder(out->path, true, &made);
+    bool made = false, there = true;
     path_of(out, LOCK, path);
-    if (there) out->lock = brio_lock_file(path);
+    /* another process that ends may remove the folder before the lock is made */
+    for (int i = 0; i < FOLDER_TRIES && there && out->lock < 0 && (i == 0 || errno == ENOENT); i++) {
+        there = brio_make_folder(out->path, true, &made);
+        if (there) out->lock = brio_lock_file(path);
+    }
     if (out->lock >= 0) return BRIO_OK;
     brio_fail(ctx, BRIO_ERR_OPEN, "%s: %s", out->path,
               errno == EWOULDBLOCK ? "in use by another process" : strerror(errno));
@@ -47,8 +51,7 @@ void brio_store_end(brio_store_folder *f) {
     if (!f->path) return;
     brio_store_clear(f);
     path_of(f, LOCK, path);
-    brio_close(f->lock);
-    brio_remove_file(path);
+    brio_unlock_file(f->lock, path);
     brio_remove_folder(f->path);
     brio_release(f->ctx, f->path);
     f->path = NULL;
@@ -109,7 +112,13 @@ void brio_store_close(brio_store_file *f) {
     *f = (brio_store_file){.file = -1};
 }
 
-brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *bytes, size_t size) {
+void brio_store_shut(brio_store_file *f) {
+    if (f->file >= 0) brio_close(f->file);
+    f->file = -1;
+    f->shut = true;
+}
+
+static brio_status write_bytes(brio_store_file *f, uint64_t offset, const void *bytes, size_t size) {
     brio_store_folder *folder = f->folder;
     const char *from = bytes;
     while (size > 0) {
@@ -124,17 +133,40 @@ brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *by
     return BRIO_OK;
 }
 
+brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *bytes, size_t size) {
+    char path[BRIO_PATH_MOST];
+    if (!f->shut) return write_bytes(f, offset, bytes, size);
+    assert(offset == f->size); /* the descriptor appends */
+    path_of(f->folder, f->name, path);
+    f->file = brio_open_end(path);
+    if (f->file < 0) return fail_file(f, BRIO_ERR_WRITE, "open it", errno);
+    brio_status status = write_bytes(f, offset, bytes, size);
+    brio_store_shut(f);
+    return status;
+}
+
 brio_status brio_store_append(brio_store_file *f, const void *bytes, size_t size) {
     return brio_store_write(f, f->size, bytes, size);
 }
 
-brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *bytes, size_t size) {
+static brio_status read_bytes(const brio_store_file *f, int file, uint64_t offset, void *bytes, size_t size) {
     char *to = bytes;
     while (size > 0) {
-        int64_t n = brio_read_bytes_at(f->file, to, size < AT_ONCE ? size : AT_ONCE, offset);
+        int64_t n = brio_read_bytes_at(file, to, size < AT_ONCE ? size : AT_ONCE, offset);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0) return fail_file(f, BRIO_ERR_OPEN, "read", n < 0 ? errno : 0);
         to += n, size -= (size_t)n, offset += (uint64_t)n;
     }
     return BRIO_OK;
+}
+
+brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *bytes, size_t size) {
+    char path[BRIO_PATH_MOST];
+    if (!f->shut) return read_bytes(f, f->file, offset, bytes, size);
+    path_of(f->folder, f->name, path);
+    int file = brio_open_input(path);
+    if (file < 0) return fail_file(f, BRIO_ERR_OPEN, "open it", errno);
+    brio_status status = read_bytes(f, file, offset, bytes, size);
+    brio_close(file);
+    return status;
 }

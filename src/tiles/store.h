@@ -15,7 +15,8 @@ typedef struct {
 typedef struct {
     brio_store_folder *folder;
     char name[32];
-    int file; /* descriptor, or -1 */
+    int file;  /* descriptor, or -1 */
+    bool shut; /* no descriptor between calls: see brio_store_shut */
     uint64_t size;
 } brio_store_file;
 
@@ -38,6 +39,9 @@ bool brio_store_has(const brio_store_folder *folder, const char *name);
 brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts);
 void brio_store_remove(brio_store_folder *folder, const char *name);
 void brio_store_close(brio_store_file *f);
+/** Takes the descriptor from a file, which then has one during each call alone: a process may have as few as 256, and
+ *  there are 65,536 tiles. Such a file is appended to and read, not written over. */
+void brio_store_shut(brio_store_file *f);
 
 /** Appends bytes; the next two functions write over and read bytes. Returns BRIO_OK, BRIO_ERR_WRITE (full),
  *  BRIO_ERR_OPEN (cannot be read, or ends early), BRIO_ERR_CANCELLED. */

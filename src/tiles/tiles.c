@@ -80,11 +80,11 @@ brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const double *point
                            size_t num_points) {
     BRIO_DOOR;
     BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
-    BRIO_EXPECT(ctx, !t->has_points, BRIO_ERR_ARGUMENT, "the tiles have all their points already");
+    BRIO_EXPECT(ctx, !t->has_points && !t->torn, BRIO_ERR_ARGUMENT, "the tiles have all their points already");
+    if (!num_points) return BRIO_OK;
     if (!t->stats.points) t->weighted = weights != NULL;
-    BRIO_EXPECT(ctx, !num_points || !weights == !t->weighted, BRIO_ERR_ARGUMENT,
-                "earlier points have %s weights, and these have %s", t->weighted ? "" : "no",
-                weights ? "some" : "none");
+    BRIO_EXPECT(ctx, !weights == !t->weighted, BRIO_ERR_ARGUMENT, "earlier points have %s, and these have %s",
+                t->weighted ? "weights" : "no weights", weights ? "some" : "none");
     return brio_tiles_take(t, points, weights, num_points);
 }
 
@@ -270,12 +270,15 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     double start = brio_seconds();
     BRIO_REQUIRE(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_REQUIRE(ctx, !t->has_result, BRIO_ERR_ARGUMENT, "the tiles are triangulated already");
+    BRIO_REQUIRE(ctx, !t->torn, BRIO_ERR_ARGUMENT, "an earlier run ended while it divided the points: add them anew");
     if (!t->has_points) {
+        t->torn = true;
         brio_progress_part(ctx, bar, 0, 0.05);
         BRIO_TRY(brio_tiles_divide(t));
         brio_progress_part(ctx, bar, 0.05, 0.15);
         BRIO_TRY(brio_tiles_arrange(t));
         t->has_points = true;
+        t->torn = false;
         if (t->key) BRIO_TRY(brio_tiles_save(t));
     }
     t->stats.divide_seconds = brio_seconds() - start;

@@ -51,6 +51,7 @@ struct brio_tiles {
     brio_store_folder folder;
     brio_tiles_stats stats;
     bool weighted, has_points, has_result, has_ranks;
+    bool torn; /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
     uint32_t num_tiles;
     /* while points are added */

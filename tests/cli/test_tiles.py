@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import time
+import xml.etree.ElementTree
 
 from brio_cli import BRIO, CliTest, main
 
@@ -58,9 +59,47 @@ class Tiles(CliTest):
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.vtu", "1.vtu", "2.vtu"])
         self.assertEqual(sum(self.facts("info", self.path(piece))["tetrahedra"] for piece in pieces), facts["tetrahedra"])
 
+    def test_the_index_was_no_xml(self):
+        cloud = self.rows("a.csv", 300)
+        self.facts("delaunay", cloud, "--tiles", "2", "--scratch", self.scratch(), "-o", self.path('a&b <"c".pvtu'))
+        pieces = xml.etree.ElementTree.parse(self.path('a&b <"c".pvtu')).iter("Piece")
+        self.assertEqual([piece.get("Source") for piece in pieces], ['a&b <"c"/%d.vtu' % i for i in range(2)])
+
+    def test_tiles_without_tetrahedra_lacked_the_weights_that_the_index_names(self):
+        cloud = self.rows("w.csv", 8, weight=True)
+        self.facts("delaunay", cloud, "--tiles", "8", "--scratch", self.scratch(), "-o", self.path("out.pvtu"))
+        infos = [self.facts("info", self.path("out/%d.vtu" % i)) for i in range(8)]
+        self.assertIn(0, [info["tetrahedra"] for info in infos])
+        for info in infos:
+            self.assertEqual(list(info["properties"]), ["point", "weight"])
+
     def test_a_killed_run_is_resumed(self):
-        cloud, command = self.rows("a.csv", 20000), ("--tiles", "8", "--scratch", self.scratch())
+        cloud = self.rows("a.csv", 20000)
         plain = self.facts("delaunay", cloud)["checksum"]
+        facts = self.facts("delaunay", cloud, *self.kill(cloud))
+        self.assertEqual(facts["checksum"], plain)
+        self.assertGreaterEqual(facts["resumed"], 3)
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_points_beside_the_named_file_were_those_of_a_killed_run(self):
+        rng = random.Random(7)
+
+        def nodes():
+            with open(self.path("a.node"), "w", encoding="ascii") as f:
+                f.write("20000 3 0 0\n")
+                f.writelines("%d %f %f %f\n" % (i, *(rng.random() for _ in range(3))) for i in range(20000))
+
+        with open(self.path("a.ele"), "w", encoding="ascii") as f:
+            f.write("1 4 0\n0 0 1 2 3\n")
+        nodes()
+        command = self.kill(self.path("a.ele"))
+        nodes()
+        self.assertEqual(self.facts("delaunay", self.path("a.ele"), *command)["checksum"],
+                         self.facts("delaunay", self.path("a.node"))["checksum"])
+
+    def kill(self, cloud):
+        """Runs until three tiles are there, and kills. Returns the options."""
+        command = ("--tiles", "8", "--scratch", self.scratch())
         process = subprocess.Popen([BRIO, "delaunay", cloud, *command, "--quiet"], stdout=subprocess.DEVNULL)
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline and process.poll() is None:
@@ -71,10 +110,7 @@ class Tiles(CliTest):
         process.send_signal(signal.SIGKILL)
         if process.wait() != -signal.SIGKILL:
             self.skipTest("the run was over before it could be killed")
-        facts = self.facts("delaunay", cloud, *command)
-        self.assertEqual(facts["checksum"], plain)
-        self.assertGreaterEqual(facts["resumed"], 3)
-        self.assertEqual(os.listdir(self.scratch()), [])
+        return command
 
     def test_an_interrupted_run_leaves_nothing(self):
         cloud = self.rows("a.csv", 20000)
@@ -106,6 +142,7 @@ class Usage(CliTest):
         self.usage("--tiles needs --scratch", "delaunay", cloud, "--tiles", "2")
         self.usage("not with --weights FILE", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--weights", "w")
         self.usage("writes .pvtu", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path("x.vtu"))
+        self.usage("writes .pvtu", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path(".pvtu"))
         self.usage("--tiles goes with", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--verify")
         self.usage("--tiles goes with", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--plane", "xy")
         self.usage("70000", "delaunay", cloud, "--tiles", "70000", "--scratch", folder)

@@ -259,6 +259,30 @@ static void stl_ends_with_its_solid(void) {
         BRIO_ERR_FORMAT, "expected facet or endsolid");
 }
 
+/* --- blocks --- */
+
+static int fail_inside(const brio_mesh *block, void *user) {
+    brio_triangulation *t;
+    double nowhere[3] = {0, NAN, 0};
+    (void)block;
+    return *(int *)user && brio_delaunay(io_ctx, nowhere, NULL, 1, NULL, &t) != BRIO_OK;
+}
+
+static int stop(const brio_mesh *block, void *user) {
+    (void)block, (void)user;
+    return 1;
+}
+
+/* The sentence of what had failed in the callback gave way to "cancelled". */
+static void a_failure_in_a_callback_was_called_cancelled(void) {
+    int fails = 1;
+    io_put("a.xyz", "1 2 3\n", 6);
+    EXPECT(brio_read_blocks(io_ctx, io_path("a.xyz"), NULL, fail_inside, &fails, NULL) == BRIO_ERR_CANCELLED);
+    EXPECT(strstr(brio_message(io_ctx), "NaN"), "%s", brio_message(io_ctx));
+    EXPECT(brio_read_blocks(io_ctx, io_path("a.xyz"), NULL, stop, NULL, NULL) == BRIO_ERR_CANCELLED);
+    EXPECT(!strcmp(brio_message(io_ctx), "cancelled"), "%s", brio_message(io_ctx));
+}
+
 SUITE(test_io_text) {
     io_begin();
     RUN(stl_ends_with_its_solid);
@@ -275,5 +299,6 @@ SUITE(test_io_text) {
     RUN(rows_too_many);
     RUN(node_with_attributes_and_tetrahedra);
     RUN(node_errors);
+    RUN(a_failure_in_a_callback_was_called_cancelled);
     return io_end();
 }

@@ -5,6 +5,10 @@
 #include "points.h"
 #include <dirent.h>
 #include <fcntl.h>
+#include <inttypes.h>
+#include <pthread.h>
+#include <sched.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -281,6 +285,88 @@ static void cancelled_runs_leave_nothing(void) {
     }
 }
 
+/* What a cancelled run had counted of its tile stayed, and a second run counted it again. */
+static void a_tile_was_counted_twice(void) {
+    brio_context *ctx = new_context();
+    size_t n = make_points(8, 2000, 0), again = 0;
+    expected e = without_tiles(ctx, n, false);
+    for (int calls = 1; calls < 400; calls += calls / 2 + 1) {
+        int left = calls;
+        brio_tiles *t = tiles_of(ctx, 3, n, false, calls % 2 ? 7 : 0);
+        brio_context_set_progress(ctx, stop_late, &left);
+        brio_status status = brio_tiles_run(ctx, t);
+        brio_context_set_progress(ctx, NULL, NULL);
+        if (status == BRIO_ERR_CANCELLED && brio_tiles_has_points(t))
+            compare(ctx, t, &e, 0, 3), again++;
+        else if (status == BRIO_ERR_CANCELLED) /* points were on their way */
+            EXPECT(brio_tiles_run(ctx, t) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "add them anew"));
+        brio_tiles_free(t);
+        EXPECT(files_left() == 0);
+    }
+    EXPECT(again > 2, "%zu runs went on", again);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* Each tile had one descriptor, then two: 600 tiles ended after all the work. */
+static void many_tiles_ran_out_of_descriptors(void) {
+    enum { TILES = 100, MOST_FILES = 50 };
+    struct rlimit limit, few;
+    EXPECT(getrlimit(RLIMIT_NOFILE, &limit) == 0);
+    few = limit;
+    few.rlim_cur = MOST_FILES;
+    EXPECT(setrlimit(RLIMIT_NOFILE, &few) == 0);
+    compare_once(3, 3000, 0, false, TILES);
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+/* The name of the folder can be guessed. All files of the folder that a link of this name led to were removed. */
+static void a_link_emptied_another_folder(void) {
+    brio_context *ctx = new_context();
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 4, .key = 11};
+    char name[160], other[96], precious[128];
+    brio_tiles *t;
+    snprintf(other, sizeof other, "%s/other", folder);
+    snprintf(precious, sizeof precious, "%s/precious", other);
+    snprintf(name, sizeof name, "%s/brio-tiles-%016" PRIx64, folder, brio_hash(o.key, o.tiles));
+    EXPECT(mkdir(other, 0700) == 0 && symlink(other, name) == 0);
+    close(open(precious, O_CREAT | O_WRONLY, 0600));
+    EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_ERR_OPEN && !t, "%s", brio_message(ctx));
+    EXPECT(unlink(precious) == 0 && unlink(name) == 0 && rmdir(other) == 0);
+    EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_OK, "the name is the right one: %s", brio_message(ctx));
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
+static int inside, together;
+
+static void *come_and_go(void *context) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 2, .key = 5};
+    brio_context *ctx = context;
+    for (int i = 0; i < 4000; i++) {
+        brio_tiles *t;
+        if (brio_tiles_new(ctx, &o, &t) != BRIO_OK) continue;
+        if (__atomic_add_fetch(&inside, 1, __ATOMIC_SEQ_CST) > 1) __atomic_store_n(&together, 1, __ATOMIC_SEQ_CST);
+        sched_yield();
+        __atomic_sub_fetch(&inside, 1, __ATOMIC_SEQ_CST);
+        brio_tiles_free(t);
+    }
+    return NULL;
+}
+
+/* The lock was ended before its file was removed. Who took it in between had a file without a name, and a third run
+ * locked another one. */
+static void two_runs_had_one_folder(void) {
+    pthread_t thread[4];
+    brio_context *ctx[4];
+    for (int i = 0; i < 4; i++) ctx[i] = new_context();
+    for (int i = 0; i < 4; i++) EXPECT(pthread_create(&thread[i], NULL, come_and_go, ctx[i]) == 0);
+    for (int i = 0; i < 4; i++) pthread_join(thread[i], NULL);
+    for (int i = 0; i < 4; i++) brio_context_free(ctx[i]);
+    EXPECT(!together);
+    EXPECT(files_left() == 0, "%zu files are left", files_left());
+}
+
 SUITE(test_tiles) {
     snprintf(folder, sizeof folder, "/tmp/brio-test-tiles-%ld", (long)getpid());
     EXPECT(mkdir(folder, 0700) == 0);
@@ -292,6 +378,10 @@ SUITE(test_tiles) {
     RUN(wrong_calls_are_refused);
     RUN(flat_points);
     RUN(cancelled_runs_leave_nothing);
+    RUN(a_tile_was_counted_twice);
+    RUN(many_tiles_ran_out_of_descriptors);
+    RUN(a_link_emptied_another_folder);
+    RUN(two_runs_had_one_folder);
     rmdir(folder);
     return harness_end();
 }
