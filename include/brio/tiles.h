@@ -86,7 +86,7 @@ BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const doub
  *  tiles are triangulated, a further call goes on with those that are missing; after one before that, it is refused.
  *  Where all points are in a plane there are no tetrahedra; the counts are those of brio_delaunay. With weights such
  *  points are refused.
- *  Memory: about 520 bytes a point of the largest tile, and one byte for each two of all points. Points whose
+ *  Memory: about 520 bytes a point of the largest tile, and at most one byte for each of all points. Points whose
  *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE,
  *  BRIO_ERR_OPEN (a scratch file was cut or removed), BRIO_ERR_NO_MEMORY (also where the memory limit of the context
