@@ -31,7 +31,7 @@ EVERY = 4
 
 # The evidence that most programs get, and the scans that evidence is spoiled of.
 DEFAULT_EVIDENCE = {'brio': 'none', 'brio, scanners known': 'origins', 'brio, co-cone': 'none', 'CGAL, advancing front': 'none',
-                    'Open3D, Poisson, 20 % cut': 'normals', 'Open3D, ball pivoting': 'normals'}
+                    'Open3D, Poisson, 5 % cut': 'normals', 'Open3D, Poisson, 20 % cut': 'normals', 'Open3D, ball pivoting': 'normals'}
 SPOILED_SCANS = ['front', 'noisy']
 RIVALS = [name for name in DEFAULT_EVIDENCE if not name.startswith('brio')]
 
@@ -59,7 +59,7 @@ def rival_command(name, options):
         command = [os.path.join(options.peers, 'cgal_advancing_front')]
         version = output_of([*command, '--version'])
         return ([*command, 'IN', 'OUT'], version) if version else None
-    way = 'poisson' if 'Poisson' in name else 'pivoting'
+    way = 'pivoting' if 'pivoting' in name else 'poisson-5' if ' 5 ' in name else 'poisson-20'
     version = output_of([options.open3d, '-c', 'import open3d; print("Open3D", open3d.__version__)'])
     script = os.path.join(HERE, 'open3d_surface.py')
     return ([options.open3d, script, way, 'IN', 'OUT'], version) if version else None
