@@ -10,7 +10,6 @@
 #include "cli/steps/properties.h"
 #include "cli/steps/tiles.h"
 #include "cli/steps/weights.h"
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -283,11 +282,9 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     const brio_laboratory_stats *lab = brio_laboratory_results(r->lab);
     facts *f = &r->facts;
     uint64_t checksum;
-    char text[20];
     brio_status status = brio_triangulation_checksum(r->ctx, t, mesh->vertices, &checksum);
     if (status != BRIO_OK) return status;
     cli_lap(r, "checksum");
-    snprintf(text, sizeof text, "%016" PRIx64, checksum);
     cli_fact_bool(f, "weighted", weighted);
     cli_fact_count(f, "points", s->points);
     cli_fact_count(f, "vertices", s->vertices);
@@ -296,7 +293,7 @@ static brio_status report_stats(run *r, const brio_mesh *mesh, const brio_triang
     cli_fact_integer(f, "dimension", s->dimension);
     cli_fact_count(f, "tetrahedra", s->tetrahedra);
     cli_fact_count(f, "hull_facets", s->hull_facets);
-    cli_fact_text(f, "checksum", text);
+    cli_fact_checksum(f, "checksum", checksum);
     cli_fact_count(f, "created", s->created);
     cli_fact_count(f, "destroyed", s->destroyed);
     cli_fact_count(f, "walk_steps", s->walk_steps);
@@ -397,14 +394,12 @@ static brio_status fill_images(run *r, const brio_periodic *t, brio_mesh *mesh) 
 static brio_status report_periodic(run *r, const brio_periodic *t) {
     const brio_periodic_stats *s = brio_periodic_facts(t);
     uint64_t checksum;
-    char text[20];
     FORWARD(brio_periodic_checksum(r->ctx, t, &checksum));
     cli_lap(r, "checksum");
-    snprintf(text, sizeof text, "%016" PRIx64, checksum);
     cli_fact_count(&r->facts, "vertices", s->vertices);
     cli_fact_count(&r->facts, "tetrahedra", s->tetrahedra);
     cli_fact_count(&r->facts, "hull_facets", s->hull_facets);
-    cli_fact_text(&r->facts, "checksum", text);
+    cli_fact_checksum(&r->facts, "checksum", checksum);
     return BRIO_OK;
 }
 

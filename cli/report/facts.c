@@ -1,5 +1,6 @@
 /* A growing list of facts. Texts and names are copied, since messages and property names do not outlive the run. */
 #include "cli/report/facts.h"
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +36,12 @@ void cli_fact_text(facts *f, const char *name, const char *text) {
     }
     fact *new = add(f, name, FACT_TEXT);
     if (!f->failed) new->text = copy_text(f, text);
+}
+
+void cli_fact_checksum(facts *f, const char *name, uint64_t checksum) {
+    char text[17];
+    snprintf(text, sizeof text, "%016" PRIx64, checksum);
+    cli_fact_text(f, name, text);
 }
 
 void cli_fact_bool(facts *f, const char *name, bool truth) {

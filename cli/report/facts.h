@@ -48,6 +48,8 @@ void cli_fact_bool(facts *f, const char *name, bool truth);
 void cli_fact_integer(facts *f, const char *name, int64_t integer);
 void cli_fact_count(facts *f, const char *name, uint64_t count);
 void cli_fact_bytes(facts *f, const char *name, uint64_t bytes);
+/** Adds a checksum, as 16 hexadecimal digits. */
+void cli_fact_checksum(facts *f, const char *name, uint64_t checksum);
 /** Adds a number. NaN and infinities are kept as null. */
 void cli_fact_real(facts *f, const char *name, double real);
 void cli_fact_seconds(facts *f, const char *name, double seconds);

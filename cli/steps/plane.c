@@ -3,7 +3,6 @@
 #include "cli/files/read_write.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/properties.h"
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -28,11 +27,9 @@ static brio_status report(run *r, const brio_triangulation2 *t, const double *po
     const brio_delaunay2_stats *s = brio_triangulation2_stats(t);
     facts *f = &r->facts;
     uint64_t checksum;
-    char text[20];
     brio_status status = brio_triangulation2_checksum(r->ctx, t, points, &checksum);
     if (status != BRIO_OK) return status;
     cli_lap(r, "checksum");
-    snprintf(text, sizeof text, "%016" PRIx64, checksum);
     cli_fact_bool(f, "weighted", weighted);
     cli_fact_count(f, "points", s->points);
     cli_fact_count(f, "vertices", s->vertices);
@@ -41,7 +38,7 @@ static brio_status report(run *r, const brio_triangulation2 *t, const double *po
     cli_fact_integer(f, "dimension", s->dimension);
     cli_fact_count(f, "triangles", s->triangles);
     cli_fact_count(f, "hull_edges", s->hull_edges);
-    cli_fact_text(f, "checksum", text);
+    cli_fact_checksum(f, "checksum", checksum);
     cli_fact_count(f, "created", s->created);
     cli_fact_count(f, "destroyed", s->destroyed);
     cli_fact_count(f, "walk_steps", s->walk_steps);

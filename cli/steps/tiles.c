@@ -121,10 +121,8 @@ static brio_status report(run *r, brio_tiles *t, bool weighted) {
     const brio_tiles_stats *s = brio_tiles_facts(t);
     facts *f = &r->facts;
     uint64_t checksum;
-    char text[20];
     FORWARD(brio_tiles_checksum(r->ctx, t, &checksum));
     cli_lap(r, "checksum");
-    snprintf(text, sizeof text, "%016" PRIx64, checksum);
     cli_fact_bool(f, "weighted", weighted);
     cli_fact_count(f, "points", s->points);
     cli_fact_count(f, "vertices", s->vertices);
@@ -133,7 +131,7 @@ static brio_status report(run *r, brio_tiles *t, bool weighted) {
     cli_fact_integer(f, "dimension", s->dimension);
     cli_fact_count(f, "tetrahedra", s->tetrahedra);
     cli_fact_count(f, "hull_facets", s->hull_facets);
-    cli_fact_text(f, "checksum", text);
+    cli_fact_checksum(f, "checksum", checksum);
     cli_fact_count(f, "tiles", s->tiles);
     cli_fact_count(f, "resumed", s->resumed);
     cli_fact_count(f, "largest_tile", s->most_points);

@@ -18,9 +18,9 @@ typedef struct brio_image {
 typedef struct brio_periodic_options {
     size_t size;
     const double *cell; /* 3 by 3: the vectors a, b, c; those that do not repeat are not read */
-    uint64_t seed;      /* as in brio_delaunay_options; the result does not depend on it, but for its order */
+    uint64_t seed;      /* as in brio_delaunay_options; only the order of the result depends on it */
     double halo;        /* translates within this number of spacings are triangulated at once; others are looked for
-                      where they are needed. 0: the usual 2.5. The result does not depend on it, but for its order */
+                      where they are needed. 0: the usual 2.5. Only the order of the result depends on it */
     int open[3];        /* 1 for a direction that does not repeat */
     int reserved_int;   /* 0 */
 } brio_periodic_options;

@@ -1,4 +1,4 @@
-/* Triangulations that live. Each has a context of its own, since its calls work with the context that made it; one call at
+/* Triangulations that live. Each has its own context, since its calls work with the context that made it; one call at
  * a time uses it. */
 #include "native.h"
 

@@ -1,8 +1,8 @@
 /* A triangulation that lives: the public calls.
  *
  * A call that changes something checks all it was given, then works in a transaction (live.h), point by point. Where
- * the call changes so many points that building anew is faster, or the points have no tetrahedra before or after it,
- * it lists the points that it leaves and builds of them what takes the old one's place. */
+ * building anew is faster than the changes, or the points have no tetrahedra before or after it, it lists the points
+ * that it leaves and builds of them what takes the old one's place. */
 #include "brio/dynamic.h"
 #include "base/finite.h"
 #include "base/float_state.h"
@@ -236,7 +236,7 @@ done:
     return status;
 }
 
-/* Moves one by one. Where so many are taken out that building anew is faster, that is asked for. */
+/* Moves one by one. Asks for building anew where that is faster than to take out all that have to be. */
 static brio_status move_each(brio_dynamic *d, const moves *m) {
     uint64_t before = d->replaced;
     for (size_t i = 0, name = 0; i < m->count; i++, name++) {

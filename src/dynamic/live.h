@@ -147,7 +147,7 @@ static const uint8_t BRIO_OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2
 void brio_live_begin(brio_dynamic *d);
 /** Ends it: keeps the changes if the status is BRIO_OK, else takes all of them back. Returns the status. */
 brio_status brio_live_end(brio_dynamic *d, brio_status status);
-/** Makes room in the journal for so many slots and rows. */
+/** Makes room in the journal for a number of slots and rows. */
 brio_status brio_journal_reserve(brio_dynamic *d, size_t slots, size_t rows);
 
 /** Notes a slot, or a row, before it is written; room was reserved. */
@@ -183,7 +183,7 @@ static inline bool brio_in_hole(const brio_dynamic *d, uint32_t slot) {
 
 /** Makes an empty one. */
 brio_status brio_live_new(brio_context *ctx, bool weighted, brio_dynamic **out);
-/** Makes room for so many more rows, names, slots, tetrahedra of the hole. */
+/** Makes room for more rows, names, slots, tetrahedra of the hole: a number of each. */
 brio_status brio_live_reserve_rows(brio_dynamic *d, size_t more);
 brio_status brio_live_reserve_names(brio_dynamic *d, size_t more);
 brio_status brio_live_reserve_slots(brio_dynamic *d, size_t more);
@@ -213,7 +213,7 @@ void brio_live_approach(brio_dynamic *d, const double *x);
 void brio_hole_number(brio_dynamic *d);
 /** Numbers the other vertices of the hole, after those. */
 void brio_hole_number_inner(brio_dynamic *d);
-/** Readies the table for a border of so many edges. */
+/** Readies the table for a border with a number of edges. */
 brio_status brio_edges_ready(brio_dynamic *d, size_t num_vertices, size_t num_edges);
 /** Enters and finds a value under a directed edge. What is found may be left from earlier: the caller looks. */
 void brio_edges_enter(brio_dynamic *d, uint32_t x, uint32_t y, uint32_t value);

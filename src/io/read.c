@@ -233,7 +233,7 @@ typedef struct {
     void *user;
 } block_call;
 
-/* Hands a block over. A callback that cancels because a call of its own failed leaves that call's sentence. */
+/* Hands a block over. A callback that cancels because one of its calls failed leaves that call's sentence. */
 static brio_status call(void *user, const brio_mesh *block) {
     const block_call *c = user;
     uint64_t failures = c->ctx->failures;

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* BOX_REACH: a box is so many cells wide along coordinates that repeat; no cell reaches so far. */
+/* BOX_REACH: how many cells wide a box is along coordinates that repeat; no cell reaches as far. */
 enum { BOX_REACH = 8 };
 
 typedef struct {

@@ -5,7 +5,7 @@
 #include <io.h>
 #include <string.h>
 #include <windows.h>
-#define PSAPI_VERSION 2 /* of kernel32, without a library of its own */
+#define PSAPI_VERSION 2 /* of kernel32, without another library */
 #include <psapi.h>
 
 void *brio_pages_map(size_t size) {

@@ -1,4 +1,4 @@
-"""brio view and --view: the page holds what the file holds. Its blocks are read here by code of its own, in Python: to the
+"""brio view and --view: the page holds what the file holds. Its blocks are read here by other code, in Python: to the
 last bit for what is exact, within half a step for what is rounded. That the bundle is that of its sources is tested here, too,
 since it needs no node. What the page shows is in tests/browser."""
 

@@ -5,7 +5,7 @@
 #include <ctype.h>
 
 /* MOST: bytes that a reader may have at once, besides 64 times the file: its buffers; a window of E57 has 4 MiB. */
-/* SPARSE: numbers go into one place of so many. */
+/* SPARSE: a number goes into one of SPARSE places. */
 enum { LARGEST = 1 << 13, DIGITS = 20, MOST = 24 << 20, SPARSE = BRIEF_TESTS ? 3 : 1 };
 
 static const uint64_t NUMBERS[] = {0xffffffff,          0xfffffffe,         0x7fffffff,         0x10000001, 0x02000000,

@@ -1,5 +1,5 @@
 // Draws the layers: coarse while the camera moves, whole when it rests, in parts over several frames, so that no frame blocks.
-// Everything goes to a picture of its own (with four samples a pixel), and from there to the page when it is complete.
+// Everything goes to a picture in memory (with four samples a pixel), and from there to the page when it is complete.
 import { PROGRAMS } from "./shaders.js";
 import { paletteOf } from "./colours.js";
 import { invert, multiply, project } from "./matrix.js";
