@@ -40,6 +40,11 @@ class Facts(CliTest):
         self.assertEqual(facts["created"] - facts["destroyed"], facts["tetrahedra"] + facts["hull_facets"])
         self.assertNotIn("verified", facts)
 
+    def test_checksums_have_their_leading_zeros(self):
+        cubes = [self.facts("delaunay", self.cloud("c%d.ply" % n, n))["checksum"] for n in range(5, 60)]
+        self.assertTrue(any(checksum.startswith("0") for checksum in cubes), "no checksum here begins with 0")
+        self.assertEqual({len(checksum) for checksum in cubes}, {16})
+
     def test_orders(self):
         points = self.cloud("a.ply", 6000)
         orders = [["brio"], ["brio-octree"], ["brio-kdtree"], ["octree"], ["hilbert"], ["random"], ["input"],

@@ -2,6 +2,7 @@
 last bit for what is exact, within half a step for what is rounded. That the bundle is that of its sources is tested here, too,
 since it needs no node. What the page shows is in tests/browser."""
 
+import array
 import base64
 import hashlib
 import html.parser
@@ -232,6 +233,25 @@ class Holds(ViewTest):
         of = {p["name"]: p for p in page.layers[0]["properties"]}
         self.assertEqual(page.column(0, of["red"]["block"], 5, 1), [[10, 20, 30, 40, 255][v] for v in numbers])
         self.assertEqual(page.reals(0, of["quality"]["block"], 5, "d"), [[0.25, 0.5, 0.125, 1e-9, -7][v] for v in numbers])
+
+    def test_rounded_properties_know_what_is_missing_and_clouds_keep_normals(self):
+        """More than 250,000 points are rounded; a property that is NaN has the step 0, which no number has."""
+        n, names = 250001, ("x", "y", "z", "nx", "ny", "nz", "height")
+        rows = array.array("d", [0]) * (7 * n)
+        for i in range(n):
+            rows[7 * i:7 * i + 7] = array.array("d", (i, i % 7, 0, 0, 0, 1, math.nan if i % 5 == 0 else i / n))
+        head = "ply\nformat binary_little_endian 1.0\nelement vertex %d\n%send_header\n" % (
+            n, "".join("property double %s\n" % name for name in names))
+        page = self.page(self.file("p.ply", head.encode() + rows.tobytes()))
+        of = {p["name"]: p for p in page.layers[0]["properties"]}
+        self.assertLessEqual({"nx", "ny", "nz", "height"}, set(of))
+        column, low, high = page.column(0, of["height"]["block"], n, 2), of["height"]["low"], of["height"]["high"]
+        places = page.column(0, "x", n, 3)
+        for step, place in zip(column, places):
+            i = round(page.layers[0]["low"][0] + page.layers[0]["step"] * place)
+            self.assertEqual(step == 0, i % 5 == 0)
+            if step:
+                self.assertAlmostEqual(low + (step - 1) / 65534 * (high - low), i / n, delta=0.51 * (high - low) / 65534)
 
     def test_thinned_clouds_are_even_and_named(self):
         path = self.cloud("c.xyz", 4000)

@@ -155,7 +155,9 @@ static class_key *classes_of(const crystal *c, const brio_periodic *t, size_t *c
             int32_t row[4] = {(int32_t)m->point, m->shift[0], m->shift[1], m->shift[2]};
             memcpy(v[k], row, sizeof row);
         }
-        keys[i] = key_of(v, least_of(c, v));
+        int least = least_of(c, v);
+        EXPECT(tet[i].vertex[least] < c->count, "the least vertex of tetrahedron %zu is a translate", i);
+        keys[i] = key_of(v, least);
     }
     qsort(keys, *count, sizeof *keys, compare_keys);
     return keys;
