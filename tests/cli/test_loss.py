@@ -228,6 +228,11 @@ class Formats(LossTest):
         run = self.expect(0, "delaunay", points, "-o", self.path("out.node"))
         self.assertRegex(run.err, "without the names of the properties: red")
 
+    def test_a_property_that_a_format_has_a_place_for_is_not_called_lost(self):
+        points = self.file("i.csv", "x,y,z,intensity\n1,2,3,4\n5,6,7,8\n2,2,9,3\n")
+        for form, lost in ("pts", []), ("ptx", []), ("xyzrgb", ["intensity"]):
+            self.assertEqual(self.facts("convert", points, "-o", self.path("out." + form))["lost"], lost, form)
+
     def test_nothing_is_said_of_properties_that_no_input_had(self):
         run = self.expect(0, "surface", self.xyz("a.xyz", CUBES), "-o", self.path("out.off"))
         self.assertEqual(run.err, "")
