@@ -15,26 +15,14 @@
 
 /* --- what the format cannot hold --- */
 
-/* Returns whether a list of names with blanks between them has a name. */
-static bool is_listed(const char *list, const char *name) {
-    size_t length = strlen(name);
-    for (const char *at = list ? list : ""; *at; at += *at == ' ') {
-        size_t one = strcspn(at, " ");
-        if (one == length && !strncmp(at, name, length)) return true;
-        at += one;
-    }
-    return false;
-}
-
-/* Returns whether a format has a place for a property by its name, or for three of which it is one and the mesh has
- * all. */
-static bool is_held(const brio_mesh *mesh, const char *name, const brio_format_info *info) {
-    const unsigned holds = info->holds;
+/* Returns whether a format has a place for colours or normals, the property is one of these, and the mesh has all
+ * three. Formats that have places for other single properties are written by convert alone, which knows what it loses
+ * (io/convert). */
+static bool is_held(const brio_mesh *mesh, const char *name, unsigned holds) {
     static const struct {
         unsigned what;
         const char *names[3];
     } groups[] = {{BRIO_HOLDS_COLOURS, {"red", "green", "blue"}}, {BRIO_HOLDS_NORMALS, {"nx", "ny", "nz"}}};
-    if (is_listed(info->properties, name)) return true;
     for (size_t g = 0; g < sizeof groups / sizeof *groups; g++) {
         bool all = holds & groups[g].what, one = false;
         for (int k = 0; k < 3; k++) {
@@ -55,9 +43,8 @@ static bool is_held_of_faces(const char *name, unsigned holds) {
 }
 
 /* Lists the names of the properties that a format does not hold, the first few of them. Returns how many there are. */
-static size_t list_names(const brio_mesh *mesh, const brio_format_info *info, char text[1024]) {
+static size_t list_names(const brio_mesh *mesh, unsigned holds, char text[1024]) {
     enum { MOST = 12 };
-    const unsigned holds = info->holds;
     size_t used = 0, count = 0;
     for (size_t i = 0; i < mesh->num_face_properties && mesh->num_faces && holds & BRIO_HOLDS_FACES; i++) {
         const char *name = mesh->face_properties[i].name;
@@ -65,7 +52,7 @@ static size_t list_names(const brio_mesh *mesh, const brio_format_info *info, ch
         if (count++ < MOST) used += (size_t)snprintf(text + used, 1024 - used, " \"%s of faces\"", name);
     }
     for (size_t i = 0; i < mesh->num_properties && !(holds & BRIO_HOLDS_NAMES); i++) {
-        if (is_held(mesh, mesh->properties[i].name, info)) continue;
+        if (is_held(mesh, mesh->properties[i].name, holds)) continue;
         if (count++ < MOST) used += (size_t)snprintf(text + used, 1024 - used, " %s", mesh->properties[i].name);
     }
     if (count > MOST) snprintf(text + used, 1024 - used, " ...");
@@ -74,11 +61,10 @@ static size_t list_names(const brio_mesh *mesh, const brio_format_info *info, ch
 
 void cli_tell_lost(run *r, const char *path, const brio_mesh *mesh, brio_format format) {
     char names[1024];
-    const brio_format_info *info = brio_format_facts(format);
-    const unsigned holds = info->holds;
+    const unsigned holds = brio_format_facts(format)->holds;
     if (mesh->num_faces && !(holds & BRIO_HOLDS_FACES)) cli_warn(r, WARNING_FACES, path);
     if (mesh->num_edges && !(holds & BRIO_HOLDS_EDGES)) cli_warn(r, WARNING_EDGES, path);
-    if (!r->has_properties || !list_names(mesh, info, names)) return;
+    if (!r->has_properties || !list_names(mesh, holds, names)) return;
     if (holds & BRIO_HOLDS_PROPERTIES && !(holds & BRIO_HOLDS_NAMES))
         cli_warn(r, WARNING_NAMES, path, names);
     else

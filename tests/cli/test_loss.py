@@ -232,10 +232,6 @@ class Formats(LossTest):
         points = self.file("i.csv", "x,y,z,intensity\n1,2,3,4\n5,6,7,8\n2,2,9,3\n")
         for form, lost in ("pts", []), ("ptx", []), ("xyzrgb", ["intensity"]):
             self.assertEqual(self.facts("convert", points, "-o", self.path("out." + form))["lost"], lost, form)
-        solid = self.ply("a.ply", [p + (i,) for i, p in enumerate(ball(60))], [("float", "intensity")])
-        for form, told in ("pts", False), ("xyzrgb", True):
-            run = self.expect(0, "hull", solid, "-o", self.path("hull." + form))
-            self.assertEqual("intensity" in run.err, told, run.err)
 
     def test_nothing_is_said_of_properties_that_no_input_had(self):
         run = self.expect(0, "surface", self.xyz("a.xyz", CUBES), "-o", self.path("out.off"))
