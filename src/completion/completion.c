@@ -7,7 +7,8 @@
  * Other known points may be left out: the star of a point in a triangulation is the lower side of the cone from the
  * lifted point over the others, so points that are not in the star stay outside it, whatever is added.
  *
- * Rounds end, for each adds points of a finite set.
+ * Rounds end, for each adds points of a finite set. What a round found is ordered by names, so that the order in which
+ * answers came has no trace.
  *
  * Based on: Peterka, Morozov, Phillips. High-performance computation of distributed-memory parallel 3D Voronoi and
  *           Delaunay tessellation. SC 2014 (neighbours are asked until balls are known).
@@ -16,6 +17,7 @@
  * weights; half-spaces are asked for, too; later rounds triangulate the borders only. */
 #include "completion/completion.h"
 #include "base/memory.h"
+#include "base/sort.h"
 #include "base/team.h"
 #include "completion/known.h"
 #include "predicates/circumcentre.h"
@@ -23,17 +25,16 @@
 #include <string.h>
 
 enum {
-    BALLS_AT_ONCE = 4096,  /* asked for in one call */
     FINALS_AT_ONCE = 1024, /* handed on in one call */
     TETS_A_THREAD = 1 << 12
 };
 
 enum { STAR_OPEN, STAR_FINAL, NO_VERTEX }; /* of an own point */
 
-typedef struct {
+struct brio_completion {
     brio_context *ctx;
-    const brio_completion_task *task;
-    brio_completion_stats *stats;
+    brio_completion_task task;
+    brio_completion_stats stats;
     brio_bar bar;
     brio_set_point *known; /* own points first */
     size_t num_known, capacity;
@@ -41,7 +42,6 @@ typedef struct {
     uint8_t *state;  /* of each own point */
     size_t num_open; /* own points whose state is STAR_OPEN */
     brio_tet_set asked, next_asked;
-    brio_found found;
     /* of the round */
     uint32_t *local; /* of each point that is triangulated, its index among the known ones */
     size_t num_local, local_capacity;
@@ -52,11 +52,12 @@ typedef struct {
     size_t num_finite, num_tets;
     uint8_t *open;      /* of each local point: 1 if it is an own point whose star is open */
     uint8_t *not_final; /* of each local point: 1 if a tetrahedron at it is not final */
-    uint8_t *to_ask;    /* of each tetrahedron */
-    brio_ball *ball;
-    uint32_t *ball_tet; /* the tetrahedron of each ball */
-    size_t num_balls;
-} completion;
+    uint8_t *to_ask;    /* of each tetrahedron: 1 if it is asked for and not known to be free of conflicts */
+    uint32_t *question; /* the tetrahedron of each */
+    size_t num_questions, question_capacity, known_before;
+};
+
+typedef brio_completion completion;
 
 /* --- a round's triangulation --- */
 
@@ -72,24 +73,24 @@ static void end_round(completion *c) {
 static brio_status gather(completion *c) {
     size_t n = c->num_local;
     BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->points, c->points_capacity, 3 * n + 1));
-    if (c->task->weighted) BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->weights, c->weights_capacity, n + 1));
+    if (c->task.weighted) BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->weights, c->weights_capacity, n + 1));
     for (size_t i = 0; i < n; i++) {
         const double *r = c->known[c->local[i]].record;
         memcpy(c->points + 3 * i, r, 3 * sizeof *r);
-        if (c->task->weighted) c->weights[i] = r[3];
+        if (c->task.weighted) c->weights[i] = r[3];
         BRIO_FORWARD(brio_look(c->ctx, 1));
     }
     return BRIO_OK;
 }
 
 static brio_status triangulate(completion *c) {
-    brio_completion_stats *s = c->stats;
+    brio_completion_stats *s = &c->stats;
     brio_delaunay_options o = {.size = sizeof o, .leave_hidden = 1};
     size_t n = c->num_local;
     double done = 1 - 1.0 / (1 + s->rounds); /* the first round takes most of the time */
     brio_progress_part(c->ctx, c->bar, done, 1 - 1.0 / (2 + s->rounds));
     BRIO_FORWARD(gather(c));
-    BRIO_FORWARD(brio_delaunay(c->ctx, c->points, c->task->weighted ? c->weights : NULL, n, &o, &c->t));
+    BRIO_FORWARD(brio_delaunay(c->ctx, c->points, c->task.weighted ? c->weights : NULL, n, &o, &c->t));
     const brio_delaunay_stats *facts = brio_triangulation_stats(c->t);
     c->tet = brio_triangulation_tetrahedra(c->t);
     c->num_finite = facts->tetrahedra;
@@ -105,7 +106,7 @@ static brio_status triangulate(completion *c) {
     const uint32_t *representative = brio_triangulation_representatives(c->t);
     for (size_t i = 0; i < n; i++) {
         uint32_t p = c->local[i];
-        if (p >= c->task->num_own || c->state[p] != STAR_OPEN) continue;
+        if (p >= c->task.num_own || c->state[p] != STAR_OPEN) continue;
         if (representative[i] == i)
             c->open[i] = 1;
         else /* what hides it stays */
@@ -139,7 +140,7 @@ static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_
     assert(n <= BRIO_CENTRE_BATCH);
     for (size_t i = 0; i < n; i++)
         if (tets[i] < c->num_finite) memcpy(vertex[finite++], c->tet[tets[i]].vertex, sizeof *vertex);
-    brio_centre_batch batch = {c->points, c->task->weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, finite};
+    brio_centre_batch batch = {c->points, c->task.weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, finite};
     if (finite) brio_centres(&batch, *centre, error);
     for (size_t i = 0, f = 0; i < n; i++) {
         brio_ball *b = &balls[i];
@@ -148,7 +149,7 @@ static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_
         for (int k = 0; k < (b->infinite ? 3 : 4); k++)
             memcpy(b->vertex[k], c->known[c->local[v[k]]].record, sizeof *b->vertex);
         if (!b->infinite) memcpy(b->centre, centre[f], sizeof b->centre);
-        brio_ball_set_square(b, b->infinite ? 0 : error[f], &c->task->all);
+        brio_ball_set_square(b, b->infinite ? 0 : error[f], &c->task.all);
         f += !b->infinite;
     }
 }
@@ -157,7 +158,7 @@ static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_
 static void judge_batch(completion *c, const uint32_t *tets, size_t n) {
     brio_ball ball[BRIO_CENTRE_BATCH];
     set_balls(c, tets, n, ball);
-    for (size_t i = 0; i < n; i++) c->to_ask[tets[i]] = !c->task->home || !brio_ball_inside(&ball[i], c->task->home);
+    for (size_t i = 0; i < n; i++) c->to_ask[tets[i]] = !c->task.home || !brio_ball_inside(&ball[i], c->task.home);
 }
 
 static void judge_some(void *user, size_t begin, size_t end, int thread) {
@@ -177,59 +178,90 @@ static void judge_some(void *user, size_t begin, size_t end, int thread) {
 
 /* --- asking --- */
 
-static brio_status ask_some(completion *c) {
-    if (!c->num_balls) return BRIO_OK;
-    for (size_t i = 0; i < c->num_balls; i += BRIO_CENTRE_BATCH) {
-        size_t n = c->num_balls - i < BRIO_CENTRE_BATCH ? c->num_balls - i : BRIO_CENTRE_BATCH;
-        set_balls(c, c->ball_tet + i, n, c->ball + i);
-    }
-    c->stats->asked += c->num_balls;
-    BRIO_FORWARD(c->task->source(c->task->source_user, c->ball, c->num_balls, &c->found));
-    for (size_t i = 0; i < c->num_balls; i++) {
-        const brio_tetrahedron *t = &c->tet[c->ball_tet[i]];
-        c->to_ask[c->ball_tet[i]] = !c->ball[i].is_free;
-        if (!c->ball[i].is_free)
-            for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) c->not_final[t->vertex[k]] = 1;
-    }
-    c->num_balls = 0;
+static brio_status list_questions(completion *c) {
+    size_t n = 0;
+    for (size_t t = 0; t < c->num_tets; t++) n += c->to_ask[t];
+    c->num_questions = 0;
+    BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->question, c->question_capacity, n));
+    for (size_t t = 0; t < c->num_tets; t++)
+        if (c->to_ask[t]) c->question[c->num_questions++] = (uint32_t)t;
+    c->stats.asked += n;
     return BRIO_OK;
 }
 
-/* Makes the found points known that are new.   *any  receives whether there are any. */
-static brio_status take_found(completion *c, bool *any) {
-    size_t before = c->num_known;
-    for (size_t i = 0; i < c->found.count; i++) {
-        bool is_new;
-        BRIO_FORWARD(brio_names_enter(c->ctx, &c->names, c->found.point[i].name, &is_new));
-        if (!is_new) continue;
-        BRIO_EXPECT(c->ctx, c->num_known < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE,
-                    "more than 2^32 - 17 points are needed to complete %zu", c->task->num_own);
-        BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->known, c->capacity, c->num_known + 1));
-        c->known[c->num_known++] = c->found.point[i];
-        BRIO_FORWARD(brio_look(c->ctx, 1));
-    }
-    c->found.count = 0;
-    c->stats->found += c->num_known - before;
-    *any = c->num_known > before;
-    return BRIO_OK;
-}
-
-/* Judges the tetrahedra at open stars, and asks for those that are not final.   *any  receives whether points were
- * found. */
-static brio_status ask(completion *c, bool *any) {
+brio_status brio_completion_begin(brio_completion *c, size_t *questions) {
+    *questions = 0;
+    c->known_before = c->num_known;
+    c->num_questions = 0;
+    if (!c->task.num_own) return BRIO_OK;
+    BRIO_FORWARD(triangulate(c));
+    if (c->stats.dimension < 3) return BRIO_OK;
     int threads = brio_threads(c->ctx, c->num_tets, TETS_A_THREAD);
     BRIO_FORWARD(brio_for(c->ctx, threads, c->num_tets, judge_some, c));
     c->next_asked.count = 0;
-    for (size_t t = 0; t < c->num_tets; t++) {
-        BRIO_FORWARD(brio_look(c->ctx, 1));
-        if (!c->to_ask[t]) continue;
-        c->ball_tet[c->num_balls++] = (uint32_t)t;
-        if (c->num_balls == BALLS_AT_ONCE) BRIO_FORWARD(ask_some(c));
-    }
-    BRIO_FORWARD(ask_some(c));
-    BRIO_FORWARD(take_found(c, any));
-    if (!*any) memset(c->not_final, 0, c->num_local); /* no asked ball has a point in conflict */
+    BRIO_FORWARD(list_questions(c));
+    *questions = c->num_questions;
     return BRIO_OK;
+}
+
+void brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls) {
+    for (size_t i = 0; i < count; i += BRIO_CENTRE_BATCH) {
+        size_t n = count - i < BRIO_CENTRE_BATCH ? count - i : BRIO_CENTRE_BATCH;
+        set_balls(c, c->question + first + i, n, balls + i);
+    }
+}
+
+void brio_completion_is_free(brio_completion *c, size_t question) {
+    c->to_ask[c->question[question]] = 0;
+}
+
+brio_status brio_completion_take(brio_completion *c, const brio_set_point *points, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        bool is_new;
+        BRIO_FORWARD(brio_names_enter(c->ctx, &c->names, points[i].name, &is_new));
+        if (!is_new) continue;
+        BRIO_EXPECT(c->ctx, c->num_known < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE,
+                    "more than 2^32 - 17 points are needed to complete %zu", c->task.num_own);
+        BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->known, c->capacity, c->num_known + 1));
+        c->known[c->num_known++] = points[i];
+        c->stats.found++;
+        BRIO_FORWARD(brio_look(c->ctx, 1));
+    }
+    return BRIO_OK;
+}
+
+/* --- answers --- */
+
+static int compare_names(uint32_t i, uint32_t j, const void *user) {
+    const brio_set_point *p = user;
+    return p[i].name < p[j].name ? -1 : p[i].name > p[j].name;
+}
+
+/* Orders the points that this round found by their names: in which order they came is forgotten. */
+static brio_status order_found(completion *c) {
+    brio_set_point *found = c->known + c->known_before, *sorted = NULL;
+    size_t n = c->num_known - c->known_before;
+    uint32_t *row = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, row, n + 1));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, sorted, n + 1));
+    for (size_t i = 0; i < n; i++) row[i] = (uint32_t)i;
+    BRIO_TRY(brio_sort_many_indices(c->ctx, row, n, compare_names, found));
+    for (size_t i = 0; i < n; i++) sorted[i] = found[row[i]];
+    memcpy(found, sorted, n * sizeof *found);
+done:
+    brio_release(c->ctx, row);
+    brio_release(c->ctx, sorted);
+    return status;
+}
+
+/* Marks the vertices of the tetrahedra that may have a conflict. If nothing was found, none has. */
+static void mark_not_final(completion *c) {
+    for (size_t i = 0; i < c->num_questions && c->num_known > c->known_before; i++) {
+        const brio_tetrahedron *t = &c->tet[c->question[i]];
+        if (!c->to_ask[c->question[i]]) continue;
+        for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) c->not_final[t->vertex[k]] = 1;
+    }
 }
 
 /* --- final stars --- */
@@ -239,7 +271,7 @@ static uint32_t leader_of(const completion *c, const brio_tetrahedron *t) {
     uint32_t leader = BRIO_INFINITE;
     for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) {
         uint32_t v = t->vertex[k];
-        if (c->local[v] < c->task->num_own && (leader == BRIO_INFINITE || c->local[v] < c->local[leader])) leader = v;
+        if (c->local[v] < c->task.num_own && (leader == BRIO_INFINITE || c->local[v] < c->local[leader])) leader = v;
     }
     return leader;
 }
@@ -256,14 +288,14 @@ static brio_status hand_on(completion *c) {
         for (int k = 0; k < 4; k++) some[n][k] = t->vertex[k] == BRIO_INFINITE ? BRIO_INFINITE : c->local[t->vertex[k]];
         n++;
         if (is_finite_tet(t))
-            c->stats->tetrahedra++;
+            c->stats.tetrahedra++;
         else
-            c->stats->infinite++;
+            c->stats.infinite++;
         if (n < FINALS_AT_ONCE) continue;
-        BRIO_FORWARD(c->task->final(c->task->final_user, c->known, (const uint32_t(*)[4])some, n));
+        BRIO_FORWARD(c->task.final(c->task.final_user, c->known, (const uint32_t(*)[4])some, n));
         n = 0;
     }
-    return n ? c->task->final(c->task->final_user, c->known, (const uint32_t(*)[4])some, n) : BRIO_OK;
+    return n ? c->task.final(c->task.final_user, c->known, (const uint32_t(*)[4])some, n) : BRIO_OK;
 }
 
 static brio_status finish_stars(completion *c) {
@@ -273,7 +305,7 @@ static brio_status finish_stars(completion *c) {
         c->state[c->local[i]] = STAR_FINAL;
         c->open[i] = 0;
         c->num_open--;
-        c->stats->vertices++;
+        c->stats.vertices++;
     }
     return BRIO_OK;
 }
@@ -310,23 +342,30 @@ done:
     return status;
 }
 
-static brio_status run_round(completion *c, bool *goes_on) {
-    size_t before = c->num_known;
-    bool any;
+brio_status brio_completion_end(brio_completion *c, bool *goes_on) {
+    brio_status status = BRIO_OK;
+    bool any = c->num_known > c->known_before;
     *goes_on = false;
-    BRIO_FORWARD(triangulate(c));
-    if (c->stats->dimension < 3) return BRIO_OK;
-    BRIO_FORWARD(ask(c, &any));
-    BRIO_FORWARD(finish_stars(c));
+    if (c->stats.dimension < 3) goto done;
+    BRIO_TRY(order_found(c));
+    mark_not_final(c);
+    BRIO_TRY(finish_stars(c));
     assert(any || c->num_open == 0);
-    *goes_on = any && c->num_open > 0;
-    return *goes_on ? choose_points(c, before) : BRIO_OK;
+    if (any && c->num_open > 0) {
+        BRIO_TRY(choose_points(c, c->known_before));
+        *goes_on = true;
+    }
+done:
+    c->stats.known = c->num_known;
+    c->stats.not_vertices = c->stats.dimension < 3 ? 0 : c->task.num_own - c->stats.vertices;
+    end_round(c);
+    return status;
 }
 
-/* --- all rounds --- */
+/* --- life --- */
 
-static brio_status begin(completion *c) {
-    const brio_completion_task *task = c->task;
+static brio_status set_up(completion *c) {
+    const brio_completion_task *task = &c->task;
     size_t n = task->num_points;
     BRIO_EXPECT(c->ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points at a time; at most 2^32 - 17", n);
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->known, n + 1));
@@ -343,40 +382,83 @@ static brio_status begin(completion *c) {
     }
     c->num_local = c->num_known;
     c->num_open = task->num_own;
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->state, task->num_own + 1));
-    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->ball, BALLS_AT_ONCE));
-    return BRIO_ALLOC(c->ctx, c->ball_tet, BALLS_AT_ONCE);
+    return BRIO_ALLOC_ZERO(c->ctx, c->state, task->num_own + 1);
 }
 
-static void end(completion *c) {
+brio_status brio_completion_new(brio_context *ctx, const brio_completion_task *task, brio_completion **out) {
+    completion *c = NULL;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, c, 1));
+    *c = (completion){.ctx = ctx, .task = *task, .bar = brio_progress_bar(ctx), .stats.dimension = -1};
+    BRIO_TRY(set_up(c));
+    *out = c;
+    c = NULL;
+done:
+    brio_completion_delete(c);
+    return status;
+}
+
+void brio_completion_delete(brio_completion *c) {
+    if (!c) return;
     end_round(c);
     brio_names_met_free(c->ctx, &c->names);
     brio_tet_set_free(c->ctx, &c->asked);
     brio_tet_set_free(c->ctx, &c->next_asked);
     brio_release(c->ctx, c->known);
     brio_release(c->ctx, c->state);
-    brio_release(c->ctx, c->found.point);
     brio_release(c->ctx, c->local);
     brio_release(c->ctx, c->points);
     brio_release(c->ctx, c->weights);
-    brio_release(c->ctx, c->ball);
-    brio_release(c->ctx, c->ball_tet);
+    brio_release(c->ctx, c->question);
+    brio_release(c->ctx, c);
+}
+
+const brio_completion_stats *brio_completion_facts(const brio_completion *c) {
+    return &c->stats;
+}
+
+void brio_completion_vertices(const brio_completion *c, uint8_t *is_vertex) {
+    for (size_t p = 0; p < c->task.num_own; p++) is_vertex[p] = c->state[p] == STAR_FINAL;
+}
+
+/* --- with one source --- */
+
+static brio_status ask_source(completion *c, size_t questions, brio_ball *balls, brio_found *found) {
+    found->count = 0;
+    for (size_t first = 0; first < questions; first += BRIO_COMPLETION_BALLS) {
+        size_t n = questions - first < BRIO_COMPLETION_BALLS ? questions - first : BRIO_COMPLETION_BALLS;
+        brio_completion_balls(c, first, n, balls);
+        BRIO_FORWARD(c->task.source(c->task.source_user, balls, n, found));
+        for (size_t i = 0; i < n; i++)
+            if (balls[i].is_free) brio_completion_is_free(c, first + i);
+    }
+    return brio_completion_take(c, found->point, found->count);
 }
 
 brio_status brio_complete(brio_context *ctx, const brio_completion_task *task, uint8_t *is_vertex,
                           brio_completion_stats *stats) {
     brio_status status = BRIO_OK;
-    completion c = {.ctx = ctx, .task = task, .stats = stats, .bar = brio_progress_bar(ctx), .found = {.ctx = ctx}};
+    brio_bar bar = brio_progress_bar(ctx);
+    completion *c = NULL;
+    brio_ball *balls = NULL;
+    brio_found found = {.ctx = ctx};
     *stats = (brio_completion_stats){.dimension = -1};
-    BRIO_TRY(begin(&c));
-    for (bool goes_on = task->num_own > 0; goes_on; end_round(&c)) BRIO_TRY(run_round(&c, &goes_on));
-    stats->known = c.num_known;
-    stats->not_vertices = stats->dimension < 3 ? 0 : task->num_own - stats->vertices;
-    if (is_vertex)
-        for (size_t p = 0; p < task->num_own; p++) is_vertex[p] = c.state[p] == STAR_FINAL;
+    BRIO_TRY(brio_completion_new(ctx, task, &c));
+    BRIO_TRY(BRIO_ALLOC(ctx, balls, BRIO_COMPLETION_BALLS));
+    for (bool goes_on = true; goes_on;) {
+        size_t questions;
+        BRIO_TRY(brio_completion_begin(c, &questions));
+        BRIO_TRY(ask_source(c, questions, balls, &found));
+        BRIO_TRY(brio_completion_end(c, &goes_on));
+    }
+    *stats = *brio_completion_facts(c);
+    if (is_vertex) brio_completion_vertices(c, is_vertex);
 done:
-    end(&c);
-    brio_progress_part(ctx, c.bar, 0, 1);
+    brio_completion_delete(c);
+    brio_release(ctx, balls);
+    brio_release(ctx, found.point);
+    brio_progress_part(ctx, bar, 0, 1);
     return status;
 }
 

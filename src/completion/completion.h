@@ -89,13 +89,13 @@ typedef struct {
     brio_ball_box all;         /* holds all points of the set */
     const brio_ball_box *home; /* NULL, or a box in whose interior every point of the set is an own one. Sides may be
                                   infinite */
-    brio_conflicts_fn source;
+    brio_conflicts_fn source;  /* for brio_complete alone */
     void *source_user;
     brio_final_fn final;
     void *final_user;
 } brio_completion_task;
 
-enum { BRIO_COMPLETION_ROUNDS = 64 };
+enum { BRIO_COMPLETION_ROUNDS = 64, BRIO_COMPLETION_BALLS = 4096 /* in one call of a source */ };
 
 /** Facts of a completion. */
 typedef struct {
@@ -111,12 +111,55 @@ typedef struct {
     size_t most_points, most_tetrahedra; /* of one round */
 } brio_completion_stats;
 
-/** Completes the stars of the own points.
+/** Completes the stars of the own points: takes all steps below, and asks the task's source.
  *  is_vertex  NULL, or receives for each own point whether it is a vertex of the whole triangulation.
  *  Memory: a triangulation of the own points and those around them, and 60 bytes a known point.
  *  Cost: the first round triangulates all known points; later ones only those about unfinished stars.
  *  Returns what brio_delaunay, the source and `final` return. */
 brio_status brio_complete(brio_context *ctx, const brio_completion_task *task, uint8_t *is_vertex,
                           brio_completion_stats *stats);
+
+/* --- in steps --- */
+
+/* A round begins with questions, numbered from 0, and ends when its answers are there. Between the two, other
+ * completions may begin, so that many ask at once. Answers come in any order, in parts, from any number of sources:
+ * neither the tetrahedra nor the points that a round knows, nor their order, depend on that.
+ *
+ *     brio_completion_new(ctx, &task, &c);
+ *     for (bool goes_on = true; goes_on;) {
+ *         brio_completion_begin(c, &questions);
+ *         brio_completion_balls(c, 0, questions, balls);
+ *         ... brio_completion_take(c, points, count) and brio_completion_is_free(c, question) in any order
+ *         brio_completion_end(c, &goes_on);
+ *     } */
+typedef struct brio_completion brio_completion;
+
+/** Makes a completion. The points of the task are copied; its home must stay. */
+brio_status brio_completion_new(brio_context *ctx, const brio_completion_task *task, brio_completion **out);
+
+/** Begins a round: triangulates, and judges which tetrahedra must be asked for.   *questions  receives how many. */
+brio_status brio_completion_begin(brio_completion *c, size_t *questions);
+
+/** Sets the balls of `count` questions from `first` on. */
+void brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls);
+
+/** Notes that no point of the set conflicts with the ball of a question. It is not wrong to leave this out. */
+void brio_completion_is_free(brio_completion *c, size_t question);
+
+/** Takes points that were found, as a brio_conflicts_fn finds them. */
+brio_status brio_completion_take(brio_completion *c, const brio_set_point *points, size_t count);
+
+/** Ends a round: hands on the tetrahedra of stars that are final.   *goes_on  receives whether a further round is
+ *  needed. Until then every question must have been answered: each ball with which a point conflicts had one taken. */
+brio_status brio_completion_end(brio_completion *c, bool *goes_on);
+
+/** Returns the facts so far. The view is valid until brio_completion_delete. */
+const brio_completion_stats *brio_completion_facts(const brio_completion *c);
+
+/** Sets for each own point whether it is a vertex of the whole triangulation. Call after the last round. */
+void brio_completion_vertices(const brio_completion *c, uint8_t *is_vertex);
+
+/** Frees everything; NULL is accepted. */
+void brio_completion_delete(brio_completion *c);
 
 #endif

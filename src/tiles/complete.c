@@ -135,12 +135,46 @@ static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_verte
     return brio_store_publish(f, name, w->t->key != 0);
 }
 
+/* Asks the questions of a round. */
+static brio_status ask(brio_completion *c, size_t questions, brio_tile_source *source, brio_ball *balls,
+                       brio_found *found) {
+    brio_tile_source_round(source);
+    for (size_t first = 0; first < questions; first += BRIO_COMPLETION_BALLS) {
+        size_t n = questions - first < BRIO_COMPLETION_BALLS ? questions - first : BRIO_COMPLETION_BALLS;
+        brio_completion_balls(c, first, n, balls);
+        found->count = 0;
+        BRIO_FORWARD(brio_tile_conflicts(source, balls, n, found));
+        BRIO_FORWARD(brio_completion_take(c, found->point, found->count));
+        for (size_t i = 0; i < n; i++)
+            if (balls[i].is_free) brio_completion_is_free(c, first + i);
+    }
+    return BRIO_OK;
+}
+
+static brio_status run_rounds(brio_tiles *t, brio_completion *c, brio_tile_source *source) {
+    brio_status status = BRIO_OK;
+    brio_ball *balls = NULL;
+    brio_found found = {.ctx = t->ctx};
+    BRIO_TRY(BRIO_ALLOC(t->ctx, balls, BRIO_COMPLETION_BALLS));
+    for (bool goes_on = true; goes_on;) {
+        size_t questions;
+        BRIO_TRY(brio_completion_begin(c, &questions));
+        BRIO_TRY(ask(c, questions, source, balls, &found));
+        BRIO_TRY(brio_completion_end(c, &goes_on));
+    }
+done:
+    brio_release(t->ctx, balls);
+    brio_release(t->ctx, found.point);
+    return status;
+}
+
 static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {
     brio_status status = BRIO_OK;
+    brio_bar bar = brio_progress_bar(t->ctx);
     brio_tile_source *source = NULL;
+    brio_completion *c = NULL;
     brio_found list = {.ctx = t->ctx};
     uint8_t *is_vertex = NULL;
-    brio_completion_stats stats;
     BRIO_TRY(brio_tile_source_new(t, tile, &source));
     BRIO_TRY(list_known(t, tile, source, &list));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, is_vertex, w->facts->points + 1));
@@ -150,17 +184,21 @@ static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {
                                  .weighted = t->weighted,
                                  .all = t->all,
                                  .home = &w->facts->home,
-                                 .source = brio_tile_conflicts,
-                                 .source_user = source,
                                  .final = take,
                                  .final_user = w};
-    BRIO_TRY(brio_complete(t->ctx, &task, is_vertex, &stats));
-    note_facts(w->facts, &stats, source, list.count);
+    BRIO_TRY(brio_completion_new(t->ctx, &task, &c));
+    brio_release(t->ctx, list.point);
+    list.point = NULL;
+    BRIO_TRY(run_rounds(t, c, source));
+    brio_completion_vertices(c, is_vertex);
+    note_facts(w->facts, brio_completion_facts(c), source, list.count);
     status = write_rest(w, tile, is_vertex);
 done:
+    brio_completion_delete(c);
     brio_tile_source_free(source);
     brio_release(t->ctx, list.point);
     brio_release(t->ctx, is_vertex);
+    brio_progress_part(t->ctx, bar, 0, 1);
     return status;
 }
 

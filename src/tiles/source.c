@@ -256,14 +256,15 @@ static void search_some(void *user, size_t begin, size_t end, int thread) {
             brio_report(&s->status, search_ball(s, &s->search[thread], &s->balls[i]));
 }
 
-brio_status brio_tile_conflicts(void *user, brio_ball *balls, size_t count, brio_found *found) {
-    brio_tile_source *s = user;
+void brio_tile_source_round(brio_tile_source *s) {
+    for (uint64_t i = 0; i < s->num_read; i++) {
+        block *b = s->cache[s->read[i]];
+        if (b->state == BLOCK_ADDED) b->state = BLOCK_KNOWN;
+    }
+}
+
+brio_status brio_tile_conflicts(brio_tile_source *s, brio_ball *balls, size_t count, brio_found *found) {
     int threads = brio_threads(s->t->ctx, count, BALLS_A_THREAD);
-    if (!found->count) /* what was added before is known to the completion */
-        for (uint64_t i = 0; i < s->num_read; i++) {
-            block *b = s->cache[s->read[i]];
-            if (b->state == BLOCK_ADDED) b->state = BLOCK_KNOWN;
-        }
     s->balls = balls;
     s->status = BRIO_OK;
     BRIO_FORWARD(brio_for_chunks(s->t->ctx, threads < s->threads ? threads : s->threads, count, 32, search_some, s));

@@ -105,8 +105,10 @@ typedef struct brio_tile_source brio_tile_source;
 
 brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, brio_tile_source **out);
 void brio_tile_source_free(brio_tile_source *s);
-/** Finds points in conflict, as a brio_conflicts_fn.   user  a brio_tile_source. */
-brio_status brio_tile_conflicts(void *user, brio_ball *balls, size_t count, brio_found *found);
+/** Notes that a round of the completion begins, which knows all that was added before. */
+void brio_tile_source_round(brio_tile_source *s);
+/** Finds points in conflict, as a brio_conflicts_fn. */
+brio_status brio_tile_conflicts(brio_tile_source *s, brio_ball *balls, size_t count, brio_found *found);
 /** Adds a sample of the other tiles: the denser the nearer they are. */
 brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found);
 /** Returns the number of blocks that were read. */

@@ -245,7 +245,7 @@ static void complete_once(brio_rng *rng, int kind, bool weighted, way how) {
         EXPECT(ours.count == theirs.count && !memcmp(ours.tet, theirs.tet, ours.count * sizeof *ours.tet),
                "kind %d, weights %d, way %d: %zu tetrahedra at %zu own points of %zu, not %zu", kind, weighted,
                (int)how, ours.count, num_own, n, theirs.count);
-        EXPECT(s.tetrahedra + s.infinite == ours.count && s.asked == set.balls);
+        EXPECT(s.tetrahedra + s.infinite == ours.count && s.asked == set.balls && s.known == count + s.found);
         check_vertices(t, list, num_own, is_vertex, &s);
     } else {
         EXPECT(ours.count == 0);
@@ -259,6 +259,125 @@ static void stars_are_those_of_the_whole(void) {
     brio_rng rng = brio_rng_new(5);
     for (int i = 0; i < (BRIEF_TESTS ? 144 : SHORT_TESTS ? 480 : 6000); i++)
         complete_once(&rng, i % 6, i / 6 % 2, (way)(i / 12 % SOURCES));
+}
+
+/* --- many at once, whose answers come in any order --- */
+
+enum { MANY = 4, PIECE = 3 };
+
+typedef struct {
+    brio_completion *c;
+    brio_ball_box home;
+    size_t first[MOST_TETS / PIECE], questions, num_pieces; /* of the round: where the pieces of questions begin */
+    uint64_t trace;                                         /* of everything that was handed on, in its order */
+    bool goes_on;
+} member;
+
+static uint64_t hash_of_tet(const brio_set_point *known, const uint32_t v[4]) {
+    uint64_t hash = 0;
+    for (int k = 0; k < 4; k++) hash = brio_mix(hash ^ (v[k] == BRIO_INFINITE ? 1 : known[v[k]].name));
+    return hash;
+}
+
+static brio_status trace(void *user, const brio_set_point *known, const uint32_t (*vertex)[4], size_t count) {
+    member *m = user;
+    for (size_t i = 0; i < count; i++) m->trace = brio_mix(m->trace ^ hash_of_tet(known, vertex[i]));
+    return collect(&ours, known, vertex, count);
+}
+
+static void begin_members(brio_context *ctx, brio_rng *rng, member *m) {
+    static brio_set_point list[2 * MOST];
+    for (int i = 0; i < MANY; i++) {
+        bool own[MOST];
+        size_t num_own, n;
+        for (size_t p = 0; p < set.count; p++) own[p] = brio_mix(p) % MANY == (uint64_t)i;
+        n = list_points(rng, own, list, &num_own);
+        brio_completion_task task = {list, num_own, n, set.weighted, set.box, NULL, NULL, NULL, trace, &m[i]};
+        m[i] = (member){.goes_on = true};
+        EXPECT(brio_completion_new(ctx, &task, &m[i].c) == BRIO_OK);
+    }
+}
+
+/* Answers one piece of a member's questions. Now and then a point comes twice. */
+static void answer(brio_context *ctx, member *m, brio_rng *rng, bool shuffled) {
+    brio_ball ball[PIECE];
+    brio_found found = {.ctx = ctx};
+    size_t at = shuffled ? brio_rng_below(rng, (uint32_t)m->num_pieces) : 0, first = m->first[at];
+    size_t n = m->questions - first < PIECE ? m->questions - first : PIECE;
+    memmove(m->first + at, m->first + at + 1, (--m->num_pieces - at) * sizeof *m->first);
+    brio_completion_balls(m->c, first, n, ball);
+    EXPECT(conflicts(&set, ball, n, &found) == BRIO_OK);
+    for (size_t i = found.count; shuffled && i-- > 0;)
+        EXPECT(brio_completion_take(m->c, found.point + i, found.count - i > 2 ? 2 : 1) == BRIO_OK);
+    if (!shuffled) EXPECT(brio_completion_take(m->c, found.point, found.count) == BRIO_OK);
+    for (size_t i = 0; i < n; i++)
+        if (ball[i].is_free) brio_completion_is_free(m->c, first + i);
+    brio_release(ctx, found.point);
+}
+
+static bool run_round(brio_context *ctx, member *m, brio_rng *rng, bool shuffled) {
+    size_t left = 0, open = 0;
+    for (int i = 0; i < MANY; i++) {
+        m[i].num_pieces = m[i].questions = 0;
+        if (m[i].goes_on) EXPECT(brio_completion_begin(m[i].c, &m[i].questions) == BRIO_OK);
+        for (size_t q = 0; q < m[i].questions; q += PIECE) m[i].first[m[i].num_pieces++] = q;
+        left += m[i].num_pieces;
+    }
+    for (uint32_t i = 0; left > 0; left--) {
+        if (shuffled) i = brio_rng_below(rng, MANY);
+        while (!m[i].num_pieces) i = (i + 1) % MANY;
+        answer(ctx, &m[i], rng, shuffled);
+    }
+    for (int i = 0; i < MANY; i++) {
+        if (m[i].goes_on) EXPECT(brio_completion_end(m[i].c, &m[i].goes_on) == BRIO_OK);
+        open += m[i].goes_on;
+    }
+    return open > 0;
+}
+
+/* Completes all points in parts at once. Returns a hash of what was handed on. */
+static uint64_t complete_many(brio_context *ctx, uint64_t seed, bool shuffled) {
+    static member m[MANY];
+    brio_rng lists = brio_rng_new(seed), order = brio_rng_new(seed + 1);
+    uint64_t hash = 0;
+    ours.count = 0;
+    begin_members(ctx, &lists, m);
+    while (run_round(ctx, m, &order, shuffled)) {}
+    for (int i = 0; i < MANY; i++) {
+        hash = brio_mix(hash ^ m[i].trace);
+        brio_completion_delete(m[i].c);
+    }
+    return hash;
+}
+
+static void drop_equal(collected *c) {
+    size_t n = 0;
+    qsort(c->tet, c->count, sizeof *c->tet, compare_tets);
+    for (size_t i = 0; i < c->count; i++)
+        if (!n || compare_tets(&c->tet[n - 1], &c->tet[i])) c->tet[n++] = c->tet[i];
+    c->count = n;
+}
+
+static void the_order_of_answers_has_no_trace(void) {
+    brio_rng rng = brio_rng_new(9);
+    bool own[MOST];
+    memset(own, true, sizeof own);
+    for (int i = 0; i < (BRIEF_TESTS ? 36 : SHORT_TESTS ? 120 : 2000); i++) {
+        brio_context *ctx = new_context();
+        brio_triangulation *t;
+        brio_context_set_threads(ctx, 1);
+        set_up(&rng, 20 + brio_rng_below(&rng, 40), i % 4, i / 4 % 2);
+        set.way = (way)(i / 8 % SOURCES);
+        uint64_t seed = brio_rng_next(&rng), expected = complete_many(ctx, seed, false);
+        EXPECT(complete_many(ctx, seed, true) == expected, "set %d", i);
+        EXPECT(brio_delaunay(ctx, set.points, set.weighted ? set.weights : NULL, set.count, NULL, &t) == BRIO_OK);
+        collect_whole(t, own);
+        drop_equal(&ours), drop_equal(&theirs);
+        EXPECT(ours.count == theirs.count && !memcmp(ours.tet, theirs.tet, ours.count * sizeof *ours.tet), "set %d", i);
+        brio_triangulation_free(t);
+        EXPECT(brio_context_memory(ctx) == 0);
+        brio_context_free(ctx);
+    }
 }
 
 static brio_status failing(void *user, brio_ball *balls, size_t count, brio_found *found) {
@@ -280,6 +399,7 @@ static void an_error_of_the_source_ends_it(void) {
 
 SUITE(test_completion) {
     RUN(stars_are_those_of_the_whole);
+    RUN(the_order_of_answers_has_no_trace);
     RUN(an_error_of_the_source_ends_it);
     return harness_end();
 }
