@@ -87,8 +87,8 @@ typedef struct {
                                      extreme points, and four that span space if any do; they may be none */
     bool weighted;
     brio_ball_box all;         /* holds all points of the set */
-    const brio_ball_box *home; /* NULL, or a box in whose interior every point of the set is an own one. Sides may be
-                                  infinite */
+    const brio_ball_box *home; /* NULL, or a box in whose interior every point of the set is among `points`. Sides may
+                                  be infinite */
     brio_conflicts_fn source;  /* for brio_complete alone */
     void *source_user;
     brio_final_fn final;

@@ -15,9 +15,13 @@ typedef struct {
     uint64_t key;
     uint32_t tile, points;
     brio_tile facts;
+    uint64_t hash; /* of what follows */
+    uint64_t own;  /* of the head itself, with a 0 here */
 } tile_head;
 
-static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '1'};
+_Static_assert(sizeof(tile_head) % 8 == 0, "whole words");
+
+static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '2'};
 
 typedef struct {
     brio_tiles *t;
@@ -92,8 +96,10 @@ static bool is_known(const brio_set_point *points, size_t begin, size_t end, uin
     return false;
 }
 
-/* Lists the points that are known from the beginning: own ones, extreme ones, a basis, a coarse sample. */
-static brio_status list_known(brio_tiles *t, uint32_t tile, brio_tile_source *source, brio_found *list) {
+/* Lists the points that are known from the beginning: own ones, extreme ones, a basis, those near the border, a coarse
+ * sample. */
+static brio_status list_known(brio_tiles *t, uint32_t tile, brio_tile_source *source, brio_found *list,
+                              brio_ball_box *seen) {
     const brio_tile *facts = &t->tile[tile];
     size_t n = facts->points;
     BRIO_FORWARD(BRIO_RESERVE(t->ctx, list->point, list->capacity, n + TILE_DIRECTIONS + 4));
@@ -105,6 +111,7 @@ static brio_status list_known(brio_tiles *t, uint32_t tile, brio_tile_source *so
         bool own = p->name >= facts->place && p->name - facts->place < n;
         if (!own && !is_known(list->point, n, list->count, p->name)) list->point[list->count++] = *p;
     }
+    BRIO_FORWARD(brio_tile_halo(t, tile, list, seen));
     return brio_tile_coarse_sample(source, list);
 }
 
@@ -125,14 +132,18 @@ static void note_facts(brio_tile *facts, const brio_completion_stats *s, const b
 static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_vertex) {
     brio_store_file *f = &w->out;
     char name[32];
-    tile_head head = {.key = w->t->key, .tile = tile, .points = w->facts->points, .facts = *w->facts};
+    tile_head head;
+    memset(&head, 0, sizeof head);
+    head.key = w->t->key, head.tile = tile, head.points = w->facts->points, head.facts = *w->facts;
     memcpy(head.magic, MAGIC, sizeof head.magic);
     snprintf(name, sizeof name, "tile-%u", tile);
     BRIO_FORWARD(flush(w));
     BRIO_FORWARD(brio_store_append(f, w->halo, w->facts->halo * sizeof *w->halo));
     BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points));
+    head.hash = f->hash;
+    head.own = brio_tiles_hash(head.key, &head, sizeof head);
     BRIO_FORWARD(brio_store_write(f, 0, &head, sizeof head));
-    return brio_store_publish(f, name, w->t->key != 0);
+    return brio_store_publish(f, name);
 }
 
 /* Asks the questions of a round. */
@@ -175,15 +186,16 @@ static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {
     brio_completion *c = NULL;
     brio_found list = {.ctx = t->ctx};
     uint8_t *is_vertex = NULL;
+    brio_ball_box seen;
     BRIO_TRY(brio_tile_source_new(t, tile, &source));
-    BRIO_TRY(list_known(t, tile, source, &list));
+    BRIO_TRY(list_known(t, tile, source, &list, &seen));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, is_vertex, w->facts->points + 1));
     brio_completion_task task = {.points = list.point,
                                  .num_own = w->facts->points,
                                  .num_points = list.count,
                                  .weighted = t->weighted,
                                  .all = t->all,
-                                 .home = &w->facts->home,
+                                 .home = &seen,
                                  .final = take,
                                  .final_user = w};
     BRIO_TRY(brio_completion_new(t->ctx, &task, &c));
@@ -202,22 +214,35 @@ done:
     return status;
 }
 
-/* Takes the facts of a tile that a run before finished. Returns whether there is one. */
-static bool take_finished(brio_tiles *t, uint32_t tile) {
+/* Returns whether a file is that of the tile as a run before wrote it, every byte of it.   head  receives its head. */
+static brio_status check_finished(brio_tiles *t, uint32_t tile, const brio_store_file *f, tile_head *head,
+                                  bool *is_good) {
+    *is_good = false;
+    if (f->size < sizeof *head) return BRIO_OK;
+    BRIO_FORWARD(brio_store_read(f, 0, head, sizeof *head));
+    uint64_t own = head->own;
+    head->own = 0;
+    if (memcmp(head->magic, MAGIC, sizeof MAGIC) || brio_tiles_hash(t->key, head, sizeof *head) != own ||
+        head->key != t->key || head->tile != tile || head->points != t->tile[tile].points)
+        return BRIO_OK;
+    const brio_tile *facts = &head->facts;
+    uint64_t size = facts->tetrahedra * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t) + head->points;
+    return f->size == sizeof *head + size ? brio_store_check(f, sizeof *head, head->hash, is_good) : BRIO_OK;
+}
+
+/* Takes the facts of a tile that a run before finished.   *found  receives whether there is one. */
+static brio_status take_finished(brio_tiles *t, uint32_t tile, bool *found) {
     brio_store_file f = {.file = -1};
     char name[32];
     tile_head head;
+    *found = false;
     snprintf(name, sizeof name, "tile-%u", tile);
-    if (!brio_store_has(&t->folder, name)) return false;
-    brio_tile *facts = &t->tile[tile];
-    bool good = brio_store_open(&t->folder, name, &f) == BRIO_OK && f.size >= sizeof head &&
-                brio_store_read(&f, 0, &head, sizeof head) == BRIO_OK && memcmp(head.magic, MAGIC, sizeof MAGIC) == 0 &&
-                head.key == t->key && head.tile == tile && head.points == facts->points &&
-                f.size == sizeof head + head.facts.tetrahedra * 4 * sizeof(uint32_t) +
-                              head.facts.halo * sizeof(uint64_t) + head.points;
+    if (!brio_store_has(&t->folder, name)) return BRIO_OK;
+    brio_status status = brio_store_open(&t->folder, name, &f);
+    if (status == BRIO_OK) status = check_finished(t, tile, &f, &head, found);
     brio_store_close(&f);
-    if (good) *facts = head.facts;
-    return good;
+    if (*found) t->tile[tile] = head.facts;
+    return status == BRIO_ERR_OPEN ? BRIO_OK : status; /* what cannot be read is made anew */
 }
 
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
@@ -225,13 +250,14 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
     const brio_tile before = *w.facts;
     brio_status status = BRIO_OK;
     tile_head none = {.points = 0};
+    bool found = false;
     if (!before.points || before.finished) return BRIO_OK;
-    if (t->key && take_finished(t, tile)) {
-        t->stats.resumed++;
-        return BRIO_OK;
-    }
+    if (t->key) BRIO_TRY(take_finished(t, tile, &found));
+    t->stats.resumed += found;
+    if (found) goto done;
     BRIO_TRY(brio_store_create(&t->folder, "tile.new", &w.out));
     BRIO_TRY(brio_store_append(&w.out, &none, sizeof none));
+    w.out.hashes = t->key != 0;
     BRIO_TRY(BRIO_ALLOC(t->ctx, w.buffer, BUFFER));
     status = complete(t, tile, &w);
 done:

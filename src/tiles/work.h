@@ -53,6 +53,7 @@ struct brio_tiles {
     bool weighted, has_points, has_result, has_ranks;
     bool torn; /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
+    uint64_t points_hash; /* of the file of points */
     uint32_t num_tiles;
     /* while points are added */
     brio_store_file raw;
@@ -90,6 +91,9 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 brio_status brio_tiles_save(brio_tiles *t);
 brio_status brio_tiles_restore(brio_tiles *t, bool *found);
 
+/** Returns a hash of bytes in memory, and of a hash before. */
+uint64_t brio_tiles_hash(uint64_t hash, const void *bytes, size_t size);
+
 /** --- tree of boxes --- */
 
 /** Appends nodes for a tile's blocks.   points  the tile's, in their places. */
@@ -113,6 +117,10 @@ brio_status brio_tile_conflicts(brio_tile_source *s, brio_ball *balls, size_t co
 brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found);
 /** Returns the number of blocks that were read. */
 uint64_t brio_tile_source_read(const brio_tile_source *s);
+
+/** Adds the points of other tiles that are near a tile's border.
+ *  seen  receives a box in whose interior all points are the tile's or were added. */
+brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, brio_found *found, brio_ball_box *seen);
 
 /** --- results --- */
 
