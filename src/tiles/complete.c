@@ -1,13 +1,13 @@
-/* One tile: its own points and a coarse sample of the others are completed, and the tetrahedra that belong to the tile
- * go to its file. A tetrahedron belongs to the tile of its lexicographically least vertex, so to exactly one; that tile
- * has the star of that vertex. */
+/* One tile: its own points, those near its border and a coarse sample of the others are completed, and the tetrahedra
+ * that belong to the tile go to its file. A tetrahedron belongs to the tile of its lexicographically least vertex, so
+ * to exactly one; that tile has the star of that vertex.
+ *
+ * The vertices of a tetrahedron in the file are known points, own ones first: those of other tiles are the halo. */
 #include "base/memory.h"
 #include "tiles/work.h"
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
-
-enum { BUFFER = 1 << 13 };
 
 /* The head of a tile's file; what follows it is in the order of the counts. */
 typedef struct {
@@ -27,63 +27,20 @@ typedef struct {
     brio_tiles *t;
     brio_tile *facts;
     brio_store_file out;
-    uint32_t (*buffer)[4];
-    size_t num_buffer;
-    uint32_t *halo_row; /* of each known point that is not an own one: 1 + its row of the halo, or 0 */
-    size_t num_rows, row_capacity;
     uint64_t *halo;
-    size_t halo_capacity;
 } writing;
 
 /* --- tetrahedra --- */
 
-static bool belongs_here(const writing *w, const brio_set_point *known, const uint32_t *v, int count) {
-    int least = 0;
-    for (int i = 1; i < count; i++)
-        if (brio_lexicographic(known[v[i]].record, known[v[least]].record) < 0) least = i;
-    return v[least] < w->facts->points;
-}
-
-/* Finds the row of a known point of another tile in the halo. */
-static brio_status find_row(writing *w, const brio_set_point *known, uint32_t v, uint32_t *row) {
-    brio_context *ctx = w->t->ctx;
-    size_t at = v - w->facts->points, before = w->num_rows;
-    if (at >= before) {
-        BRIO_FORWARD(BRIO_RESERVE(ctx, w->halo_row, w->row_capacity, at + 1));
-        memset(w->halo_row + before, 0, (at + 1 - before) * sizeof *w->halo_row);
-        w->num_rows = at + 1;
-    }
-    if (!w->halo_row[at]) {
-        BRIO_FORWARD(BRIO_RESERVE(ctx, w->halo, w->halo_capacity, w->facts->halo + 1));
-        w->halo[w->facts->halo++] = known[v].name;
-        w->halo_row[at] = (uint32_t)w->facts->halo;
-    }
-    *row = w->facts->points + w->halo_row[at] - 1;
-    return BRIO_OK;
-}
-
-static brio_status flush(writing *w) {
-    brio_status status = brio_store_append(&w->out, w->buffer, w->num_buffer * sizeof *w->buffer);
-    w->num_buffer = 0;
-    return status;
-}
-
-/* Takes final tetrahedra, as a brio_final_fn. */
+/* Takes final tetrahedra that belong to the tile, as a brio_final_fn. */
 static brio_status take(void *user, const brio_set_point *known, const uint32_t (*vertex)[4], size_t count) {
     writing *w = user;
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t *v = vertex[i];
-        bool finite = v[3] != BRIO_INFINITE;
-        if (!belongs_here(w, known, v, finite ? 4 : 3)) continue;
-        w->facts->hull_facets += !finite;
-        if (!finite) continue;
-        w->facts->tetrahedra++;
-        uint32_t *to = w->buffer[w->num_buffer++];
-        for (int k = 0; k < 4; k++) {
-            to[k] = v[k];
-            if (v[k] >= w->facts->points) BRIO_FORWARD(find_row(w, known, v[k], &to[k]));
-        }
-        if (w->num_buffer == BUFFER) BRIO_FORWARD(flush(w));
+    (void)known;
+    for (size_t i = 0, end; i < count; i = end + 1) { /* up to an infinite one */
+        for (end = i; end < count && vertex[end][3] != BRIO_INFINITE;) end++;
+        w->facts->hull_facets += end < count;
+        w->facts->tetrahedra += end - i;
+        BRIO_FORWARD(brio_store_append(&w->out, vertex + i, (end - i) * sizeof *vertex));
     }
     return BRIO_OK;
 }
@@ -137,7 +94,6 @@ static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_verte
     head.key = w->t->key, head.tile = tile, head.points = w->facts->points, head.facts = *w->facts;
     memcpy(head.magic, MAGIC, sizeof head.magic);
     snprintf(name, sizeof name, "tile-%u", tile);
-    BRIO_FORWARD(flush(w));
     BRIO_FORWARD(brio_store_append(f, w->halo, w->facts->halo * sizeof *w->halo));
     BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points));
     head.hash = f->hash;
@@ -179,6 +135,16 @@ done:
     return status;
 }
 
+/* Lists the names of the known points of other tiles. */
+static brio_status list_halo(writing *w, const brio_completion *c) {
+    size_t own = w->facts->points, count;
+    const brio_set_point *known = brio_completion_known(c, &count);
+    w->facts->halo = count - own;
+    BRIO_FORWARD(BRIO_ALLOC(w->t->ctx, w->halo, count - own + 1));
+    for (size_t i = own; i < count; i++) w->halo[i - own] = known[i].name;
+    return BRIO_OK;
+}
+
 static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(t->ctx);
@@ -197,12 +163,14 @@ static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {
                                  .all = t->all,
                                  .home = &seen,
                                  .final = take,
-                                 .final_user = w};
+                                 .final_user = w,
+                                 .least_only = true};
     BRIO_TRY(brio_completion_new(t->ctx, &task, &c));
     brio_release(t->ctx, list.point);
     list.point = NULL;
     BRIO_TRY(run_rounds(t, c, source));
     brio_completion_vertices(c, is_vertex);
+    BRIO_TRY(list_halo(w, c));
     note_facts(w->facts, brio_completion_facts(c), source, list.count);
     status = write_rest(w, tile, is_vertex);
 done:
@@ -258,13 +226,10 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
     BRIO_TRY(brio_store_create(&t->folder, "tile.new", &w.out));
     BRIO_TRY(brio_store_append(&w.out, &none, sizeof none));
     w.out.hashes = t->key != 0;
-    BRIO_TRY(BRIO_ALLOC(t->ctx, w.buffer, BUFFER));
     status = complete(t, tile, &w);
 done:
     if (status != BRIO_OK) *w.facts = before; /* the tile may be tried again */
     brio_store_close(&w.out);
-    brio_release(t->ctx, w.buffer);
-    brio_release(t->ctx, w.halo_row);
     brio_release(t->ctx, w.halo);
     return status;
 }

@@ -41,7 +41,8 @@ typedef struct {
     uint64_t place;     /* of its first point */
     uint32_t points;    /* that have a place */
     uint32_t root;      /* node; TILE_NONE if there are no points */
-    uint64_t vertices, tetrahedra, hull_facets, halo; /* of the finished tile; halo: vertices of other tiles */
+    uint64_t vertices, tetrahedra, hull_facets,
+        halo; /* of the finished tile; halo: points of other tiles that it knew */
     uint64_t asked, found, sampled, read, triangulated, most_points, most_tetrahedra;
     uint32_t rounds, finished; /* finished: 1 */
 } brio_tile;
@@ -124,9 +125,9 @@ brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, brio_found *found, brio
 
 /** --- results --- */
 
-/** The file of a finished tile: its tetrahedra, the places of vertices of other tiles, and a byte for each of its
- *  points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the tile's number
- *  of points subtracted, rows of the halo. */
+/** The file of a finished tile: its tetrahedra, the places of the points of other tiles that it knew, and a byte for
+ *  each of its points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the
+ *  tile's number of points subtracted, rows of the halo. */
 typedef struct {
     uint32_t (*tetrahedra)[4];
     uint64_t *halo;
