@@ -4,27 +4,23 @@
  * x of weight w and a vertex p of weight v,
  *     |x - c'|^2 - w - (|p - c'|^2 - v) = (|x - c|^2 - w) - (|p - c|^2 - v) + 2 (x - p)(c - c').
  * If x is in conflict, the first two terms on the right are at most 0 together, so the left side is at most
- * 2 d |x - p|. So `square` is |p - c'|^2 - v + 2 d D, where D is the diagonal of the box of all points. All roundings
- * together stay below a factor of 1 +- 2^-46, and TINY stands for what underflows. */
+ * 2 d |x - p|. So `square` is |p - c'|^2 - v + 2 d D for any vertex p, where D is the diagonal of the box of all
+ * points. All roundings together stay below a factor of 1 +- 2^-46, and TINY stands for what underflows. */
 #include "completion/completion.h"
 
 static const double SLACK = 0x1p-46, TINY = 1e-290;
 
 void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all) {
-    double diagonal = 0, most = -INFINITY, terms = 0;
+    const double *p = ball->vertex[0];
+    double diagonal = 0, square = 0;
     ball->square = INFINITY;
     if (ball->infinite || isnan(ball->centre[0])) return;
-    for (int k = 0; k < 3; k++) diagonal += fabs(all->high[k] - all->low[k]);
-    for (int i = 0; i < 4; i++) {
-        double square = 0, w = ball->vertex[i][3];
-        for (int k = 0; k < 3; k++) {
-            double d = ball->vertex[i][k] - ball->centre[k];
-            square += d * d;
-        }
-        terms = fmax(terms, square + fabs(w));
-        most = fmax(most, square - w);
+    for (int k = 0; k < 3; k++) {
+        double d = p[k] - ball->centre[k];
+        diagonal += fabs(all->high[k] - all->low[k]);
+        square += d * d;
     }
-    double square = most + terms * SLACK + 4 * error * diagonal + TINY;
+    square += (square + fabs(p[3])) * SLACK - p[3] + 4 * error * diagonal + TINY;
     if (!isnan(square)) ball->square = square; /* else differences of infinities */
 }
 

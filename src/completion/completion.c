@@ -25,11 +25,12 @@
 #include <string.h>
 
 enum {
-    FINALS_AT_ONCE = 1024, /* handed on in one call */
+    SLAB = 1 << 17, /* tetrahedra looked at before some are handed on */
     TETS_A_THREAD = 1 << 12
 };
 
 enum { STAR_OPEN, STAR_FINAL, NO_VERTEX }; /* of an own point */
+enum { OPEN = 1, ENDS = 2 };               /* of a star, in a round: ENDS that is final at its end */
 
 struct brio_completion {
     brio_context *ctx;
@@ -39,8 +40,9 @@ struct brio_completion {
     brio_set_point *known; /* own points first */
     size_t num_known, capacity;
     brio_names_met names;
-    uint8_t *state;  /* of each own point */
-    size_t num_open; /* own points whose state is STAR_OPEN */
+    bool in_sequence; /* names of own points follow each other, and are not in `names` */
+    uint8_t *state;   /* of each own point */
+    size_t num_open;  /* own points whose state is STAR_OPEN */
     brio_tet_set asked, next_asked;
     /* of the round */
     uint32_t *local; /* of each point that is triangulated, its index among the known ones */
@@ -50,9 +52,10 @@ struct brio_completion {
     brio_triangulation *t;
     const brio_tetrahedron *tet;
     size_t num_finite, num_tets;
-    uint8_t *open;      /* of each local point: 1 if it is an own point whose star is open */
+    uint8_t *open;      /* of each local point: OPEN or ENDS if it is an own point whose star is open, else 0 */
     uint8_t *not_final; /* of each local point: 1 if a tetrahedron at it is not final */
     uint8_t *to_ask;    /* of each tetrahedron: 1 if it is asked for and not known to be free of conflicts */
+    uint8_t *stays;     /* of each tetrahedron: 1 if it is at a star that stays open */
     uint32_t *question; /* the tetrahedron of each */
     size_t num_questions, question_capacity, known_before;
 };
@@ -66,8 +69,9 @@ static void end_round(completion *c) {
     brio_release(c->ctx, c->open);
     brio_release(c->ctx, c->not_final);
     brio_release(c->ctx, c->to_ask);
+    brio_release(c->ctx, c->stays);
     c->t = NULL;
-    c->open = c->not_final = c->to_ask = NULL;
+    c->open = c->not_final = c->to_ask = c->stays = NULL;
 }
 
 static brio_status gather(completion *c) {
@@ -108,7 +112,7 @@ static brio_status triangulate(completion *c) {
         uint32_t p = c->local[i];
         if (p >= c->task.num_own || c->state[p] != STAR_OPEN) continue;
         if (representative[i] == i)
-            c->open[i] = 1;
+            c->open[i] = OPEN;
         else /* what hides it stays */
             c->state[p] = NO_VERTEX, c->num_open--;
     }
@@ -154,11 +158,22 @@ static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_
     }
 }
 
-/* Marks those of a batch whose balls leave the home box. */
+/* Marks those of a batch of finite tetrahedra whose balls leave the home box. */
 static void judge_batch(completion *c, const uint32_t *tets, size_t n) {
-    brio_ball ball[BRIO_CENTRE_BATCH];
-    set_balls(c, tets, n, ball);
-    for (size_t i = 0; i < n; i++) c->to_ask[tets[i]] = !c->task.home || !brio_ball_inside(&ball[i], c->task.home);
+    uint32_t vertex[BRIO_CENTRE_BATCH][4];
+    double centre[BRIO_CENTRE_BATCH][3], error[BRIO_CENTRE_BATCH];
+    brio_ball ball;
+    for (size_t i = 0; i < n; i++) memcpy(vertex[i], c->tet[tets[i]].vertex, sizeof *vertex);
+    brio_centres(&(brio_centre_batch){c->points, c->task.weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, n},
+                 *centre, error);
+    ball.infinite = false;
+    for (size_t i = 0; i < n; i++) {
+        memcpy(ball.vertex[0], c->points + 3 * (size_t)vertex[i][0], 3 * sizeof **ball.vertex);
+        ball.vertex[0][3] = c->task.weighted ? c->weights[vertex[i][0]] : 0;
+        memcpy(ball.centre, centre[i], sizeof ball.centre);
+        brio_ball_set_square(&ball, error[i], &c->task.all);
+        c->to_ask[tets[i]] = !brio_ball_inside(&ball, c->task.home);
+    }
 }
 
 static void judge_some(void *user, size_t begin, size_t end, int thread) {
@@ -168,9 +183,14 @@ static void judge_some(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t t = begin; t < end; t++) {
         if (!at_open_star(c, &c->tet[t])) continue;
-        brio_tet_key key = key_of(c, &c->tet[t]);
-        if (brio_tet_set_has(&c->asked, &key)) continue;
-        some[n++] = (uint32_t)t;
+        if (c->asked.count > 0) {
+            brio_tet_key key = key_of(c, &c->tet[t]);
+            if (brio_tet_set_has(&c->asked, &key)) continue;
+        }
+        if (t >= c->num_finite || !c->task.home)
+            c->to_ask[t] = 1;
+        else
+            some[n++] = (uint32_t)t;
         if (n == BRIO_CENTRE_BATCH) judge_batch(c, some, n), n = 0;
     }
     if (n) judge_batch(c, some, n);
@@ -215,10 +235,17 @@ void brio_completion_is_free(brio_completion *c, size_t question) {
     c->to_ask[c->question[question]] = 0;
 }
 
+/* Notes the name of a point that is not an own one by its place.   *is_new  receives whether it was not known. */
+static brio_status meet(completion *c, uint64_t name, bool *is_new) {
+    *is_new = false;
+    if (c->in_sequence && name - c->known[0].name < c->task.num_own) return BRIO_OK;
+    return brio_names_enter(c->ctx, &c->names, name, is_new);
+}
+
 brio_status brio_completion_take(brio_completion *c, const brio_set_point *points, size_t count) {
     for (size_t i = 0; i < count; i++) {
         bool is_new;
-        BRIO_FORWARD(brio_names_enter(c->ctx, &c->names, points[i].name, &is_new));
+        BRIO_FORWARD(meet(c, points[i].name, &is_new));
         if (!is_new) continue;
         BRIO_EXPECT(c->ctx, c->num_known < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE,
                     "more than 2^32 - 17 points are needed to complete %zu", c->task.num_own);
@@ -266,42 +293,98 @@ static void mark_not_final(completion *c) {
 
 /* --- final stars --- */
 
-/* Returns the own vertex of a tetrahedron that is known first, as a local point; BRIO_INFINITE if there is none. */
+/* What one thread found in a slab. */
+typedef struct {
+    size_t begin, count, finite; /* rows */
+} share;
+
+typedef struct {
+    completion *c;
+    size_t first, size; /* tetrahedra of the slab */
+    int threads;
+    uint32_t (*row)[4];
+    share *share;
+} slab;
+
+/* Returns a tetrahedron's leader, as a local point: its own vertex that is known first. BRIO_INFINITE if it has no own
+ * vertex, or is not wanted. */
 static uint32_t leader_of(const completion *c, const brio_tetrahedron *t) {
-    uint32_t leader = BRIO_INFINITE;
-    for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) {
+    uint32_t leader = BRIO_INFINITE, least = t->vertex[0];
+    int count = is_finite_tet(t) ? 4 : 3, own = 0;
+    for (int k = 0; k < count; k++) {
         uint32_t v = t->vertex[k];
-        if (c->local[v] < c->task.num_own && (leader == BRIO_INFINITE || c->local[v] < c->local[leader])) leader = v;
+        if (c->local[v] >= c->task.num_own) continue;
+        own++;
+        if (leader == BRIO_INFINITE || c->local[v] < c->local[leader]) leader = v;
     }
-    return leader;
+    if (own == count || own == 0 || !c->task.least_only) return leader;
+    for (int k = 1; k < count; k++)
+        if (brio_lexicographic(c->points + 3 * (size_t)t->vertex[k], c->points + 3 * (size_t)least) < 0)
+            least = t->vertex[k];
+    return c->local[least] < c->task.num_own ? leader : BRIO_INFINITE;
 }
 
-/* Hands on the tetrahedra whose leader's star became final: each tetrahedron once. */
-static brio_status hand_on(completion *c) {
-    uint32_t some[FINALS_AT_ONCE][4];
-    size_t n = 0;
-    for (size_t i = 0; i < c->num_tets; i++) {
+/* Lists the tetrahedra of a part of a slab whose leader's star ends. */
+static void list_finals(void *user, size_t begin, size_t end, int thread) {
+    slab *s = user;
+    completion *c = s->c;
+    share *mine = &s->share[thread];
+    *mine = (share){.begin = begin};
+    for (size_t i = s->first + begin; i < s->first + end; i++) {
         const brio_tetrahedron *t = &c->tet[i];
+        bool finite = is_finite_tet(t);
+        unsigned any = c->open[t->vertex[0]] | c->open[t->vertex[1]] | c->open[t->vertex[2]];
+        if (finite) any |= c->open[t->vertex[3]];
+        c->stays[i] = any & OPEN;
+        if (!(any & ENDS)) continue;
         uint32_t leader = leader_of(c, t);
-        BRIO_FORWARD(brio_look(c->ctx, 1));
-        if (leader == BRIO_INFINITE || !c->open[leader] || c->not_final[leader]) continue;
-        for (int k = 0; k < 4; k++) some[n][k] = t->vertex[k] == BRIO_INFINITE ? BRIO_INFINITE : c->local[t->vertex[k]];
-        n++;
-        if (is_finite_tet(t))
-            c->stats.tetrahedra++;
-        else
-            c->stats.infinite++;
-        if (n < FINALS_AT_ONCE) continue;
-        BRIO_FORWARD(c->task.final(c->task.final_user, c->known, (const uint32_t(*)[4])some, n));
-        n = 0;
+        if (leader == BRIO_INFINITE || c->open[leader] != ENDS) continue;
+        uint32_t *row = s->row[begin + mine->count++];
+        for (int k = 0; k < 4; k++) row[k] = t->vertex[k] == BRIO_INFINITE ? BRIO_INFINITE : c->local[t->vertex[k]];
+        mine->finite += finite;
     }
-    return n ? c->task.final(c->task.final_user, c->known, (const uint32_t(*)[4])some, n) : BRIO_OK;
+}
+
+static brio_status hand_on_slab(slab *s) {
+    completion *c = s->c;
+    memset(s->share, 0, (size_t)s->threads * sizeof *s->share);
+    BRIO_FORWARD(brio_for_parts(c->ctx, s->threads, s->size, list_finals, s));
+    for (int i = 0; i < s->threads; i++) {
+        const share *f = &s->share[i];
+        c->stats.tetrahedra += f->finite;
+        c->stats.infinite += f->count - f->finite;
+        if (f->count)
+            BRIO_FORWARD(
+                c->task.final(c->task.final_user, c->known, (const uint32_t(*)[4])(s->row + f->begin), f->count));
+    }
+    return BRIO_OK;
+}
+
+/* Hands on the tetrahedra whose leader's star ends: each tetrahedron once, in an order that does not depend on the
+ * threads. Marks those that are at stars that stay open. */
+static brio_status hand_on(completion *c) {
+    slab s = {.c = c, .threads = brio_threads(c->ctx, SLAB, TETS_A_THREAD)};
+    brio_status status = BRIO_OK;
+    size_t most = c->num_tets < SLAB ? c->num_tets : SLAB;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, c->stays, c->num_tets + 1));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, s.row, most + 1));
+    BRIO_TRY(BRIO_ALLOC(c->ctx, s.share, s.threads));
+    for (; s.first < c->num_tets; s.first += SLAB) {
+        s.size = c->num_tets - s.first < SLAB ? c->num_tets - s.first : SLAB;
+        BRIO_TRY(hand_on_slab(&s));
+    }
+done:
+    brio_release(c->ctx, s.row);
+    brio_release(c->ctx, s.share);
+    return status;
 }
 
 static brio_status finish_stars(completion *c) {
+    for (size_t i = 0; i < c->num_local; i++)
+        if (c->open[i] && !c->not_final[i]) c->open[i] = ENDS;
     BRIO_FORWARD(hand_on(c));
     for (size_t i = 0; i < c->num_local; i++) {
-        if (!c->open[i] || c->not_final[i]) continue;
+        if (c->open[i] != ENDS) continue;
         c->state[c->local[i]] = STAR_FINAL;
         c->open[i] = 0;
         c->num_open--;
@@ -321,8 +404,8 @@ static brio_status choose_points(completion *c, size_t before) {
     BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, needed, c->num_local + 1));
     for (size_t i = 0; i < c->num_tets; i++) {
         const brio_tetrahedron *t = &c->tet[i];
+        if (!c->stays[i]) continue;
         BRIO_TRY(brio_look(c->ctx, 1));
-        if (!at_open_star(c, t)) continue;
         for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) needed[t->vertex[k]] = 1;
         brio_tet_key key = key_of(c, t);
         if (c->to_ask[i] || brio_tet_set_has(&c->asked, &key))
@@ -372,9 +455,12 @@ static brio_status set_up(completion *c) {
     c->capacity = n + 1;
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->local, n + 1));
     c->local_capacity = n + 1;
+    c->in_sequence = task->num_own > 0;
+    for (size_t i = 1; i < task->num_own && c->in_sequence; i++)
+        c->in_sequence = task->points[i].name == task->points[0].name + i;
     for (size_t i = 0; i < n; i++) {
-        bool is_new;
-        BRIO_FORWARD(brio_names_enter(c->ctx, &c->names, task->points[i].name, &is_new));
+        bool is_new = true;
+        if (i >= task->num_own || !c->in_sequence) BRIO_FORWARD(meet(c, task->points[i].name, &is_new));
         BRIO_FORWARD(brio_look(c->ctx, 1));
         if (!is_new && i >= task->num_own) continue;
         c->local[c->num_known] = (uint32_t)c->num_known;
@@ -420,6 +506,11 @@ const brio_completion_stats *brio_completion_facts(const brio_completion *c) {
 
 void brio_completion_vertices(const brio_completion *c, uint8_t *is_vertex) {
     for (size_t p = 0; p < c->task.num_own; p++) is_vertex[p] = c->state[p] == STAR_FINAL;
+}
+
+const brio_set_point *brio_completion_known(const brio_completion *c, size_t *count) {
+    *count = c->num_known;
+    return c->known;
 }
 
 /* --- with one source --- */

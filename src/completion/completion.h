@@ -87,12 +87,13 @@ typedef struct {
                                      extreme points, and four that span space if any do; they may be none */
     bool weighted;
     brio_ball_box all;         /* holds all points of the set */
-    const brio_ball_box *home; /* NULL, or a box in whose interior every point of the set is an own one. Sides may be
-                                  infinite */
+    const brio_ball_box *home; /* NULL, or a box in whose interior every point of the set is among `points`. Sides may
+                                  be infinite */
     brio_conflicts_fn source;  /* for brio_complete alone */
     void *source_user;
     brio_final_fn final;
     void *final_user;
+    bool least_only; /* hands on only tetrahedra whose lexicographically least vertex is an own point */
 } brio_completion_task;
 
 enum { BRIO_COMPLETION_ROUNDS = 64, BRIO_COMPLETION_BALLS = 4096 /* in one call of a source */ };
@@ -158,6 +159,9 @@ const brio_completion_stats *brio_completion_facts(const brio_completion *c);
 
 /** Sets for each own point whether it is a vertex of the whole triangulation. Call after the last round. */
 void brio_completion_vertices(const brio_completion *c, uint8_t *is_vertex);
+
+/** Returns the points that are known: own ones first. The view is valid until brio_completion_delete. */
+const brio_set_point *brio_completion_known(const brio_completion *c, size_t *count);
 
 /** Frees everything; NULL is accepted. */
 void brio_completion_delete(brio_completion *c);

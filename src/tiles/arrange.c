@@ -162,6 +162,7 @@ brio_status brio_tiles_arrange(brio_tiles *t) {
     brio_bar bar = brio_progress_bar(t->ctx);
     uint64_t place = 0;
     BRIO_TRY(brio_store_create(&t->folder, "points.new", &out));
+    out.hashes = t->key != 0;
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         brio_progress_part(t->ctx, bar, (double)i / t->num_tiles, (i + 1.0) / t->num_tiles);
         BRIO_TRY(brio_progress(t->ctx, "arrange", 0));
@@ -169,7 +170,8 @@ brio_status brio_tiles_arrange(brio_tiles *t) {
     }
     t->stats.dimension = t->num_basis - 1;
     BRIO_TRY(brio_tile_tree_close(t));
-    status = brio_store_publish(&out, "points", t->key != 0);
+    t->points_hash = out.hash;
+    status = brio_store_publish(&out, "points");
 done:
     brio_store_close(&out);
     brio_progress_part(t->ctx, bar, 0, 1);

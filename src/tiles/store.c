@@ -1,6 +1,7 @@
 /* Files by system calls: see store.h. A process that is killed leaves the folder, and its lock is gone with it. */
 #include "tiles/store.h"
 #include "base/memory.h"
+#include "base/rng.h"
 #include "platform/disk.h"
 #include "platform/file.h"
 #include "platform/folder.h"
@@ -89,11 +90,10 @@ bool brio_store_has(const brio_store_folder *folder, const char *name) {
     return brio_is_there(path);
 }
 
-brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts) {
+brio_status brio_store_publish(brio_store_file *f, const char *name) {
     char from[BRIO_PATH_MOST], to[BRIO_PATH_MOST];
     path_of(f->folder, f->name, from);
     path_of(f->folder, name, to);
-    if (lasts && !brio_flush_to_disk(f->file)) return fail_file(f, BRIO_ERR_WRITE, "write", errno);
     if (!brio_rename_file(from, to)) return fail_file(f, BRIO_ERR_WRITE, "rename it", errno);
     snprintf(f->name, sizeof f->name, "%s", name);
     return BRIO_OK;
@@ -145,7 +145,22 @@ brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *by
     return status;
 }
 
+/* Returns the hash of a piece of a file: a sum over its words, so that it does not matter where pieces end. */
+static uint64_t hash_of(uint64_t offset, const void *bytes, size_t size) {
+    uint64_t hash = 0, word = 0;
+    const char *from = bytes;
+    assert(offset % sizeof word == 0);
+    for (; size >= sizeof word; size -= sizeof word, from += sizeof word, offset += sizeof word) {
+        memcpy(&word, from, sizeof word);
+        hash += brio_mix(word ^ offset * UINT64_C(0x9e3779b97f4a7c15));
+    }
+    word = 0;
+    if (size) memcpy(&word, from, size);
+    return size ? hash + brio_mix(word ^ offset * UINT64_C(0x9e3779b97f4a7c15)) : hash;
+}
+
 brio_status brio_store_append(brio_store_file *f, const void *bytes, size_t size) {
+    if (f->hashes) f->hash += hash_of(f->size, bytes, size);
     return brio_store_write(f, f->size, bytes, size);
 }
 
@@ -168,5 +183,24 @@ brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *byt
     if (file < 0) return fail_file(f, BRIO_ERR_OPEN, "open it", errno);
     brio_status status = read_bytes(f, file, offset, bytes, size);
     brio_close(file);
+    return status;
+}
+
+brio_status brio_store_check(const brio_store_file *f, uint64_t offset, uint64_t hash, bool *same) {
+    enum { PIECE = 1 << 17 };
+    brio_context *ctx = f->folder->ctx;
+    brio_status status = BRIO_OK;
+    char *piece = NULL;
+    uint64_t sum = 0;
+    BRIO_TRY(BRIO_ALLOC(ctx, piece, PIECE));
+    for (size_t n; offset < f->size; offset += n) {
+        n = f->size - offset < PIECE ? (size_t)(f->size - offset) : PIECE;
+        BRIO_TRY(brio_store_read(f, offset, piece, n));
+        sum += hash_of(offset, piece, n);
+        BRIO_TRY(brio_look(ctx, n / 1024 + 1));
+    }
+    *same = sum == hash;
+done:
+    brio_release(ctx, piece);
     return status;
 }

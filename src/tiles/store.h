@@ -18,6 +18,8 @@ typedef struct {
     int file;  /* descriptor, or -1 */
     bool shut; /* no descriptor between calls: see brio_store_shut */
     uint64_t size;
+    bool hashes;   /* whether what is appended goes into the hash */
+    uint64_t hash; /* of the pieces that were appended, each of whole words of 8 bytes, the last one excepted */
 } brio_store_file;
 
 /** Makes a folder, or opens one that a process left.   name  of the folder in `parent`.
@@ -34,9 +36,12 @@ brio_status brio_store_create(brio_store_folder *folder, const char *name, brio_
 brio_status brio_store_open(brio_store_folder *folder, const char *name, brio_store_file *out);
 /** Returns whether a file is there. */
 bool brio_store_has(const brio_store_folder *folder, const char *name);
-/** Gives a complete file its name; *f stays open.   lasts  whether its bytes are on the disk before it has the name, so
- *  that a machine that fails leaves no file that is not whole. Returns BRIO_OK or BRIO_ERR_WRITE. */
-brio_status brio_store_publish(brio_store_file *f, const char *name, bool lasts);
+/** Gives a complete file its name; *f stays open. After a failure of the machine the file may have its name and not its
+ *  bytes: brio_store_check tells. Returns BRIO_OK or BRIO_ERR_WRITE. */
+brio_status brio_store_publish(brio_store_file *f, const char *name);
+/** Returns whether the bytes from an offset on are those whose hash is given. Reads them all.   same  receives it.
+ *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_store_check(const brio_store_file *f, uint64_t offset, uint64_t hash, bool *same);
 void brio_store_remove(brio_store_folder *folder, const char *name);
 void brio_store_close(brio_store_file *f);
 /** Takes the descriptor from a file, which then has one during each call alone: a process may have as few as 256, and

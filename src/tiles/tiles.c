@@ -125,12 +125,13 @@ typedef struct {
     uint64_t weighted;
     brio_set_point extreme[TILE_DIRECTIONS], basis[4];
     int num_basis;
-    uint64_t hash; /* of tiles and nodes */
+    uint64_t points_hash;
+    uint64_t hash; /* of the head, with a 0 here, of tiles and nodes */
 } saved_head;
 
-static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'l', 's', '1'};
+static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'l', 's', '2'};
 
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size) {
+uint64_t brio_tiles_hash(uint64_t hash, const void *bytes, size_t size) {
     for (size_t i = 0; i < size; i += 8) {
         uint64_t word = 0;
         memcpy(&word, (const char *)bytes + i, size - i < 8 ? size - i : 8);
@@ -153,20 +154,39 @@ static saved_head head_of(const brio_tiles *t) {
     memcpy(h.extreme, t->extreme, sizeof h.extreme);
     memcpy(h.basis, t->basis, sizeof h.basis);
     h.num_basis = t->num_basis;
+    h.points_hash = t->points_hash;
     return h;
+}
+
+/* Returns the hash of a head whose own hash is 0, and of what follows it. */
+static uint64_t hash_state(const brio_tiles *t, const saved_head *h) {
+    uint64_t hash = brio_tiles_hash(brio_tiles_hash(h->key, h, sizeof *h), t->tile, t->num_tiles * sizeof *t->tile);
+    return brio_tiles_hash(hash, t->node, h->num_nodes * sizeof *t->node);
+}
+
+/* Tells whether the file of points is whole. */
+static brio_status check_points(brio_tiles *t, uint64_t hash, bool *is_good) {
+    brio_store_file f = {.file = -1};
+    uint64_t places = 0;
+    *is_good = false;
+    for (uint32_t i = 0; i < t->num_tiles; i++) places += t->tile[i].points;
+    if (!brio_store_has(&t->folder, "points")) return BRIO_OK;
+    brio_status status = brio_store_open(&t->folder, "points", &f);
+    if (status == BRIO_OK && f.size == places * sizeof(brio_set_point)) status = brio_store_check(&f, 0, hash, is_good);
+    brio_store_close(&f);
+    return status;
 }
 
 brio_status brio_tiles_save(brio_tiles *t) {
     brio_store_file f = {.file = -1};
     brio_status status = BRIO_OK;
     saved_head h = head_of(t);
-    h.hash = hash_bytes(hash_bytes(t->key, t->tile, t->num_tiles * sizeof *t->tile), t->node,
-                        t->num_nodes * sizeof *t->node);
+    h.hash = hash_state(t, &h);
     BRIO_TRY(brio_store_create(&t->folder, "state.new", &f));
     BRIO_TRY(brio_store_append(&f, &h, sizeof h));
     BRIO_TRY(brio_store_append(&f, t->tile, t->num_tiles * sizeof *t->tile));
     BRIO_TRY(brio_store_append(&f, t->node, t->num_nodes * sizeof *t->node));
-    status = brio_store_publish(&f, "state", true);
+    status = brio_store_publish(&f, "state");
 done:
     brio_store_close(&f);
     return status;
@@ -185,7 +205,12 @@ static brio_status restore(brio_tiles *t, brio_store_file *f, bool *found) {
     BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->node, h.num_nodes + 1));
     BRIO_FORWARD(brio_store_read(f, sizeof h, t->tile, tiles));
     BRIO_FORWARD(brio_store_read(f, sizeof h + tiles, t->node, nodes));
-    if (hash_bytes(hash_bytes(t->key, t->tile, tiles), t->node, nodes) != h.hash) return BRIO_OK;
+    uint64_t hash = h.hash;
+    h.hash = 0;
+    if (hash_state(t, &h) != hash) return BRIO_OK;
+    BRIO_FORWARD(check_points(t, h.points_hash, found));
+    if (!*found) return BRIO_OK;
+    t->points_hash = h.points_hash;
     t->num_nodes = h.num_nodes;
     t->stats = h.stats;
     t->all = h.all;
@@ -194,7 +219,6 @@ static brio_status restore(brio_tiles *t, brio_store_file *f, bool *found) {
     memcpy(t->extreme, h.extreme, sizeof h.extreme);
     memcpy(t->basis, h.basis, sizeof h.basis);
     t->num_basis = h.num_basis;
-    *found = true;
     return BRIO_OK;
 }
 

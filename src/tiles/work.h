@@ -41,7 +41,8 @@ typedef struct {
     uint64_t place;     /* of its first point */
     uint32_t points;    /* that have a place */
     uint32_t root;      /* node; TILE_NONE if there are no points */
-    uint64_t vertices, tetrahedra, hull_facets, halo; /* of the finished tile; halo: vertices of other tiles */
+    uint64_t vertices, tetrahedra, hull_facets,
+        halo; /* of the finished tile; halo: points of other tiles that it knew */
     uint64_t asked, found, sampled, read, triangulated, most_points, most_tetrahedra;
     uint32_t rounds, finished; /* finished: 1 */
 } brio_tile;
@@ -53,6 +54,7 @@ struct brio_tiles {
     bool weighted, has_points, has_result, has_ranks;
     bool torn; /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
+    uint64_t points_hash; /* of the file of points */
     uint32_t num_tiles;
     /* while points are added */
     brio_store_file raw;
@@ -90,6 +92,9 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 brio_status brio_tiles_save(brio_tiles *t);
 brio_status brio_tiles_restore(brio_tiles *t, bool *found);
 
+/** Returns a hash of bytes in memory, and of a hash before. */
+uint64_t brio_tiles_hash(uint64_t hash, const void *bytes, size_t size);
+
 /** --- tree of boxes --- */
 
 /** Appends nodes for a tile's blocks.   points  the tile's, in their places. */
@@ -114,11 +119,15 @@ brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found);
 /** Returns the number of blocks that were read. */
 uint64_t brio_tile_source_read(const brio_tile_source *s);
 
+/** Adds the points of other tiles that are near a tile's border.
+ *  seen  receives a box in whose interior all points are the tile's or were added. */
+brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, brio_found *found, brio_ball_box *seen);
+
 /** --- results --- */
 
-/** The file of a finished tile: its tetrahedra, the places of vertices of other tiles, and a byte for each of its
- *  points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the tile's number
- *  of points subtracted, rows of the halo. */
+/** The file of a finished tile: its tetrahedra, the places of the points of other tiles that it knew, and a byte for
+ *  each of its points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the
+ *  tile's number of points subtracted, rows of the halo. */
 typedef struct {
     uint32_t (*tetrahedra)[4];
     uint64_t *halo;

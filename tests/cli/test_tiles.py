@@ -81,6 +81,24 @@ class Tiles(CliTest):
         self.assertGreaterEqual(facts["resumed"], 3)
         self.assertEqual(os.listdir(self.scratch()), [])
 
+    def test_what_a_failed_machine_left_is_made_anew(self):
+        cloud = self.rows("a.csv", 20000)
+        plain = self.facts("delaunay", cloud)["checksum"]
+        for damaged, most in (("tile-1", 2), ("points", 0), ("state", 0)):
+            command = self.kill(cloud)
+            folder, = os.listdir(self.scratch())
+            with open(os.path.join(self.scratch(), folder, damaged), "r+b") as f:
+                f.seek(-64, os.SEEK_END)
+                byte = f.read(1)[0]
+                f.seek(-64, os.SEEK_END)
+                f.write(bytes([byte ^ 1]))
+            facts = self.facts("delaunay", cloud, *command)
+            self.assertEqual(facts["checksum"], plain)
+            if most:
+                self.assertGreaterEqual(facts["resumed"], most)
+            else:
+                self.assertEqual(facts["resumed"], 0)
+
     def test_points_beside_the_named_file_were_those_of_a_killed_run(self):
         rng = random.Random(7)
 
