@@ -51,9 +51,11 @@ static brio_status take_tetrahedra(brio_dynamic *d, brio_triangulation *t, const
     BRIO_FORWARD(BRIO_ALLOC_ZERO(d->ctx, d->state, count));
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->hidden, count));
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->unused, count));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->until, count));
     memset(d->hidden, 0xff, count * sizeof *d->hidden);
     d->t.tet = t->tet;
     d->t.count = d->capacity = d->unused_capacity = count;
+    brio_slack_end_all(d);
     t->tet = NULL;
     for (uint32_t slot = 0; slot < count; slot++)
         for (int k = 0; k < 4; k++) {

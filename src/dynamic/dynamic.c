@@ -198,24 +198,7 @@ brio_status brio_dynamic_remove(brio_dynamic *d, const uint32_t *indices, size_t
 
 /* --- move --- */
 
-/* A change of the records of points: where a new record comes from. */
-typedef struct {
-    const uint32_t *indices; /* NULL: all points, by ascending index */
-    const double *points;    /* NULL: they stay */
-    const double *weights;   /* NULL: they stay */
-    size_t count;
-} moves;
-
-/* Writes the new record of the point of a name, which is number i of the moves. */
-static brio_status new_record(const brio_dynamic *d, const moves *m, size_t i, uint32_t name, double record[4]) {
-    memcpy(record, d->record[d->row_of[name]], sizeof(brio_record));
-    for (int c = 0; m->points && c < 3; c++) record[c] = m->points[3 * i + (size_t)c] + 0.0;
-    if (m->weights) record[3] = m->weights[i] + 0.0;
-    BRIO_EXPECT(d->ctx, brio_all_finite(record, 4), BRIO_ERR_NOT_FINITE, "point %zu is not finite", i);
-    return BRIO_OK;
-}
-
-static brio_status move_anew(brio_dynamic *d, const moves *m) {
+static brio_status move_anew(brio_dynamic *d, const brio_moves *m) {
     brio_live_points list;
     uint32_t *place = NULL;
     brio_status status = brio_live_list(d->ctx, d, 0, &list);
@@ -225,7 +208,7 @@ static brio_status move_anew(brio_dynamic *d, const moves *m) {
     for (size_t i = 0; i < m->count; i++) {
         size_t at = m->indices ? place[m->indices[i]] : i;
         double record[4];
-        BRIO_TRY(new_record(d, m, i, list.name[at], record));
+        BRIO_TRY(brio_new_record(d, m, i, list.name[at], record));
         memcpy(list.point + 3 * at, record, 3 * sizeof *record);
         if (list.weight) list.weight[at] = record[3];
     }
@@ -237,7 +220,7 @@ done:
 }
 
 /* Moves one by one. Asks for building anew where that is faster than to take out all that have to be. */
-static brio_status move_each(brio_dynamic *d, const moves *m) {
+static brio_status move_each(brio_dynamic *d, const brio_moves *m) {
     uint64_t before = d->replaced;
     for (size_t i = 0, name = 0; i < m->count; i++, name++) {
         double record[4];
@@ -245,7 +228,7 @@ static brio_status move_each(brio_dynamic *d, const moves *m) {
             name = m->indices[i];
         else
             while (d->row_of[name] == BRIO_NONE) name++;
-        BRIO_FORWARD(new_record(d, m, i, (uint32_t)name, record));
+        BRIO_FORWARD(brio_new_record(d, m, i, (uint32_t)name, record));
         BRIO_FORWARD(brio_live_move(d, (uint32_t)name, record));
         BRIO_FORWARD(brio_look(d->ctx, 4));
         if (i % 256 != 255) continue;
@@ -258,30 +241,21 @@ static brio_status move_each(brio_dynamic *d, const moves *m) {
 
 /* Returns whether the tetrahedra are to be tested together after all moves, not star by star: then all points are
  * vertices, and many move. */
-static bool are_many(const brio_dynamic *d, const moves *m) {
+static bool are_many(const brio_dynamic *d, const brio_moves *m) {
     enum { MANY = 1024 };
     return d->counts.alive >= MANY && d->counts.alive == d->counts.vertices && m->count > d->counts.alive / 8;
 }
 
-static brio_status move_together(brio_dynamic *d, const moves *m) {
-    brio_record *record = NULL;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(d->ctx, record, d->row_capacity));
-    memcpy(record, d->record, d->num_rows * sizeof *record);
-    for (size_t i = 0, name = 0; i < m->count; i++, name++) {
-        if (m->indices)
-            name = m->indices[i];
-        else
-            while (d->row_of[name] == BRIO_NONE) name++;
-        BRIO_TRY(new_record(d, m, i, (uint32_t)name, record[d->row_of[name]]));
-    }
-    status = brio_live_move_many(d, &record, most_changes(d, REPLACE_COST, d->counts.alive));
-done:
-    brio_release(d->ctx, record);
+static brio_status move_together(brio_dynamic *d, const brio_moves *m) {
+    brio_paths paths;
+    brio_status status = brio_paths_new(d, m, &paths);
+    if (status != BRIO_OK) return status;
+    status = brio_live_move_many(d, &paths, most_changes(d, REPLACE_COST, d->counts.alive));
+    brio_paths_free(d->ctx, &paths);
     return status;
 }
 
-static brio_status move_points(brio_dynamic *d, const moves *m) {
+static brio_status move_points(brio_dynamic *d, const brio_moves *m) {
     brio_status status = BRIO_OK;
     uint64_t in_place = d->in_place, replaced = d->replaced;
     if (m->indices) {
@@ -305,10 +279,10 @@ static brio_status move_points(brio_dynamic *d, const moves *m) {
 brio_status brio_dynamic_move(brio_dynamic *d, const uint32_t *indices, const double *points, const double *weights,
                               size_t num_indices) {
     BRIO_DOOR;
-    return move_points(d, &(moves){indices, points, weights, num_indices});
+    return move_points(d, &(brio_moves){indices, points, weights, num_indices});
 }
 
 brio_status brio_dynamic_reweight(brio_dynamic *d, const uint32_t *indices, const double *weights, size_t num_indices) {
     BRIO_DOOR;
-    return move_points(d, &(moves){indices, NULL, weights, num_indices});
+    return move_points(d, &(brio_moves){indices, NULL, weights, num_indices});
 }

@@ -18,6 +18,10 @@
  *     vertices are those that brio_delaunay would choose.
  * L4  In an input of dimension 2 or less there are no tetrahedra, and every row that is alive is loose.
  *
+ * L5  While `travelled` is at most until[s], the tetrahedron of slot s is finite and positive, and no vertex behind a
+ *     facet that it shares with a finite tetrahedron of higher number is in conflict with it. until[s] is below 0
+ *     where a test has to say so (slack.c).
+ *
  * A change is a transaction: every slot and every row is copied into the journal before it is first written. Where
  * memory runs out, the caller cancels, or a change needs another way, the journal is written back (journal.c). So no
  * step of a change needs to know whether a later one can fail. */
@@ -115,6 +119,8 @@ struct brio_dynamic {
     brio_tetrahedra t;
     uint8_t *state;
     uint32_t *hidden;
+    float *until; /* of each slot: L5 */
+    double travelled;
     size_t capacity;
     uint32_t *unused;
     size_t num_unused, unused_capacity;
@@ -153,6 +159,7 @@ brio_status brio_journal_reserve(brio_dynamic *d, size_t slots, size_t rows);
 /** Notes a slot, or a row, before it is written; room was reserved. */
 static inline void brio_note_slot(brio_dynamic *d, uint32_t slot) {
     brio_journal *j = &d->journal;
+    d->until[slot] = -1;
     if (slot >= j->slots_before || d->state[slot] & SLOT_NOTED) return;
     assert(j->num_slots < j->slot_capacity);
     j->slot[j->num_slots++] =
@@ -244,6 +251,50 @@ brio_status brio_hole_mend(brio_dynamic *d, bool *mended);
 /** Forgets the hole. */
 void brio_hole_forget(brio_dynamic *d);
 
+/* --- slack.c --- */
+
+/** Ends the time (L5) of all tetrahedra of the hole, a star, and of those behind its border: its vertex moves. */
+void brio_slack_end(brio_dynamic *d);
+/** Ends that of all tetrahedra. */
+void brio_slack_end_all(brio_dynamic *d);
+/** Lets time go on: each vertex has moved by at most `step`, but those whose time ends. */
+void brio_slack_advance(brio_dynamic *d, double step);
+
+/** Slots in ascending order. */
+typedef struct {
+    uint32_t *slot;
+    size_t count, capacity;
+} brio_slot_list;
+
+/** Tests the tetrahedra whose time is over, with all threads. Lists the finite ones that are not certainly sound, and
+ *  all that are infinite; the caller frees the lists. */
+brio_status brio_slack_test(brio_dynamic *d, brio_slot_list *open, brio_slot_list *infinite);
+
+/* --- records.c --- */
+
+/** A change of the records of points: where a new record comes from. */
+typedef struct {
+    const uint32_t *indices; /* NULL: all points, by ascending index */
+    const double *points;    /* NULL: they stay */
+    const double *weights;   /* NULL: they stay */
+    size_t count;
+} brio_moves;
+
+/** How far the rows move. */
+typedef struct {
+    brio_record *record; /* of each row, the new one */
+    double step;         /* no row moves by more, but the fast ones */
+    uint32_t *fast;
+    size_t num_fast, moved;
+} brio_paths;
+
+/** Writes the new record of the point of a name, which is number i of the moves. */
+brio_status brio_new_record(const brio_dynamic *d, const brio_moves *m, size_t i, uint32_t name, double record[4]);
+/** Writes those of all rows, with all threads, and widens the filter's box for them. Fast are at most a few of them, so
+ *  that the step is not much longer than most paths, and those that get another weight. Freed by brio_paths_free. */
+brio_status brio_paths_new(brio_dynamic *d, const brio_moves *m, brio_paths *out);
+void brio_paths_free(brio_context *ctx, brio_paths *p);
+
 /* --- link.c --- */
 
 /** Makes the workspace. */
@@ -263,10 +314,9 @@ brio_status brio_live_move(brio_dynamic *d, uint32_t name, const double *record)
 
 /* --- move_many.c --- */
 
-/** Gives all rows, which are vertices, the records of an array by row, with room for row_capacity of them; the array
- *  is exchanged with that of the store. Sets needs_anew, and fails, where more than `most` would have to be taken
- *  out. */
-brio_status brio_live_move_many(brio_dynamic *d, brio_record **record, size_t most);
+/** Gives all rows, which are vertices, their new records; the array is exchanged with that of the store. Sets
+ *  needs_anew, and fails, where more than `most` would have to be taken out. */
+brio_status brio_live_move_many(brio_dynamic *d, brio_paths *paths, size_t most);
 
 /* --- build.c --- */
 

@@ -68,7 +68,10 @@ static brio_status in_place(brio_dynamic *d, uint32_t row, const double *record,
         memcpy(before, d->record[row], sizeof before);
         memcpy(d->record[row], record, sizeof before);
         *done = is_valid(d);
-        if (!*done) memcpy(d->record[row], before, sizeof before);
+        if (*done)
+            brio_slack_end(d);
+        else
+            memcpy(d->record[row], before, sizeof before);
     }
     brio_hole_forget(d);
     return BRIO_OK;

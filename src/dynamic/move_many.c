@@ -1,6 +1,7 @@
 /* Many points move at once.
  *
- * All new records are written, then all tetrahedra are tested side by side: most need no more. Where a tetrahedron
+ * All new records are written, then the tetrahedra whose time is over are tested side by side (slack.c): most need no
+ * more. Where a tetrahedron
  * is not positive any more, or the hull is not convex, one of the points there goes back to where it was. Where a
  * vertex behind a facet is in conflict, the two tetrahedra there are a hole, which is filled with the triangulation
  * of its vertices; while that does not have all facets of the hole's border, the tetrahedra behind those that it
@@ -22,20 +23,19 @@
 #include "triangulation/ring.h"
 #include <string.h>
 
-enum { STAYS = 0, MOVED = 1, BACK = 2 };
-
 /* Bad facets whose repair takes as long as taking a point out and putting it in. Measured. */
 static const double BAD_A_MOVE = 14;
 
 typedef struct {
     brio_dynamic *d;
-    const brio_record *before; /* of each row */
-    uint8_t *what;             /* of each row: STAYS, MOVED, BACK */
-    uint32_t *back;            /* rows that went back; those from `tested` on still have to be tested */
-    brio_record *wish;         /* where each of them shall be */
-    uint32_t *bad;             /* facets that may be bad */
-    bool mends;
-    size_t num_back, tested, most_back, num_bad, bad_capacity;
+    const brio_record *before;     /* of each row */
+    uint32_t *back;                /* rows that went back; those from `tested` on still have to be tested */
+    brio_record *wish;             /* where each of them shall be */
+    uint32_t *bad;                 /* facets that may be bad */
+    uint32_t *mended;              /* rows that a repair might have lost */
+    brio_slot_list open, infinite; /* tetrahedra that are not certainly sound; all that are infinite */
+    bool mends, new_hull;          /* new_hull: repairs took infinite ones out */
+    size_t num_back, tested, most_back, num_bad, bad_capacity, num_mended, mended_capacity;
 } sweep;
 
 static int side(brio_dynamic *d, uint32_t a, uint32_t b, uint32_t c, uint32_t e) {
@@ -47,10 +47,10 @@ static int side(brio_dynamic *d, uint32_t a, uint32_t b, uint32_t c, uint32_t e)
 static void put_back(sweep *s, const uint32_t *row, size_t count) {
     if (s->num_back > s->most_back) return;
     for (size_t i = 0; i < count; i++) {
-        if (row[i] == 0 || s->what[row[i]] != MOVED) continue;
-        s->what[row[i]] = BACK;
-        memcpy(s->wish[s->num_back], s->d->record[row[i]], sizeof(brio_record));
-        memcpy(s->d->record[row[i]], s->before[row[i]], sizeof(brio_record));
+        double *r = s->d->record[row[i]];
+        if (row[i] == 0 || memcmp(r, s->before[row[i]], sizeof(brio_record)) == 0) continue;
+        memcpy(s->wish[s->num_back], r, sizeof(brio_record));
+        memcpy(r, s->before[row[i]], sizeof(brio_record));
         s->back[s->num_back++] = row[i];
         return;
     }
@@ -103,6 +103,7 @@ static brio_status test_star(sweep *s, uint32_t row) {
     brio_dynamic *d = s->d;
     const brio_hole *h = &d->hole;
     brio_status status = brio_live_star(d, row);
+    if (status == BRIO_OK) brio_slack_end(d);
     for (size_t i = 0; i < h->num_tets && status == BRIO_OK; i++) {
         if (!has_volume(s, h->tet[i])) continue;
         for (int k = 0; k < 4 && status == BRIO_OK; k++) status = note_bad(s, brio_facet_of(h->tet[i], k));
@@ -122,35 +123,28 @@ static bool looks_hopeless(sweep *s) {
     brio_dynamic *d = s->d;
     size_t step = d->t.count / SAMPLE + 1, seen = 0, bad = 0;
     for (size_t slot = 0; slot < d->t.count; slot += step, seen++) {
-        if (d->state[slot] & SLOT_UNUSED) continue;
+        if ((double)d->until[slot] >= d->travelled || d->state[slot] & SLOT_UNUSED) continue;
         for (int k = 0; k < 4; k++) bad += is_bad(d, brio_facet_of((uint32_t)slot, k));
     }
     double all = (double)bad / 2 * (double)d->t.count / (double)(seen + 1); /* a facet is seen from two sides */
     return all / BAD_A_MOVE > 1.2 * (double)s->most_back;
 }
 
-/* Tests all tetrahedra. */
-static brio_status test_all(sweep *s) {
-    enum { AHEAD = 32 }; /* tetrahedra whose neighbours are called for */
-    brio_dynamic *d = s->d;
-    uint32_t batch[BRIO_BATCH], slot = 0;
-    while (slot < d->t.count) {
-        size_t n = 0;
-        for (; slot < d->t.count && n < BRIO_BATCH; slot++) {
-            if (d->state[slot] & SLOT_UNUSED) continue;
-            if (slot + AHEAD < d->t.count) brio_ring_fetch(&d->t, slot + AHEAD);
-            if (brio_is_infinite(&d->t, slot))
-                BRIO_FORWARD(test_tetrahedron(s, slot));
-            else
-                batch[n++] = slot;
-        }
-        if (n == 0) break;
-        for (size_t i = n; i < BRIO_BATCH; i++) batch[i] = batch[0];
-        unsigned open = ~d->engine->sound(&d->t, &d->filter, batch) & ((1u << n) - 1);
-        for (; open; open &= open - 1) BRIO_FORWARD(test_tetrahedron(s, batch[__builtin_ctz(open)]));
-        if (is_hopeless(s)) break;
-        BRIO_FORWARD(brio_look(d->ctx, BRIO_BATCH));
+/* Tests these tetrahedra one by one. */
+static brio_status test_listed(sweep *s, const brio_slot_list *list) {
+    for (size_t i = 0; i < list->count && !is_hopeless(s); i++) {
+        BRIO_FORWARD(test_tetrahedron(s, list->slot[i]));
+        BRIO_FORWARD(brio_look(s->d->ctx, 1));
     }
+    return BRIO_OK;
+}
+
+/* Tests all tetrahedra whose time is over. */
+static brio_status test_all(sweep *s) {
+    brio_dynamic *d = s->d;
+    BRIO_FORWARD(brio_slack_test(d, &s->open, &s->infinite));
+    BRIO_FORWARD(test_listed(s, &s->infinite));
+    BRIO_FORWARD(test_listed(s, &s->open));
     while (s->tested < s->num_back && s->num_back <= s->most_back) {
         BRIO_FORWARD(test_star(s, s->back[s->tested++]));
         BRIO_FORWARD(brio_look(d->ctx, 16));
@@ -197,12 +191,15 @@ static brio_status mend(sweep *s, uint32_t facet) {
     brio_dynamic *d = s->d;
     brio_hole *h = &d->hole;
     bool mended = false;
+    size_t infinite = 0;
     join_hole(d, brio_tet_of(facet));
     join_hole(d, brio_tet_of(*brio_mate(&d->t, facet)));
     for (;;) {
         list_border(d);
         BRIO_FORWARD(brio_hole_reserve_fresh(d, h->num_border));
         for (size_t b = 0; b < h->num_border; b++) h->fresh[b] = 1;
+        infinite = 0;
+        for (size_t i = 0; i < h->num_tets; i++) infinite += brio_is_infinite(&d->t, h->tet[i]);
         BRIO_FORWARD(brio_hole_mend(d, &mended));
         if (mended) break;
         BRIO_FORWARD(grow(d));
@@ -210,6 +207,9 @@ static brio_status mend(sweep *s, uint32_t facet) {
         if (d->needs_anew) return BRIO_OK;
     }
     h->num_tets = 0;
+    s->new_hull |= infinite > 0;
+    BRIO_FORWARD(BRIO_RESERVE(d->ctx, s->mended, s->mended_capacity, s->num_mended + h->num_vertices));
+    for (size_t i = 1; i < h->num_vertices; i++) s->mended[s->num_mended++] = h->vertex[i];
     for (size_t b = 0; b < h->num_border; b++) BRIO_FORWARD(note_bad(s, h->border[b]));
     return BRIO_OK;
 }
@@ -253,49 +253,56 @@ static bool misses_fan(brio_dynamic *d, uint32_t o, uint32_t v, const uint32_t *
 /* Returns whether a ray from o, an inner vertex that is strictly inside of all hull facets, certainly meets just one
  * of them. A facet (a, b, c) of an infinite tetrahedron has o on its negative side, so (o, a, b, c) is positive: a
  * direction leaves the cone where an orientation (o, a, b, direction) is negative. */
-static bool hull_is_sound(brio_dynamic *d, uint32_t o) {
-    uint32_t v = 0, x = 0, first = BRIO_NONE;
-    for (uint32_t s = 0; s < d->t.count; s++) {
-        if (d->state[s] & SLOT_UNUSED || !brio_is_infinite(&d->t, s)) continue;
-        const uint32_t *f = d->t.tet[s].vertex;
-        if (first == BRIO_NONE) first = s, v = f[0], x = f[1];
+static bool hull_is_sound(brio_dynamic *d, const brio_slot_list *infinite, uint32_t o) {
+    uint32_t v = 0, x = 0;
+    for (size_t i = 0; i < infinite->count; i++) {
+        const uint32_t *f = d->t.tet[infinite->slot[i]].vertex;
+        if (i == 0) v = f[0], x = f[1];
         if (side(d, f[0], f[1], f[2], o) >= 0) return false;
-        if (s == first) continue;
+        if (i == 0) continue;
         bool fan = f[0] == v || f[1] == v || f[2] == v;
         if (!(fan ? misses_fan(d, o, v, f, x) : misses(d, o, v, f))) return false;
     }
-    return first != BRIO_NONE;
+    return infinite->count > 0;
 }
 
 /* Returns whether no repair has left out a vertex. */
-static bool has_all_vertices(const brio_dynamic *d) {
-    for (uint32_t r = 1; r < d->num_rows; r++) {
-        if (brio_row_kind(d, r) != ROW_VERTEX) continue;
-        if (d->state[d->home[r]] & SLOT_UNUSED || brio_slot_of_vertex(d->t.tet[d->home[r]].vertex, r) > 3) return false;
+static bool has_all_vertices(const sweep *s) {
+    const brio_dynamic *d = s->d;
+    for (size_t i = 0; i < s->num_mended; i++) {
+        uint32_t r = s->mended[i], home = d->home[r];
+        if (d->state[home] & SLOT_UNUSED || brio_slot_of_vertex(d->t.tet[home].vertex, r) > 3) return false;
     }
     return true;
 }
 
+/* Lists the infinite tetrahedra anew where repairs have changed them. */
+static brio_status list_infinite(sweep *s) {
+    brio_dynamic *d = s->d;
+    brio_slot_list *l = &s->infinite;
+    if (!s->new_hull) return BRIO_OK;
+    l->count = 0;
+    BRIO_FORWARD(BRIO_RESERVE(d->ctx, l->slot, l->capacity, d->counts.infinite));
+    for (uint32_t slot = 0; slot < d->t.count; slot++)
+        if (!(d->state[slot] & SLOT_UNUSED) && brio_is_infinite(&d->t, slot)) l->slot[l->count++] = slot;
+    return BRIO_OK;
+}
+
 /* Returns whether the triangulation is that of its points, all facets having been tested. */
-static bool is_sound(brio_dynamic *d) {
+static bool is_sound(const sweep *s) {
     enum { TRIES = 8 };
+    brio_dynamic *d = s->d;
     int tries = 0;
-    if (!has_all_vertices(d)) return false;
+    if (!has_all_vertices(s)) return false;
     for (uint32_t r = (uint32_t)d->num_rows / 2; r < d->num_rows && tries < TRIES; r++) {
         if (brio_row_kind(d, r) != ROW_VERTEX || on_hull(d, r)) continue;
-        if (hull_is_sound(d, r)) return true;
+        if (hull_is_sound(d, &s->infinite, r)) return true;
         tries++;
     }
     return false;
 }
 
 /* --- all --- */
-
-static brio_status sweep_new(brio_dynamic *d, sweep *s) {
-    *s = (sweep){.d = d};
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(d->ctx, s->what, d->num_rows));
-    return BRIO_ALLOC(d->ctx, s->back, d->num_rows);
-}
 
 /* Moves one by one what went back: by the names that the rows have before, since points that meet exchange theirs
  * (place.c). */
@@ -317,45 +324,58 @@ static void exchange(brio_dynamic *d, brio_record **record) {
     d->t.record = other;
 }
 
-brio_status brio_live_move_many(brio_dynamic *d, brio_record **record, size_t most) {
-    sweep s;
-    size_t moved = 0;
-    const brio_record *to = (const brio_record *)*record;
-    brio_record *back = NULL; /* what the rows that went back shall become */
+/* Ends the time of the stars of rows that go further than the step, and lets time go on by that. */
+static brio_status go_on(brio_dynamic *d, const brio_paths *paths) {
+    if (!(paths->step < INFINITY)) brio_slack_end_all(d);
+    if (!(paths->step < INFINITY)) return BRIO_OK;
+    for (size_t i = 0; i < paths->num_fast; i++) {
+        brio_status status = brio_live_star(d, paths->fast[i]);
+        if (status == BRIO_OK) brio_slack_end(d);
+        brio_hole_forget(d);
+        BRIO_FORWARD(status);
+        BRIO_FORWARD(brio_look(d->ctx, 8));
+    }
+    brio_slack_advance(d, paths->step);
+    return BRIO_OK;
+}
+
+/* Tests and repairs; what is not proved then, or takes too long, needs all to be built anew. */
+static brio_status repair(sweep *s, const brio_paths *paths) {
+    brio_dynamic *d = s->d;
+    BRIO_FORWARD(go_on(d, paths));
+    d->needs_anew = looks_hopeless(s);
+    if (!d->needs_anew) BRIO_FORWARD(test_all(s));
+    if (!d->needs_anew) BRIO_FORWARD(mend_all(s));
+    if (!d->needs_anew) BRIO_FORWARD(list_infinite(s));
+    if (!d->needs_anew) d->needs_anew = !is_sound(s);
+    return d->needs_anew ? BRIO_ERR_INTERNAL : BRIO_OK; /* the caller takes the change back and builds anew */
+}
+
+brio_status brio_live_move_many(brio_dynamic *d, brio_paths *paths, size_t most) {
+    sweep s = {.d = d, .most_back = most};
     brio_status status = BRIO_OK;
     assert(d->counts.vertices == d->counts.alive);
-    BRIO_TRY(sweep_new(d, &s));
-    s.most_back = most;
-    for (uint32_t r = 1; r < d->num_rows; r++) {
-        if (brio_row_kind(d, r) != ROW_VERTEX || memcmp(to[r], d->record[r], sizeof *to) == 0) continue;
-        s.what[r] = MOVED;
-        moved++;
-        brio_live_admit(d, to[r]);
-    }
-    BRIO_TRY(BRIO_ALLOC(d->ctx, back, most + 1));
-    exchange(d, record);
-    s.before = (const brio_record *)*record;
-    s.wish = back;
-    d->needs_anew = looks_hopeless(&s);
-    if (!d->needs_anew) status = test_all(&s);
-    if (status == BRIO_OK && !d->needs_anew) status = mend_all(&s);
-    if (status == BRIO_OK && (d->needs_anew || !is_sound(d))) {
-        d->needs_anew = true;
-        status = BRIO_ERR_INTERNAL; /* the caller takes the change back and builds anew */
-    }
-    d->in_place += moved - s.num_back;
+    BRIO_TRY(BRIO_ALLOC(d->ctx, s.back, most + 1));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, s.wish, most + 1));
+    exchange(d, &paths->record);
+    s.before = (const brio_record *)paths->record;
+    status = repair(&s, paths);
     if (status == BRIO_OK) status = move_back_again(&s);
+    if (status == BRIO_OK) d->in_place += paths->moved - s.num_back;
     if (status != BRIO_OK) {
         bool anew = d->needs_anew && status == BRIO_ERR_INTERNAL; /* no other failure becomes a success */
         status = brio_live_end(d, status); /* what moved one by one goes back first, then what moved together */
-        exchange(d, record);
+        exchange(d, &paths->record);
+        brio_slack_end_all(d);
         brio_live_begin(d);
         d->needs_anew = anew;
     }
 done:
-    brio_release(d->ctx, s.what);
     brio_release(d->ctx, s.back);
+    brio_release(d->ctx, s.wish);
     brio_release(d->ctx, s.bad);
-    brio_release(d->ctx, back);
+    brio_release(d->ctx, s.mended);
+    brio_release(d->ctx, s.open.slot);
+    brio_release(d->ctx, s.infinite.slot);
     return status;
 }

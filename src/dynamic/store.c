@@ -43,6 +43,7 @@ brio_status brio_live_reserve_slots(brio_dynamic *d, size_t more) {
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->t.tet, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->state, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->hidden, capacity));
+    BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->until, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->unused, capacity));
     d->capacity = d->unused_capacity = capacity;
     return BRIO_OK;
@@ -100,11 +101,11 @@ done:
 
 void brio_live_clear(brio_dynamic *d) {
     brio_context *ctx = d->ctx;
-    void *blocks[] = {d->record,      d->row,         d->home,        d->number,       d->kind,
-                      d->free_row,    d->row_of,      d->t.tet,       d->state,        d->hidden,
-                      d->unused,      d->hints.row,   d->hole.tet,    d->hole.border,  d->hole.outer,
-                      d->hole.fresh,  d->hole.vertex, d->hole.corner, d->edges.direct, d->edges.key,
-                      d->edges.value, d->link,        d->loose,       d->journal.slot, d->journal.row};
+    void *blocks[] = {d->record,       d->row,          d->home,        d->number,      d->kind,       d->free_row,
+                      d->row_of,       d->t.tet,        d->state,       d->hidden,      d->until,      d->unused,
+                      d->hints.row,    d->hole.tet,     d->hole.border, d->hole.outer,  d->hole.fresh, d->hole.vertex,
+                      d->hole.corner,  d->edges.direct, d->edges.key,   d->edges.value, d->link,       d->loose,
+                      d->journal.slot, d->journal.row};
     for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) brio_release(ctx, blocks[i]);
 }
 

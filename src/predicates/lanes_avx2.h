@@ -1,4 +1,5 @@
-/* Four doubles side by side: the vector operations of conflict_lanes.h and centre_lanes.h in AVX2. */
+/* Four doubles side by side: the vector operations of conflict_lanes.h, sound_lanes.h and centre_lanes.h in
+ * AVX2. */
 #ifndef BRIO_PREDICATES_LANES_AVX2_H
 #define BRIO_PREDICATES_LANES_AVX2_H
 
@@ -7,7 +8,7 @@
 
 enum { LANES = 4 };
 
-typedef __m256d lanes; /* + - * act on each lane */
+typedef __m256d lanes; /* + - * / act on each lane */
 typedef __m256d lane_mask;
 
 static inline lanes all(double x) {
@@ -18,6 +19,9 @@ static inline lanes magnitude(lanes x) {
 }
 static inline lanes maximum(lanes x, lanes y) {
     return _mm256_max_pd(x, y);
+}
+static inline lanes root(lanes x) {
+    return _mm256_sqrt_pd(x);
 }
 /* Return x y - z and x y + z with one rounding. */
 static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {

@@ -1,9 +1,10 @@
-/* Two doubles side by side: the vector operations of conflict_lanes.h and centre_lanes.h with what every processor of
- * the target has: SSE2, or NEON with its fused operations. */
+/* Two doubles side by side: the vector operations of conflict_lanes.h, sound_lanes.h and centre_lanes.h with what every
+ * processor of the target has: SSE2, or NEON with its fused operations. */
 #ifndef BRIO_PREDICATES_LANES_PLAIN_H
 #define BRIO_PREDICATES_LANES_PLAIN_H
 
 #include "predicates/double_double.h"
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 #if defined(__aarch64__)
@@ -48,6 +49,9 @@ static inline unsigned bits_of(lane_mask m) {
     return (unsigned)(m[0] & 1) | (unsigned)(m[1] & 2);
 }
 
+static inline lanes root(lanes x) {
+    return (lanes){sqrt(x[0]), sqrt(x[1])};
+}
 /* Return x y - z and x y + z, rounded once or twice. */
 static inline lanes multiply_subtract(lanes x, lanes y, lanes z) {
 #if defined(__aarch64__)

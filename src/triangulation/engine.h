@@ -23,8 +23,10 @@ typedef struct {
     void (*walk_abreast)(const brio_tetrahedra *t, brio_filter *f, brio_walk walks[BRIO_ABREAST],
                          const double (*points)[4], unsigned which, uint32_t *found);
     /** Bit i of the result: tets[i], a finite tetrahedron, is certainly positive, and no vertex behind a facet that it
-     *  shares with a finite tetrahedron of higher number is in conflict with it. A bit of 0 says nothing. */
-    unsigned (*sound)(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH]);
+     *  shares with a finite tetrahedron of higher number is in conflict with it. A bit of 0 says nothing.
+     *  slack[i]  for a bit of 1: this stays so while each of these points is nearer than that to where it is. */
+    unsigned (*sound)(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH],
+                      double slack[BRIO_BATCH]);
 } brio_engine;
 
 /** Returns the version for the instruction set in use. */

@@ -3,6 +3,7 @@
 #include "predicates/lanes_avx512.h"
 
 #include "triangulation/conflict_lanes.h"
+#include "triangulation/sound_lanes.h"
 #include "triangulation/walk_lanes.h"
 
 #define WALK    walk

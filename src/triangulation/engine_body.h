@@ -1,5 +1,5 @@
 /* The inner loops around the conflict test; included by one source file an instruction set, after its
- * batch_in_conflict, with ENGINE, the name of its table, WALK and ABREAST. See cavity.c for the method.
+ * batch_in_conflict and batch_sound, with ENGINE, the name of its table, WALK and ABREAST. See cavity.c for the method.
  *
  * Lists are written always and their length is advanced by a bit, since no branch could be foreseen. */
 #include "base/memory.h"
@@ -110,12 +110,14 @@ static brio_status dig_weighted(brio_inserter *ins, uint32_t first, uint32_t p, 
     return dig_cavity(ins, first, ins->store->record[p], deferred, true);
 }
 
-static unsigned sound(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH]) {
-    return batch_sound(t, f, tets, false);
+static unsigned sound(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH],
+                      double slack[BRIO_BATCH]) {
+    return batch_sound(t, f, tets, slack, false);
 }
 
-static unsigned sound_weighted(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH]) {
-    return batch_sound(t, f, tets, true);
+static unsigned sound_weighted(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH],
+                               double slack[BRIO_BATCH]) {
+    return batch_sound(t, f, tets, slack, true);
 }
 
 const brio_engine ENGINE[2] = {{test_batch, dig, WALK, ABREAST, sound},

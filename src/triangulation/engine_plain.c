@@ -2,6 +2,7 @@
 #include "predicates/lanes_plain.h"
 
 #include "triangulation/conflict_lanes.h"
+#include "triangulation/sound_lanes.h"
 
 #define WALK    brio_locate_walk
 #define ABREAST brio_locate_abreast

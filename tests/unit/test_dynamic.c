@@ -258,6 +258,49 @@ static void all_points_move(void) {
     EXPECT(together >= 4, "%zu moves without building anew", together);
 }
 
+static int stop_at(const char *stage, double fraction, void *user) {
+    size_t *left = user;
+    (void)stage, (void)fraction;
+    return *left > 0 && --*left == 0;
+}
+
+/* Many steps of all points, so that most tetrahedra are not tested in most of them: some points jump, weights change,
+ * single points come, go and move in between, and calls are cancelled. */
+static void steps_of_all_points_end_as_built(void) {
+    static const double STEP[] = {1e-4, 2e-3, 1e-2};
+    size_t n = BRIEF_TESTS ? 1100 : 1500, left = 0, cancelled = 0;
+    for (int s = 0; s < 6; s++) {
+        int weighted = s % 2;
+        shape kind = s < 4 ? UNIFORM : CLUSTERS;
+        double spacing = (kind == CLUSTERS ? 1e-3 : 1) / cbrt((double)n);
+        world w = world_new(kind, weighted, 40000);
+        EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, weighted, &w.d) == BRIO_OK);
+        insert_many(&w, n);
+        double *p = calloc(3 * 40000, sizeof *p);
+        brio_context_set_threads(w.ctx, s < 2 ? 1 : 3);
+        for (int step = 0; step < (BRIEF_TESTS ? 12 : 40); step++) {
+            brio_dynamic_points(w.d, NULL, p, NULL);
+            for (size_t i = 0; i < 3 * w.num_points; i++) p[i] += STEP[(step / 5) % 3] * spacing * (draw() - 0.5);
+            for (size_t i = 0; i < 2 && step % 3 == 0; i++) p[3 * draw_below(w.num_points)] += spacing;
+            left = step % 7 == 3 ? 2 + (size_t)step / 7 : 0;
+            brio_context_set_progress(w.ctx, left ? stop_at : NULL, &left);
+            brio_status status = brio_dynamic_move(w.d, NULL, p, NULL, w.num_points);
+            brio_context_set_progress(w.ctx, NULL, NULL);
+            cancelled += status == BRIO_ERR_CANCELLED;
+            EXPECT(status == BRIO_OK || status == BRIO_ERR_CANCELLED, "%s", brio_message(w.ctx));
+            for (size_t i = 0, k = 0; i < w.num_indices && status == BRIO_OK; i++)
+                if (w.alive[i]) memcpy(w.point + 3 * i, p + 3 * k++, 3 * sizeof *p);
+            if (step % 4 == 1) insert_some(&w, 2), remove_some(&w, 2), move_some(&w, 60, 0.02 * spacing);
+            if (step % 4 == 3) reweight_some(&w, 1);
+            EXPECT(is_as_built(&w), "%s, weighted %d, step %d", SHAPE[kind], weighted, step);
+        }
+        EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+        free(p);
+        world_free(&w);
+    }
+    EXPECT(cancelled > 0);
+}
+
 /* Points that change places in one call: the first meets the second where that still is, and took its name for what
  * followed, so that the second's wish went to the first. */
 static void points_change_places(void) {
@@ -411,12 +454,6 @@ static void failing_memory_leaves_all(void) {
         }
 }
 
-static int stop_at(const char *stage, double fraction, void *user) {
-    size_t *left = user;
-    (void)stage, (void)fraction;
-    return *left > 0 && --*left == 0;
-}
-
 static void cancelled_changes_leave_all(void) {
     world w = world_new(UNIFORM, 0, 60000);
     EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
@@ -515,6 +552,7 @@ static void questions_are_answered_between_changes(void) {
 SUITE(test_dynamic) {
     RUN(any_changes_end_as_built);
     RUN(all_points_move);
+    RUN(steps_of_all_points_end_as_built);
     RUN(points_change_places);
     RUN(weights_of_all_may_hide_some);
     RUN(coordinates_may_be_huge_or_tiny);

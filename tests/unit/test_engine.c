@@ -74,7 +74,122 @@ static void exactly_cospherical_points_are_ties_in_lanes_too(void) {
     }
 }
 
+/* --- slacks of tetrahedra --- */
+
+enum { SOUND_ROWS = 8 * BRIO_BATCH + 1, INFINITE_ROW = SOUND_ROWS - 1 };
+
+static double square_distance(const double *p, const double *q) {
+    double x = p[0] - q[0], y = p[1] - q[1], z = p[2] - q[2];
+    return x * x + y * y + z * z;
+}
+
+/* Tetrahedra with a vertex behind each facet, all of their own points: rows 8 i to 8 i + 7 are those of number i. Many
+ * are thin, and many of the vertices behind facets are near the sphere. */
+static void draw_stars(brio_rng *rng, bool weighted, brio_record *record, brio_tetrahedron *tets) {
+    for (uint32_t i = 0; i < BRIO_BATCH; i++) {
+        brio_record *r = record + 8 * i;
+        double thin = brio_rng_below(rng, 3) ? 1 : 0.02, near = brio_rng_below(rng, 2) ? 0.02 : 0.5, centre[3];
+        for (int k = 0; k < 8; k++)
+            for (int c = 0; c < 4; c++)
+                r[k][c] =
+                    c == 3 ? (weighted ? 0.002 * brio_rng_double(rng) : 0) : brio_rng_double(rng) * (c == 2 ? thin : 1);
+        for (uint32_t k = 0; k < 4; k++) tets[i].vertex[k] = 8 * i + k;
+        if (brio_orient3d(r[0], r[1], r[2], r[3]) < 0) tets[i].vertex[0] = 8 * i + 1, tets[i].vertex[1] = 8 * i;
+        EXPECT(brio_circumcentre(r[0], r[1], r[2], r[3], NULL, centre, NULL) == BRIO_OK);
+        double radius = sqrt(square_distance(centre, r[0]));
+        for (uint32_t k = 0; k < 4; k++) {
+            double length = 0, *e = r[4 + k];
+            uint32_t behind = BRIO_BATCH + 4 * i + k;
+            for (int c = 0; c < 3; c++) e[c] = 2 * brio_rng_double(rng) - 1, length += e[c] * e[c];
+            for (int c = 0; c < 3; c++)
+                e[c] = centre[c] + radius * (1 + near * brio_rng_double(rng)) * e[c] / sqrt(length);
+            tets[i].mate[k] = brio_facet_of(behind, 0);
+            tets[behind] = (brio_tetrahedron){{8 * i + 4 + k, 0, 0, 0}, {0, 0, 0, 0}};
+        }
+    }
+    record[INFINITE_ROW][3] = INFINITY;
+}
+
+/* What a move may change the sign of: the volume, or the in-sphere determinant of a vertex behind a facet. */
+static double measure(double p[5][4], bool of_volume, bool weighted) {
+    if (!of_volume) return -brio_insphere_estimate(p[0], p[1], p[2], p[3], p[4], weighted);
+    double row[3][3];
+    for (int i = 0; i < 3; i++)
+        for (int c = 0; c < 3; c++) row[i][c] = p[i + 1][c] - p[0][c];
+    return row[0][0] * (row[1][1] * row[2][2] - row[1][2] * row[2][1]) -
+           row[0][1] * (row[1][0] * row[2][2] - row[1][2] * row[2][0]) +
+           row[0][2] * (row[1][0] * row[2][1] - row[1][1] * row[2][0]);
+}
+
+/* Moves each point by a distance against the gradient. */
+static void move_against(double p[5][4], double distance, bool of_volume, bool weighted) {
+    static const double STEP = 1e-5;
+    double to[5][3];
+    for (int i = 0; i < 5; i++) {
+        double length = 0;
+        for (int c = 0; c < 3; c++) {
+            double keep = p[i][c], above;
+            p[i][c] = keep + STEP, above = measure(p, of_volume, weighted);
+            p[i][c] = keep - STEP, to[i][c] = measure(p, of_volume, weighted) - above;
+            p[i][c] = keep;
+            length += to[i][c] * to[i][c];
+        }
+        for (int c = 0; c < 3 && length > 0; c++) to[i][c] *= 0.9999 * distance / sqrt(length);
+    }
+    for (int i = 0; i < 5; i++)
+        for (int c = 0; c < 3; c++) p[i][c] += to[i][c];
+}
+
+/* Returns whether the worst moves by a distance leave a star of number i as it is. */
+static bool stays(const brio_record *record, const brio_tetrahedron *tet, uint32_t i, double distance, bool weighted) {
+    for (uint32_t k = 0; k < 5; k++) {
+        double p[5][4];
+        for (uint32_t v = 0; v < 5; v++) {
+            uint32_t row = v < 4 ? tet->vertex[v] : 8 * i + 4 + k % 4;
+            for (int c = 0; c < 4; c++) p[v][c] = record[row][c];
+        }
+        for (int steps = 0; steps < 4; steps++) move_against(p, distance / 4, k == 4, weighted); /* it bends */
+        if (brio_orient3d(p[0], p[1], p[2], p[3]) <= 0) return false;
+        double weights[5] = {p[0][3], p[1][3], p[2][3], p[3][3], p[4][3]};
+        if (k < 4 && brio_insphere(p[0], p[1], p[2], p[3], p[4], weighted ? weights : NULL) >= 0) return false;
+    }
+    return true;
+}
+
+static void hold_slacks(const brio_engine *engine, bool weighted) {
+    static brio_record record[SOUND_ROWS];
+    static brio_tetrahedron tets[5 * BRIO_BATCH];
+    brio_tetrahedra t = {.tet = tets, .count = 5 * BRIO_BATCH, .infinite = INFINITE_ROW, .record = record};
+    brio_filter filter;
+    brio_rng rng = brio_rng_new(11);
+    size_t sound = 0, broken = 0, loose = 0;
+    for (int trial = 0; trial < (BRIEF_TESTS ? 40 : 400); trial++) {
+        uint32_t which[BRIO_BATCH];
+        double slack[BRIO_BATCH];
+        draw_stars(&rng, weighted, record, tets);
+        brio_filter_for(&filter, (const brio_record *)record, INFINITE_ROW, weighted);
+        for (uint32_t i = 0; i < BRIO_BATCH; i++) which[i] = i;
+        unsigned bits = engine->sound(&t, &filter, which, slack);
+        for (uint32_t i = 0; i < BRIO_BATCH; i++) {
+            if (!(bits >> i & 1) || !(slack[i] > 0)) continue;
+            sound++;
+            broken += !stays((const brio_record *)record, &tets[i], i, slack[i], weighted);
+            loose += stays((const brio_record *)record, &tets[i], i, 4 * slack[i], weighted);
+        }
+    }
+    EXPECT(sound > (BRIEF_TESTS ? 30 : 300) && broken == 0, "%zu of %zu, weighted %d", broken, sound, weighted);
+    EXPECT(loose < sound - sound / 4, "%zu of %zu could have four times the slack, weighted %d", loose, sound,
+           weighted);
+}
+
+static void no_move_within_the_slack_breaks_a_star(void) {
+    for (int weighted = 0; weighted < 2; weighted++)
+        for (int set = 0; set < BRIO_INSTRUCTION_SETS; set++)
+            if (use_set(set)) hold_slacks(brio_engine_choose(weighted), weighted);
+}
+
 SUITE(test_engine) {
     RUN(exactly_cospherical_points_are_ties_in_lanes_too);
+    RUN(no_move_within_the_slack_breaks_a_star);
     return harness_end();
 }

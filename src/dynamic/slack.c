@@ -1,0 +1,138 @@
+/* How long tetrahedra need no test while all points move.
+ *
+ * A tetrahedron that is tested gets a slack, a distance that each point may go before a test could turn out otherwise
+ * (triangulation/sound_lanes.h). All points go at most one step in a call, so the sum of the steps is the time until
+ * which the test holds: one number for all of them, and one comparison for each tetrahedron. Points that go further
+ * than the step end the time of their own stars. A tetrahedron that a change writes has no time (brio_note_slot).
+ *
+ * Based on: de Castro, Tournois, Alliez, Devillers. Filtering relocations on a Delaunay triangulation. CGF 2009.
+ * Differs from the paper: time is of tetrahedra, not of vertices, whose least slack is used up soon. */
+#include "base/memory.h"
+#include "base/team.h"
+#include "dynamic/live.h"
+#include "triangulation/ring.h"
+#include <float.h>
+#include <string.h>
+
+enum { LEAST = 1 << 14 }; /* slots that are worth a thread */
+
+void brio_slack_end(brio_dynamic *d) {
+    const brio_hole *h = &d->hole;
+    for (size_t i = 0; i < h->num_tets; i++) d->until[h->tet[i]] = -1;
+    for (size_t b = 0; b < h->num_border; b++) d->until[brio_tet_of(h->border[b])] = -1;
+}
+
+void brio_slack_end_all(brio_dynamic *d) {
+    for (size_t s = 0; s < d->t.count; s++) d->until[s] = -1;
+}
+
+/* Returns a float below a time, or -1 where floats are too coarse for that. */
+static inline float below(double time) {
+    if (!(time > 1e-30)) return -1;
+    return time < FLT_MAX ? (float)(time * (1 - 0x1p-22)) : FLT_MAX;
+}
+
+/* Lets time begin anew, before it has so many steps that floats lose them. */
+static void restart(brio_dynamic *d) {
+    for (size_t s = 0; s < d->t.count; s++) d->until[s] = below((double)d->until[s] - d->travelled);
+    d->travelled = 0;
+}
+
+void brio_slack_advance(brio_dynamic *d, double step) {
+    static const double MOST_STEPS = 0x1p16;
+    if (step > 0 && d->travelled > MOST_STEPS * step) restart(d);
+    d->travelled = (d->travelled + step) * (1 + 0x1p-50);
+}
+
+/* --- tests --- */
+
+typedef struct {
+    brio_dynamic *d;
+    brio_slot_list *open, *infinite; /* of each thread */
+    brio_status status;
+} test_pass;
+
+static brio_status list(brio_context *ctx, brio_slot_list *l, uint32_t slot) {
+    BRIO_FORWARD(BRIO_RESERVE(ctx, l->slot, l->capacity, l->count + 1));
+    l->slot[l->count++] = slot;
+    return BRIO_OK;
+}
+
+/* Tests n finite tetrahedra, which have room for a batch. */
+static brio_status test_batch(brio_dynamic *d, uint32_t *batch, size_t n, brio_slot_list *open) {
+    double slack[BRIO_BATCH];
+    for (size_t i = n; i < BRIO_BATCH; i++) batch[i] = batch[0];
+    unsigned sound = d->engine->sound(&d->t, &d->filter, batch, slack);
+    for (size_t i = 0; i < n; i++)
+        if (sound >> i & 1)
+            d->until[batch[i]] = below(slack[i] > 0 ? d->travelled + slack[i] : 0);
+        else
+            BRIO_FORWARD(list(d->ctx, open, batch[i]));
+    return BRIO_OK;
+}
+
+/* Returns whether the time of some of the next slots is over. */
+static inline bool some_over(const float *until, double now) {
+    enum { SLOTS = 16 };
+    int over = 0;
+    for (int i = 0; i < SLOTS; i++) over |= !((double)until[i] >= now);
+    return over;
+}
+
+static brio_status test_slots(test_pass *own, size_t begin, size_t end, int thread) {
+    enum { AHEAD = 32, STRIDE = 16 }; /* AHEAD: tetrahedra whose neighbours are called for */
+    brio_dynamic *d = own->d;
+    uint32_t batch[BRIO_BATCH];
+    size_t n = 0;
+    double now = d->travelled;
+    for (size_t slot = begin; slot < end; slot++) {
+        if (slot % STRIDE == 0 && slot + STRIDE <= end && !some_over(d->until + slot, now)) {
+            slot += STRIDE - 1;
+            continue;
+        }
+        if ((double)d->until[slot] >= now || d->state[slot] & SLOT_UNUSED) continue;
+        if (slot + AHEAD < end && !((double)d->until[slot + AHEAD] >= now)) brio_ring_fetch(&d->t, slot + AHEAD);
+        d->until[slot] = -1;
+        if (brio_is_infinite(&d->t, (uint32_t)slot)) {
+            BRIO_FORWARD(list(d->ctx, &own->infinite[thread], (uint32_t)slot));
+            continue;
+        }
+        batch[n++] = (uint32_t)slot;
+        if (n < BRIO_BATCH) continue;
+        BRIO_FORWARD(test_batch(d, batch, n, &own->open[thread]));
+        n = 0;
+    }
+    return n ? test_batch(d, batch, n, &own->open[thread]) : BRIO_OK;
+}
+
+static void test_part(void *user, size_t begin, size_t end, int thread) {
+    test_pass *own = user;
+    brio_report(&own->status, test_slots(own, begin, end, thread));
+}
+
+/* Appends the lists of all threads, in their order, which is that of the slots. */
+static brio_status append(brio_context *ctx, brio_slot_list *to, const brio_slot_list *from, int threads) {
+    for (int i = 0; i < threads; i++) {
+        BRIO_FORWARD(BRIO_RESERVE(ctx, to->slot, to->capacity, to->count + from[i].count));
+        if (from[i].count) memcpy(to->slot + to->count, from[i].slot, from[i].count * sizeof *to->slot);
+        to->count += from[i].count;
+    }
+    return BRIO_OK;
+}
+
+brio_status brio_slack_test(brio_dynamic *d, brio_slot_list *open, brio_slot_list *infinite) {
+    int threads = brio_threads(d->ctx, d->t.count, LEAST);
+    test_pass own = {.d = d, .status = BRIO_OK};
+    brio_status status = BRIO_OK;
+    *open = *infinite = (brio_slot_list){0};
+    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, own.open, 2 * (size_t)threads));
+    own.infinite = own.open + threads;
+    BRIO_TRY(brio_for(d->ctx, threads, d->t.count, test_part, &own));
+    BRIO_TRY(own.status);
+    BRIO_TRY(append(d->ctx, open, own.open, threads));
+    status = append(d->ctx, infinite, own.infinite, threads);
+done:
+    for (int i = 0; own.open && i < 2 * threads; i++) brio_release(d->ctx, own.open[i].slot);
+    brio_release(d->ctx, own.open);
+    return status;
+}

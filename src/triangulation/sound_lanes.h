@@ -1,0 +1,162 @@
+/* Tetrahedra whose vertices have moved: whether they are still those of the triangulation, and for how long; included
+ * after conflict_lanes.h.
+ *
+ * With all rows relative to vertex a, the in-sphere determinant of (a, b, c, d) and a query e is
+ *   D = lift(e) V - e . X,   V = det [b, c, d],   X = lift(b) (c x d) + lift(c) (d x b) + lift(d) (b x c),
+ * so what a tetrahedron has is computed once for the vertices behind all of its facets. First-order errors:
+ * minors 13 u of their permanents, products 15 u, the sum 18 u; one and a half times the static bound, which is 18 u,
+ * covers the rest. On a lattice everything is exact, as in conflict_lanes.h.
+ *
+ * The slack of a tetrahedron is a distance that each point may go while V > 0 and all D > 0 hold; derived in
+ * docs/decisions/025. X = 2 V c for the orthocentre c. With V_i, V with vertex i replaced by e, M the largest of
+ * 2 V |p - c| for the vertices p, E that of e, and A twice the area of all facets, points that go by s change D and V
+ * by at most
+ *   s (E + (M / V) (|V_a| + |V_b| + |V_c| + |V_d|) + D A / V) + 320 s^2 L^3   and   s A + 12.3 s^2 L,
+ * where no row is longer, and no lift greater than of a row of length L >= 32 s. Without weights M is 2 V |a - c|, and
+ * E is at most M + 2 D V / M. The first part gets 0.9 of D and V, the second 0.1.
+ *
+ * Based on: de Castro, Tournois, Alliez, Devillers. Filtering relocations on a Delaunay triangulation. CGF 2009.
+ * Differs from the paper: the distance is of a tetrahedron, from the gradient of the determinant; no spheres. */
+
+typedef struct {
+    lanes v[4]; /* x, y, z, lift, relative to vertex a */
+    lanes square;
+} moved_row;
+
+/* What a batch of tetrahedra has. */
+typedef struct {
+    lanes b_normal[3], c_normal[3], d_normal[3]; /* c x d, d x b, b x c */
+    lanes x[3], volume;
+    lanes most;         /* M */
+    lanes longest;      /* the square of L */
+    lanes above, below; /* of the facet that gives the least slack so far: what s multiplies, and D */
+    lanes least;        /* of all D */
+} moved_tets;
+
+/* Sets x, y, z and the lift of a vertex relative to vertex a. */
+static inline void row_about(const double *const row[LANES], const lanes a[4], moved_row *r, const bool weighted) {
+    lanes v[4];
+    load_rows(row, true, v);
+    for (int k = 0; k < 3; k++) r->v[k] = v[k] - a[k];
+    r->v[3] = r->square = square_length(r->v[0], r->v[1], r->v[2]);
+    if (weighted) r->v[3] -= v[3] - a[3];
+}
+
+static inline lanes dot(const lanes p[3], const lanes q[3]) {
+    return multiply_add(p[0], q[0], multiply_add(p[1], q[1], p[2] * q[2]));
+}
+
+static inline void cross(const lanes p[3], const lanes q[3], lanes out[3]) {
+    out[0] = multiply_subtract(p[1], q[2], p[2] * q[1]);
+    out[1] = multiply_subtract(p[2], q[0], p[0] * q[2]);
+    out[2] = multiply_subtract(p[0], q[1], p[1] * q[0]);
+}
+
+/* Returns the square of 2 V |p - c| for the vertices of a row. */
+static inline lanes square_reach(const moved_tets *m, const moved_row *r) {
+    lanes from[3];
+    for (int k = 0; k < 3; k++) from[k] = multiply_subtract(all(2) * m->volume, r->v[k], m->x[k]);
+    return dot(from, from);
+}
+
+/* Takes vertices into the bound of lengths. */
+static inline void lengthen(moved_tets *m, const moved_row *r, const bool weighted) {
+    m->longest = maximum(m->longest, r->square);
+    if (weighted) m->longest = maximum(m->longest, magnitude(r->v[3]));
+}
+
+static inline void tets_set(moved_tets *m, const moved_row *b, const moved_row *c, const moved_row *d,
+                            const bool weighted) {
+    cross(c->v, d->v, m->b_normal);
+    cross(d->v, b->v, m->c_normal);
+    cross(b->v, c->v, m->d_normal);
+    for (int k = 0; k < 3; k++)
+        m->x[k] =
+            multiply_add(b->v[3], m->b_normal[k], multiply_add(c->v[3], m->c_normal[k], d->v[3] * m->d_normal[k]));
+    m->volume = dot(b->v, m->b_normal);
+    m->longest = b->square;
+    lengthen(m, b, weighted), lengthen(m, c, weighted), lengthen(m, d, weighted);
+    m->most = dot(m->x, m->x);
+    if (weighted) {
+        lanes others = maximum(square_reach(m, c), square_reach(m, d));
+        m->most = maximum(maximum(m->most, square_reach(m, b)), others);
+    }
+    m->most = root(m->most);
+    m->above = all(0), m->below = m->least = all(1e200);
+}
+
+/* Takes the vertices behind a facet into the bounds. Returns the bits of those that are certainly in no conflict. */
+static inline unsigned stand(moved_tets *m, const moved_row *e, lanes bound, const bool weighted) {
+    lanes b = dot(e->v, m->b_normal), c = dot(e->v, m->c_normal), d = dot(e->v, m->d_normal);
+    lanes over = multiply_subtract(e->v[3], m->volume, dot(e->v, m->x)) - bound;
+    lanes volumes = magnitude(b) + magnitude(c) + magnitude(d) + magnitude(m->volume - b - c - d);
+    lanes rate = m->most * volumes + m->volume * (weighted ? root(square_reach(m, e)) : m->most);
+    lanes det = choose(equal(e->square, all(0)), all(1e200), over); /* where none was asked for: vertex a */
+    lane_mask worse = greater(rate * m->below, m->above * det);
+    m->above = choose(worse, rate, m->above);
+    m->below = choose(worse, det, m->below);
+    m->least = choose(greater(m->least, det), det, m->least);
+    lengthen(m, e, weighted);
+    return bits_of(greater(over, all(0)));
+}
+
+/* Returns the slacks of tetrahedra that are sound: 0 where roundings might count. */
+static inline lanes slacks(const moved_tets *m, lanes volume, const bool weighted) {
+    lanes about[3], length = root(m->longest), cube = length * m->longest;
+    for (int k = 0; k < 3; k++) about[k] = m->b_normal[k] + m->c_normal[k] + m->d_normal[k];
+    lanes area = all(2) * root(dot(about, about) + dot(m->b_normal, m->b_normal) + dot(m->c_normal, m->c_normal) +
+                               dot(m->d_normal, m->d_normal)); /* of four lengths, by their squares */
+    lanes rate = m->above / m->below + area;
+    if (!weighted) rate += all(2) * volume * volume / m->most;
+    lanes first = all(0.9) * volume / rate;
+    lanes twice = all(26) * volume * m->longest;
+    lanes second = root(all(0.1 / 320) * choose(greater(twice, m->least), m->least, twice) / cube);
+    lanes slack = choose(greater(first, second), second, first), far = length * all(1.0 / 32);
+    slack = choose(greater(slack, far), far, slack);
+    lane_mask ordinary = both(greater(m->longest, all(1e-40)), greater(all(1e40), m->longest));
+    return choose(both(ordinary, greater(volume, all(0x1p-20) * cube)), all(0.999) * slack, all(0));
+}
+
+/* Returns the bits of the lanes whose tetrahedra are certainly sound, and their slacks. */
+static inline __attribute__((always_inline)) unsigned lanes_sound(const brio_tetrahedra *t, const brio_filter *f,
+                                                                  const uint32_t tets[LANES], double slack[LANES],
+                                                                  const bool weighted) {
+    const double *row[4][LANES], *apex[4][LANES];
+    unsigned asked[4] = {0, 0, 0, 0};
+    for (int i = 0; i < LANES; i++) {
+        const brio_tetrahedron *tet = &t->tet[tets[i]];
+        for (int s = 0; s < 4; s++) {
+            uint32_t mate = tet->mate[s], other = brio_tet_of(mate);
+            const uint32_t *v = t->tet[other].vertex;
+            uint32_t ask = (uint32_t)(other > tets[i]) & (uint32_t)(v[3] != t->infinite), own = tet->vertex[0];
+            row[s][i] = t->record[tet->vertex[s]];
+            apex[s][i] = t->record[own ^ ((v[brio_slot_of(mate)] ^ own) & (0 - ask))]; /* without a branch */
+            asked[s] |= ask << i;
+        }
+    }
+    lanes a[4];
+    moved_row b, c, d, e;
+    moved_tets m;
+    load_rows(row[0], true, a);
+    row_about(row[1], a, &b, weighted);
+    row_about(row[2], a, &c, weighted);
+    row_about(row[3], a, &d, weighted);
+    tets_set(&m, &b, &c, &d, weighted);
+    lanes volume = m.volume - all(1.5 * f->orient_static);
+    unsigned sound = bits_of(greater(volume, all(0)));
+    for (int s = 0; s < 4; s++) {
+        row_about(apex[s], a, &e, weighted);
+        sound &= stand(&m, &e, all(1.5 * f->insphere_static), weighted) | ~asked[s];
+    }
+    store_lanes(slack, slacks(&m, volume, weighted));
+    return sound;
+}
+
+static inline __attribute__((always_inline)) unsigned batch_sound(const brio_tetrahedra *t, const brio_filter *f,
+                                                                  const uint32_t tets[BRIO_BATCH],
+                                                                  double slack[BRIO_BATCH], const bool weighted) {
+    unsigned sound = 0;
+    for (int i = 0; i < BRIO_BATCH; i += LANES)
+        sound |= (lanes_sound(t, f, tets + i, slack + i, weighted) & ((1u << LANES) - 1)) << i;
+    return sound;
+}
