@@ -184,8 +184,9 @@ static brio_status check_periodic(run *r, const arguments *a) {
     bool open = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->tiles;
-    if (a->periodic.cell && r->common.view) return cli_fail(r, BRIO_ERR_ARGUMENT, "--view: not with --cell");
-    if (a->periodic.cell && open)
+    if (cli_is_periodic(&a->periodic) && r->common.view)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--view: not with --cell");
+    if (cli_is_periodic(&a->periodic) && open)
         return cli_fail(
             r, BRIO_ERR_ARGUMENT,
             "--cell goes with --verify and weights, not with --plane, --tiles, orders, locations or records");
@@ -446,7 +447,8 @@ static brio_status delaunay(run *r) {
     }
     if (cli_limits_memory(r)) TRY(require_memory(r, a, mesh, weights));
     cli_lap(r, "read");
-    if (a->periodic.cell) {
+    cli_tell_cell(r, &a->periodic, mesh);
+    if (cli_is_periodic(&a->periodic)) {
         status = triangulate_periodic(r, mesh, weights);
         goto done;
     }

@@ -264,7 +264,8 @@ static brio_status voronoi(run *r) {
     bool weighted = cli_is_weighted(&a->weights, mesh);
     TRY(cli_weights(r, &a->weights, mesh, &weights));
     if (cli_limits_memory(r)) TRY(require_memory(r, mesh, weights, o.vertices));
-    if (a->periodic.cell) {
+    cli_tell_cell(r, &a->periodic, mesh);
+    if (cli_is_periodic(&a->periodic)) {
         TRY(compute_periodic(r, mesh, weights, &o, &cells));
     } else {
         TRY(compute(r, mesh, weights, &o, &t, &cells));

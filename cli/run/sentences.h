@@ -95,6 +95,7 @@
 #define WARNING_OUTSIDE                                                                                                \
     "%zu of %zu points are outside the box, so that their cells are cut off or empty: 'brio info %s' says where the "  \
     "points are"
+#define WARNING_CELL "%s has a cell, which is not used: --periodic %s lets its points repeat"
 #define WARNING_NUMBERED                                                                                               \
     "%s: its first column numbers the rows and is read as x: --columns -,x,y,z leaves it out (names behind z keep "    \
     "further columns)"

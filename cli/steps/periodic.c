@@ -1,5 +1,6 @@
 /* Points in space that repeats: see periodic.h. */
 #include "cli/steps/periodic.h"
+#include "cli/run/sentences.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,13 +28,18 @@ static bool read_directions(const char *text, int open[3]) {
     return !text || (*text && strspn(text, "xyz") == strlen(text));
 }
 
-static brio_status take(run *r, const periodic_options *p, double cell[9], brio_periodic_options *o) {
-    if (p->directions && !p->cell) return cli_fail(r, BRIO_ERR_ARGUMENT, "--periodic goes with --cell only");
+/* Takes what the options say of cell and directions. Without --cell the cell is that of the file, which the mesh has.
+ * points  NULL: the file was not read yet. */
+static brio_status take(run *r, const periodic_options *p, const brio_mesh *points, double cell[9],
+                        brio_periodic_options *o) {
+    int open[3];
     if (p->cell && !read_cell(p->cell, cell))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell: '%s' is neither ax,ay,az,bx,by,bz,cx,cy,cz nor lx,ly,lz",
                         p->cell);
     if (!read_directions(p->directions, o->open))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--periodic: '%s' is not made of the letters x, y and z", p->directions);
+    if (!p->cell && points && !brio_mesh_cell(points, cell, open))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--periodic without --cell, but %s has no cell", r->operands[0]);
     o->size = sizeof *o;
     o->cell = cell;
     o->seed = r->common.seed;
@@ -43,7 +49,18 @@ static brio_status take(run *r, const periodic_options *p, double cell[9], brio_
 brio_status cli_check_periodic(run *r, const periodic_options *p) {
     brio_periodic_options o = {0};
     double cell[9];
-    return take(r, p, cell, &o);
+    return take(r, p, NULL, cell, &o);
+}
+
+void cli_tell_cell(run *r, const periodic_options *p, const brio_mesh *points) {
+    char letters[4] = "";
+    double cell[9];
+    int open[3];
+    size_t count = 0;
+    if (cli_is_periodic(p) || !brio_mesh_cell(points, cell, open)) return;
+    for (int k = 0; k < 3; k++)
+        if (!open[k]) letters[count++] = "xyz"[k];
+    if (count) cli_warn(r, WARNING_CELL, r->operands[0], letters);
 }
 
 brio_status cli_periodic(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
@@ -52,7 +69,7 @@ brio_status cli_periodic(run *r, const periodic_options *p, const brio_mesh *mes
     double cell[9];
     facts *f = &r->facts;
     *out = NULL;
-    FORWARD(take(r, p, cell, &o));
+    FORWARD(take(r, p, mesh, cell, &o));
     FORWARD(brio_delaunay_periodic(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, out));
     const brio_periodic_stats *s = brio_periodic_facts(*out);
     cli_lap(r, "insert");

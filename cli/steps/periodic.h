@@ -1,4 +1,4 @@
-/* Points in space that repeats: --cell and --periodic. */
+/* Points in space that repeats: --cell and --periodic. The cell may be that of the file (brio_mesh_cell). */
 #ifndef BRIO_CLI_PERIODIC_H
 #define BRIO_CLI_PERIODIC_H
 
@@ -14,7 +14,8 @@ typedef struct periodic_options {
     {"cell", 0, OPTION_TEXT, offsetof(type, field.cell), "V",                                                          \
      "points repeat by three vectors, ax,ay,az,bx,by,bz,cx,cy,cz, or by the lengths lx,ly,lz of a box", 0},            \
     {"periodic", 0, OPTION_TEXT, offsetof(type, field.directions), "DIRS",                                             \
-     "--cell: which of the vectors repeat, x, y, z or several, as xy for a slab (default xyz)", 0}
+     "which of the vectors repeat, x, y, z or several, as xy for a slab (default with --cell: xyz); without --cell "   \
+     "the cell is that of the file", 0}
 /* clang-format on */
 
 /** Triangulates the points of a mesh in space that repeats, reports it, and laps.
@@ -22,7 +23,15 @@ typedef struct periodic_options {
 brio_status cli_periodic(run *r, const periodic_options *options, const brio_mesh *mesh, const double *weights,
                          brio_periodic **out);
 
-/** Fails with wrong usage if --periodic is without --cell, or one of them is no such text. */
+/** Returns whether points repeat. */
+static inline bool cli_is_periodic(const periodic_options *options) {
+    return options->cell || options->directions;
+}
+
+/** Fails with wrong usage if --cell or --periodic is no such text. */
 brio_status cli_check_periodic(run *r, const periodic_options *options);
+
+/** Says that the file of the points has a cell that is not used. */
+void cli_tell_cell(run *r, const periodic_options *options, const brio_mesh *points);
 
 #endif

@@ -66,7 +66,12 @@ typedef enum brio_format {
     BRIO_FORMAT_PTS = 20,      /* texts without names: the number of points, then x y z, intensity, red green blue */
     BRIO_FORMAT_XYZRGB = 21,   /* x y z, red green blue from 0 to 1 */
     BRIO_FORMAT_XYZN = 22,     /* x y z, nx ny nz */
-    BRIO_FORMAT_MOST = 255     /* no number is larger */
+    BRIO_FORMAT_PDB = 23,      /* atoms of the Protein Data Bank's files; this and the next four: read, not written */
+    BRIO_FORMAT_CIF = 24,      /* atoms of crystals whose sites are listed in P1, and of macromolecules */
+    BRIO_FORMAT_POSCAR = 25,   /* VASP's POSCAR and CONTCAR */
+    BRIO_FORMAT_LAMMPS_DUMP = 26, /* the first frame of a text dump of LAMMPS */
+    BRIO_FORMAT_LAMMPS_DATA = 27, /* what LAMMPS's read_data reads: the section Atoms */
+    BRIO_FORMAT_MOST = 255        /* no number is larger */
 } brio_format;
 
 /** Returns the format of a file name or of an extension with or without its dot; BRIO_FORMAT_AUTO if it is unknown. */
@@ -164,6 +169,12 @@ struct brio_read_options {
  *  Returns what brio_read returns, but not BRIO_ERR_OPEN. */
 BRIO_API brio_status brio_read_memory(brio_context *ctx, const void *bytes, size_t size, const char *name,
                                       const brio_read_options *options, brio_mesh **out);
+
+/** Finds the cell in which the points of a file repeat: the metadata "cell.vectors" and "cell.periodic", which files of
+ *  atoms have (docs/formats.md).
+ *  cell, open  receive the vectors and the directions that do not repeat, as brio_periodic_options takes them.
+ *  Returns 1, or 0 where the mesh has no cell: then nothing is set. */
+BRIO_API int brio_mesh_cell(const brio_mesh *mesh, double cell[9], int open[3]);
 
 /** What a file is. */
 typedef struct brio_file_facts {

@@ -145,6 +145,15 @@ static PyObject *property_views(module_state *state, PyObject *mesh_object, cons
     return dict;
 }
 
+/* The cell of a file of atoms: the nine numbers of its vectors, and 1 for each that repeats; or None. */
+static PyObject *cell_view(const brio_mesh *m) {
+    double c[9];
+    int open[3];
+    if (!brio_mesh_cell(m, c, open)) Py_RETURN_NONE;
+    return Py_BuildValue("((ddddddddd)(iii))", c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], !open[0], !open[1],
+                         !open[2]);
+}
+
 static PyObject *mesh_views(PyObject *module, PyObject *object) {
     module_state *state = state_of(module);
     const brio_mesh *m = handle_object(state, object, KIND_MESH);
@@ -152,7 +161,7 @@ static PyObject *mesh_views(PyObject *module, PyObject *object) {
     size_t corners = m->num_faces ? m->face_offsets[m->num_faces] : 0;
 #define VIEW(name, format, rows, columns) #name, array_new(state, object, layout_of(m->name, format, rows, columns))
     return Py_BuildValue(
-        "{s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N}", VIEW(vertices, 'd', m->num_vertices, 3),
+        "{s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N,s:N}", "cell", cell_view(m), VIEW(vertices, 'd', m->num_vertices, 3),
         VIEW(face_offsets, 'L', m->face_offsets ? m->num_faces + 1 : 1, 0), VIEW(face_vertices, 'I', corners, 0),
         VIEW(tetrahedra, 'I', m->num_tetrahedra, 4), VIEW(edges, 'I', m->num_edges, 2),
         VIEW(coordinate_step, 'd', 3, 0), VIEW(coordinate_origin, 'd', 3, 0), "properties",

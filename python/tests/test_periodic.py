@@ -1,6 +1,7 @@
 """Space that repeats: lattices, cells that fill the box, and what does not change the result."""
 
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -128,3 +129,16 @@ def test_arguments():
         brio.Voronoi([[0, 0, 0]], cell=np.eye(3), periodic="ab")
     with pytest.raises(brio.ArgumentError, match="not both"):
         brio.Voronoi([[0, 0, 0]], [1], radii=[1], cell=np.eye(3))
+
+
+def test_the_cell_of_a_file(tmp_path):
+    """A mesh has the cell of a file of atoms, also as a copy and pickled; other meshes have none."""
+    path = tmp_path / "a.extxyz"
+    path.write_text('2\nLattice="2 0 0 1 2 0 0 0 3" pbc="T T F"\nC 0 0 0\nO 0.5 1 1.5\n')
+    for mesh in (brio.read(path), pickle.loads(pickle.dumps(brio.read(path)))):
+        np.testing.assert_array_equal(mesh.cell, [[2, 0, 0], [1, 2, 0], [0, 0, 3]])
+        assert mesh.periodic == (True, True, False)
+    mesh = brio.read(path)
+    cells = brio.Voronoi(mesh.vertices, cell=mesh.cell)
+    assert abs(cells.volumes.sum() - 12) < 1e-12
+    assert brio.Mesh([[0, 0, 0]]).cell is None and brio.Mesh([[0, 0, 0]]).periodic is None

@@ -19,7 +19,8 @@ enum {
 extern const brio_codec brio_ply_codec, brio_off_codec, brio_vtp_codec, brio_vtu_codec, brio_vtk_codec, brio_laz_codec,
     brio_las_codec, brio_pcd_codec, brio_npy_codec, brio_glb_codec, brio_e57_codec, brio_npz_codec, brio_stl_codec,
     brio_obj_codec, brio_node_codec, brio_ptx_codec, brio_bnpts_codec, brio_chemical_codec, brio_pts_codec,
-    brio_xyzrgb_codec, brio_xyzn_codec, brio_xyz_codec;
+    brio_xyzrgb_codec, brio_xyzn_codec, brio_xyz_codec, brio_pdb_codec, brio_cif_codec, brio_poscar_codec,
+    brio_lammps_dump_codec, brio_lammps_data_codec;
 
 /* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
 static const brio_format_row table[] = {
@@ -101,6 +102,21 @@ static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_CHEMICAL, "a chemical XYZ file", "chemical extxyz", "",
       POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
      .codec = &brio_chemical_codec},
+    {{sizeof(brio_format_info), BRIO_FORMAT_LAMMPS_DUMP, "a LAMMPS dump", "lammpstrj dump", "",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
+     .codec = &brio_lammps_dump_codec},
+    {{sizeof(brio_format_info), BRIO_FORMAT_LAMMPS_DATA, "a LAMMPS data file", "lmp data", "",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
+     .codec = &brio_lammps_data_codec},
+    {{sizeof(brio_format_info), BRIO_FORMAT_PDB, "a PDB file", "pdb ent", "",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
+     .codec = &brio_pdb_codec},
+    {{sizeof(brio_format_info), BRIO_FORMAT_CIF, "a CIF file", "cif mmcif", "",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
+     .codec = &brio_cif_codec},
+    {{sizeof(brio_format_info), BRIO_FORMAT_POSCAR, "a POSCAR file", "poscar contcar vasp", "",
+      POINTS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, NULL},
+     .codec = &brio_poscar_codec},
     {{sizeof(brio_format_info), BRIO_FORMAT_PTS, "a PTS file", "pts", "pts",
       BRIO_HOLDS_COLOURS | BRIO_HOLDS_DOUBLES | BRIO_HOLDS_TEXT, 0, "intensity"},
      .codec = &brio_pts_codec,

@@ -1,4 +1,4 @@
-/* Reads atoms from files of the Protein Data Bank.
+/* Reads atoms from files of the Protein Data Bank, as balls; their records, which atoms/pdb_points.c reads as points.
  *
  * An atom is a line that begins with ATOM or HETATM. Its columns are fixed: 13 to 16 the name, 17 the alternate
  * location, 18 to 20 the residue, 31 to 54 the coordinates in angstrom, 77 and 78 the element. If the element is
@@ -78,16 +78,19 @@ static void find_element(const char *line, size_t length, char element[3]) {
         take_letters(line + NAME, element);
 }
 
-static bool is_atom(const char *line) {
+bool brio_pdb_is_atom(const char *line) {
     return !strncmp(line, "ATOM", 4) || !strncmp(line, "HETATM", 6);
+}
+
+bool brio_pdb_is_first_location(const char *line) {
+    return strchr(" A1", line[ALTERNATE]) != NULL;
 }
 
 static bool is_wanted(const char *line) {
     static const char *const water[] = {"HOH", "WAT", "DOD", "H2O"};
-    char location = line[ALTERNATE];
     for (size_t i = 0; i < sizeof water / sizeof *water; i++)
         if (!strncmp(line + RESIDUE, water[i], 3)) return false;
-    return location == ' ' || location == 'A' || location == '1';
+    return brio_pdb_is_first_location(line);
 }
 
 static brio_status parse_coordinate(const brio_stream *s, const char *line, int axis, double *value) {
@@ -103,11 +106,15 @@ static brio_status parse_coordinate(const brio_stream *s, const char *line, int 
     return BRIO_OK;
 }
 
-static brio_status parse_atom(const brio_stream *s, const char *line, brio_atom *atom) {
+brio_status brio_pdb_atom(const brio_stream *s, const char *line, double position[3], int *atomic_number) {
     char element[3];
-    for (int k = 0; k < 3; k++) BRIO_FORWARD(parse_coordinate(s, line, k, &atom->position[k]));
-    find_element(line, strlen(line), element);
-    atom->radius = brio_van_der_waals_radius(brio_element_of(element, strlen(element)));
+    size_t length = strlen(line);
+    BRIO_EXPECT(s->ctx, length >= NEEDED, BRIO_ERR_FORMAT,
+                "%s: line %zu: an atom of %zu columns, expected coordinates in columns %d to %d", s->name, s->line,
+                length, COORDINATES + 1, NEEDED);
+    for (int k = 0; k < 3; k++) BRIO_FORWARD(parse_coordinate(s, line, k, &position[k]));
+    find_element(line, length, element);
+    *atomic_number = brio_element_of(element, strlen(element));
     return BRIO_OK;
 }
 
@@ -116,20 +123,17 @@ brio_status brio_pdb_read(brio_stream *s, brio_atom **atoms, size_t *num_atoms) 
     brio_atom *list = NULL;
     size_t count = 0, capacity = 0;
     char *line;
+    int element;
     *atoms = NULL;
     *num_atoms = 0;
     for (;;) {
         BRIO_TRY(brio_stream_line(s, &line));
         if (!line || !strncmp(line, "ENDMDL", 6)) break;
-        if (!is_atom(line)) continue;
-        size_t length = strlen(line);
-        BRIO_REQUIRE(s->ctx, length >= NEEDED, BRIO_ERR_FORMAT,
-                     "%s: line %zu: an atom of %zu columns, expected coordinates in columns %d to %d", s->name, s->line,
-                     length, COORDINATES + 1, NEEDED);
-        if (!is_wanted(line)) continue;
+        if (!brio_pdb_is_atom(line)) continue;
         BRIO_TRY(BRIO_RESERVE(s->ctx, list, capacity, count + 1));
-        BRIO_TRY(parse_atom(s, line, &list[count]));
-        count++;
+        BRIO_TRY(brio_pdb_atom(s, line, list[count].position, &element));
+        list[count].radius = brio_van_der_waals_radius(element);
+        count += is_wanted(line);
     }
     BRIO_REQUIRE(s->ctx, count, BRIO_ERR_FORMAT, "%s: no line is an atom (ATOM or HETATM) other than of water",
                  s->name);

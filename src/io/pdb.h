@@ -13,6 +13,20 @@
  *  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_pdb_read(brio_stream *s, brio_atom **atoms, size_t *num_atoms);
 
+/* --- records --- */
+
+/** Returns whether a line is ATOM or HETATM. */
+bool brio_pdb_is_atom(const char *line);
+
+/** Returns whether an atom's alternate location is blank, A or 1.   line  an atom that brio_pdb_atom took. */
+bool brio_pdb_is_first_location(const char *line);
+
+/** Reads position and element of an atom.   atomic_number  0 if the element is not known.
+ *  Returns BRIO_OK, BRIO_ERR_FORMAT, BRIO_ERR_NOT_FINITE. */
+brio_status brio_pdb_atom(const brio_stream *s, const char *line, double position[3], int *atomic_number);
+
+/* --- elements --- */
+
 enum { BRIO_LAST_ELEMENT = 118 };
 
 /** Returns the atomic number of a symbol of `length` letters, in capitals or not; D and T are hydrogen. 0 if there is

@@ -22,7 +22,9 @@ static const char *extension_of(const char *path) {
 static bool has_extension(const char *path, const char *wanted) {
     size_t stem = brio_unpacked_length(path), length = strlen(wanted);
     if (stem == strlen(path)) return !strcasecmp(extension_of(path), wanted);
-    return stem > length && path[stem - length - 1] == '.' && !strncasecmp(path + stem - length, wanted, length);
+    size_t name = brio_folder_length(path);
+    if (stem < name + length || strncasecmp(path + stem - length, wanted, length) != 0) return false;
+    return stem == name + length || path[stem - length - 1] == '.';
 }
 
 static bool is_extension(const char *path, const char *extension) {
@@ -71,9 +73,6 @@ static brio_status find_format(brio_stream *s, const char *path, brio_read_job *
         job->format = strcmp(path, "-") ? brio_format_with(path, has_extension) : BRIO_FORMAT_XYZ;
     bool may_be_chemical = job->format == BRIO_FORMAT_XYZ && (!strcmp(path, "-") || has_extension(path, "xyz"));
     if (may_be_chemical && !job->columns && brio_chemical_starts(bytes, size)) job->format = BRIO_FORMAT_CHEMICAL;
-    bool atoms = job->format == BRIO_FORMAT_AUTO && (has_extension(path, "pdb") || has_extension(path, "ent"));
-    BRIO_REQUIRE(s->ctx, !atoms, BRIO_ERR_FORMAT,
-                 "%s: a PDB file of atoms, which only brio iso reads: it makes a surface of them", s->name);
     if (job->format == BRIO_FORMAT_AUTO) {
         char known[BRIO_FORMAT_LIST];
         brio_format_list(0, 0, known, sizeof known);

@@ -53,6 +53,20 @@ VTK = ["time of the file", "wide", "label", "area of cells that are no polygons"
 LAS = ["intensity", "return_number", "number_of_returns", "scan_direction_flag", "edge_of_flight_line", "classification",
        "classification_flags", "scan_angle_rank", "user_data", "point_source_id", "gps_time"]
 METADATA = ["crs"] + ["las." + name for name in "records system software date gps_time returns extras".split()]
+CELL = ["cell.vectors", "cell.periodic"]
+PDB = ("HEADER    A CRYSTAL\nCRYST1   10.000   11.000   12.000  90.00  90.00 120.00 P 1           1\n"
+       "ATOM      1  CA AGLY A  12A      1.000   2.000   3.000  0.50 10.00      MAIN C1+\n"
+       "ATOM      2  CA BGLY A  12A      1.500   2.000   3.000  0.50 10.00      MAIN C1+\nANISOU    1\nTER\n"
+       "HETATM    3  O   HOH A  13       4.000   5.000   6.000\nENDMDL\nMODEL\n"
+       "ATOM      1  CA  GLY A  12       1.000   2.000   3.000\nENDMDL\nCONECT    1\nEND\n")
+CIF = ("#\\#CIF_1.1\ndata_paper\n_chemical_name 'a salt'\ndata_crystal\n_cell_length_a 5.64(1)\n_cell_length_b 5.64\n_cell_length_c 5.64\n"
+       "_cell_angle_alpha 90\n_cell_angle_beta 90\n_cell_angle_gamma 90\n_symmetry_space_group_name_H-M 'P 1'\n"
+       "_symmetry_Int_Tables_number 1\n_text\n;one\n_two 3\n;\nloop_\n_symmetry_equiv_pos_as_xyz\n'x, y, z'\nloop_\n_atom_site_label\n"
+       "_atom_site_type_symbol\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n_atom_site_occupancy\n"
+       "_atom_site_U_iso_or_equiv\nNa1 Na1+ 0 0 0.00(1) 1 .\nCl1 Cl1- .5 .5 .5 0.5 0.01\nH1 H ? ? ? 1 1\nloop_\n_atom_site_aniso_label\n"
+       "_atom_site_aniso_U_11\nNa1 0.1\ndata_other\n")
+DUMP = ("ITEM: TIMESTEP\n5\nITEM: TIME\n0.5\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp ff\n0 3 1\n0 2 0\n0 2 0\n"
+        "ITEM: ATOMS id element name q xs ys zs\n7 Si wall 0.5 .5 .5 .5\n")
 # format: the file, what stays as properties, what is named as left out, metadata that PLY has no place for
 EVERYTHING = {
     "ply": (PLY, ["red"], ["near", "textures", "flags of face", "texcoord of face", "region of tetrahedron",
@@ -93,4 +107,18 @@ EVERYTHING = {
     "node": ("2 3 1 1\n1 0 0 0 5 1\n2 1 0 0 6 0\n", ["attribute1", "boundary_marker"], []),
     "bnpts": (struct.pack("<6f", 1, 2, 3, 0, 0, 1), ["nx", "ny", "nz"], []),
     "extxyz": ('1\nLattice="1 0 0 0 1 0 0 0 1" Properties=species:S:1:pos:R:3:name:S:1:charge:R:1 energy=2\nH 0 0 0 one 1.5\n',
-               ["atomic_number", "radius", "charge"], ["name", "comment"])}
+               ["atomic_number", "radius", "charge"], ["name", "comment"], CELL),
+    "pdb": (PDB, ["atomic_number", "radius", "occupancy", "temperature_factor", "residue"],
+            ["HEADER", "ANISOU", "CONECT", "names of atoms", "names of residues", "chains", "insertion codes", "segments",
+             "charges", "alternate locations", "further models"], CELL),
+    "cif": (CIF, ["atomic_number", "radius", "occupancy", "u_iso"],
+            ["_chemical_name", "_atom_site_label", "_atom_site_aniso_label", "_atom_site_aniso_U_11", "_text", "sites without positions",
+             "further blocks"], CELL),
+    "poscar": ("quartz\n2.0\n1 0 0\n0 1 0\n0 0 1\nSi O_s\n1 1\nSelective dynamics\nDirect\n0 0 0 T F T Si1\n.5 .5 .5 F F F O1\n\n0 0 0\n0 0 0\n",
+               ["atomic_number", "radius", "type", "moves_a", "moves_b", "moves_c"],
+               ["comment", "labels of atoms", "what follows the positions"], CELL),
+    "lammpstrj": ("ITEM: UNITS\nlj\n" + DUMP + DUMP, ["atomic_number", "radius", "id", "q"],
+                  ["units", "timestep", "time", "name", "further frames"], CELL),
+    "lmp": ("quartz\n\n1 atoms\n1 atom types\n2 bonds\n0 2 xlo xhi\n0 2 ylo yhi\n0 2 zlo zhi\n1 0 0 xy xz yz\n\nMasses\n\n1 28 # Si\n\n"
+            "Atoms # full\n\n1 1 1 0.5 1 1 1 0 0 -1 # Si\n\nVelocities\n\n1 0 0 0\n", "id molecule type q ix iy iz".split(),
+            ["comment", "Masses", "Velocities"], CELL)}

@@ -108,9 +108,9 @@ class Texts(DialectTest):
             self.assertEqual(self.convert("c.csv", text.replace("%d", quoted) % (2**53 + 1))[2]["lost"], ["precision"])
             self.assertEqual(self.convert("d.csv", text.replace("%d", quoted) % 2**60)[2]["lost"], [])
 
-    def test_atoms_have_a_true_hint(self):
+    def test_atoms_are_points_and_a_density(self):
         pdb = "ATOM      1  C   ALA A   1       0.000   0.000   0.000  1.00  0.00           C\n"
-        self.bad_input("brio iso", "info", self.file("a.pdb", pdb))
+        self.assertEqual(self.facts("info", self.file("a.pdb", pdb))["points"], 1)
         self.expect(0, "iso", self.path("a.pdb"), "--level", "1", "-o", self.path("out.ply"))
 
 

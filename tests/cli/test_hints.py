@@ -170,6 +170,7 @@ ROWS = {
     "WARNING_APART": ("check apart.off --open", 0, ["{hint}", Silent("check out.ply --open")]),
     "WARNING_OUTSIDE": ("voronoi few.xyz --box 0,0,0,0.2,1,1 -o out.csv", 0,
                         ["{hint}", Silent("voronoi few.xyz --box 0,0,0,1,1,1 -o out.csv")]),
+    "WARNING_CELL": ("voronoi atoms.extxyz -o out.csv", 0, [Silent("voronoi atoms.extxyz --periodic xyz -o out.csv")]),
     "WARNING_NUMBERED": ("info ids.xyz", 0, [Silent("info ids.xyz --columns -,x,y,z")]),
     "WARNING_ROUNDED": ("info numbers.csv", 0, [Silent("info numbers.csv --columns x,y,z,-")]),
 }
@@ -249,6 +250,7 @@ class Hints(CliTest):
         self.expect(0, "generate", "scan", "-n", "2000", "--noise", "1", "-o", "noisy.ply", "--quiet")
         self.cloud("sparse.ply", 60, "torus")
         self.expect(0, "generate", "scan", "-n", "60000", "-o", "many.ply", "--quiet"), self.cloud("dense.ply", 1500, "torus")
+        self.file("atoms.extxyz", "1\nLattice=\"2 2 2\"\nC 0 0 0\n")
         self.xyz("few.xyz", few), self.xyz("few.what", few), self.xyz("few4.xyz", few[:4]), self.xyz("corner.xyz", [(0.236, 0.103, 0.396), (0.155, 0.067, 0.402), (0.918, 0.8, 0.765), (0.222, 0.537, 0.277)])
         self.expect(0, "medial", "cube.ply", "-o", "axis.ply", "--quiet")
         self.xyz("tiny.xyz", [[x * 1e-200 for x in p] for p in few]), self.xyz("huge.xyz", [[x * 1e200 for x in p] for p in few])

@@ -22,7 +22,7 @@ class Periodic(CliTest):
     def test_usage(self):
         points = self.xyz("a.xyz", [(0, 0, 0)])
         for command in [("delaunay",), ("voronoi", "-o", self.path("x.csv"))]:
-            self.usage("--periodic goes with --cell only", *command, points, "--periodic", "xy")
+            self.usage("--periodic without --cell, but .*a.xyz has no cell", *command, points, "--periodic", "xy")
             for cell in ["1,1", "1,1,1,", "1,1,1,1,1,1,1,1,1,1", "1,x,1", "1,1,inf"]:
                 self.usage("is neither ax,ay,az", *command, points, "--cell", cell)
             for directions in ["xw", "x y"]:
@@ -39,6 +39,24 @@ class Periodic(CliTest):
         shifts = {tuple(row["shift_" + k] for k in "abc") for row in rows(faces)}
         self.assertEqual(len(shifts), 12)
         self.assertEqual({row["neighbour"] for row in rows(faces)}, {0})
+
+    def test_the_cell_of_a_file(self):
+        cell, rows = "2 0 0 1 2 0 0 0 3", [(0.25, 0.5, 1), (1.5, 1, 2)]
+        lattice = "%s,%s,%s,%s,%s,%s,%s,%s,%s" % tuple(cell.split())
+        positions = "\n".join("%g %g %g" % row for row in rows)
+        files = [self.file("a.extxyz", "2\nLattice=\"%s\" pbc=\"T T F\"\n%s\n" % (cell, "\n".join("C %g %g %g" % r for r in rows))),
+                 self.file("POSCAR", "c\n1\n2 0 0\n1 2 0\n0 0 3\nC\n2\nCartesian\n%s\n" % positions),
+                 self.file("a.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS xy xz yz pp pp ff\n0 3 1\n0 2 0\n0 3 0\n"
+                           "ITEM: ATOMS x y z\n%s\n" % positions)]
+        wanted = self.facts("delaunay", self.xyz("a.xyz", rows), "--cell", lattice)
+        for name in files:
+            run = self.expect(0, "delaunay", name, "--unweighted", "--json")
+            letters = "xyz" if name.endswith("POSCAR") else "xy"
+            self.assertIn("has a cell, which is not used: --periodic %s lets" % letters, run.err, name)
+            facts = self.facts("delaunay", name, "--periodic", "xyz", "--unweighted")
+            for key in "checksum", "tetrahedra", "cell_volume":
+                self.assertEqual(facts[key], wanted[key], name)
+            self.assertEqual(self.facts("info", name)["metadata"]["cell.periodic"], letters)
 
     def test_cells_fill_the_box(self):
         points, out = self.xyz("a.xyz", self.points(300)), self.path("cells.csv")

@@ -16,6 +16,8 @@ PROJECT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file
 REPRO = os.path.join(os.environ.get("BRIO_SHARED") or os.path.join(PROJECT, "..", "shared"), "repro")
 FOLDERS = ["reports", "field", "attack"]
 
+ATOMS = {"atomic_number", "radius", "occupancy", "temperature_factor", "residue"}
+ATOMS_LEFT_OUT = {"HEADER", "names of atoms", "names of residues", "chains"}
 COLOURS = {"red", "green", "blue"}
 PROGRAM, HELPER = "program", "helper"
 
@@ -61,8 +63,8 @@ FILES = {
     "field/f19_leica6.pts": (12, 0, COLOURS, set()),
     "field/f19_two_scans.pts": (12, 0, COLOURS | {"intensity"}, set()),
     "field/f20_points3D.txt": (12, 0, COLOURS, {"tracks"}),
-    "field/f21_atoms.ent": r"a PDB file of atoms, which only brio iso reads",
-    "field/f21_atoms.pdb": r"a PDB file of atoms, which only brio iso reads",
+    "field/f21_atoms.ent": (12, 0, ATOMS, ATOMS_LEFT_OUT - {"HEADER"}),
+    "field/f21_atoms.pdb": (12, 0, ATOMS, ATOMS_LEFT_OUT),
     "field/f22_las15.las": (12, 0, {"gps_time"}, set()),
     "field/f22_las15_7.las": (12, 0, COLOURS, set()),
     "field/f23_bounds_real.e57": (12, 0, {"intensity"}, {"names of scans"}),

@@ -59,6 +59,27 @@ static void put_texts(void) {
     put_text("chemical", NONE, "2\na comment\nC 0 0 0\nO 1.2 0 0\n");
     put_text("extxyz", CHEMICAL,
              "1\nLattice=\"1 0 0 0 1 0 0 0 1\" Properties=species:S:1:pos:R:3:f:R:2\n8 0 0 0 1 2\n");
+    put_text("pdb", CORPUS_FORMATS + BRIO_FORMAT_PDB,
+             "CRYST1   10.000   11.000   12.000  90.00  90.00 120.00 P 1           1\n"
+             "ATOM      1  CA AGLY A  12       1.000   2.000   3.000  0.50 10.00           C\nENDMDL\n");
+    put_text("cif", CORPUS_FORMATS + BRIO_FORMAT_CIF,
+             "data_a\n_cell_length_a 5.6(1)\n_cell_length_b 5\n_cell_length_c 5\n_cell_angle_alpha 90\n"
+             "_cell_angle_beta 90\n_cell_angle_gamma 60\n_text\n;a\n;\nloop_\n_space_group_symop_operation_xyz\n"
+             "'x, y, z'\nloop_\n_atom_site_label\n_atom_site_fract_x\n_atom_site_fract_y\n_atom_site_fract_z\n"
+             "Na1 0 .5 0.25(1)\nCl ? . 1\n");
+    put_text("poscar", CORPUS_FORMATS + BRIO_FORMAT_POSCAR,
+             "c\n-8\n1 0 0\n0 1 0\n0 0 1\nSi O\n1 1\nSelective\nDirect\n0 0 0 T F T\n.5 .5 .5 F F F\n");
+    put_text("poscar-old", CORPUS_FORMATS + BRIO_FORMAT_POSCAR,
+             "c\n1 2 3\n1 0 0\n0 1 0\n0 0 1\n2\nCart\n0 0 0\n1 1 1\n\n0 0 0\n");
+    put_text("dump", CORPUS_FORMATS + BRIO_FORMAT_LAMMPS_DUMP,
+             "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS xy xz yz pp pp ff\n0 3 1\n0 2 0\n0 2 0\n"
+             "ITEM: ATOMS id element xs ys zs\n7 Si .5 .5 .5\n");
+    put_text("dump-vectors", CORPUS_FORMATS + BRIO_FORMAT_LAMMPS_DUMP,
+             "ITEM: TIMESTEP\n5\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS abc origin pp pp pp\n1 0 0 5\n0 1 0 6\n"
+             "0 0 1 7\nITEM: ATOMS x y z\n1 2 3\n");
+    put_text("lammps-data", CORPUS_FORMATS + BRIO_FORMAT_LAMMPS_DATA,
+             "c\n\n2 atoms\n0 2 xlo xhi\n0 2 ylo yhi\n0 2 zlo zhi\n1 0 0 xy xz yz\n\nAtoms # full\n\n"
+             "1 1 1 0.5 1 1 1 0 0 -1\n2 1 1 0.5 1 1 1 0 0 0\n\nBonds\n\n1 1 1 2\n");
     put_text("gltf", GLTF,
              "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,"
              "\"translation\":[1,2,3],\"children\":[1]},{\"mesh\":0,\"matrix\":[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]}],"

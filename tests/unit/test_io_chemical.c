@@ -63,7 +63,7 @@ static void of_several_frames_the_first(void) {
 }
 
 static void extended_xyz_names_its_columns(void) {
-    brio_mesh *m = io_read_text("a.xyz", "2\nLattice=\"1 0 0\" Properties=tag:I:1:label:S:1:pos:R:3:forces:R:3:fixed:L:"
+    brio_mesh *m = io_read_text("a.xyz", "2\nLattice=\"1 2 3\" Properties=tag:I:1:label:S:1:pos:R:3:forces:R:3:fixed:L:"
                                          "1:species:S:1 energy=-1\n"
                                          "7 a 1 2 3 0.1 0.2 0.3 T Si\n-8 b 4 5 6 0.4 0.5 0.6 F C\n");
     if (!m) return;

@@ -139,6 +139,12 @@ class Mesh:
     normals : ndarray of float64, shape (n, 3)
         Of the vertices; 0 where there are no faces.
     certificate : Certificate
+    cell : ndarray of float64, shape (3, 3), or None
+        The vectors of the cell in which the points of a file of atoms repeat, a row each: ``brio.Voronoi(mesh.vertices,
+        cell=mesh.cell, periodic=mesh.periodic)``. It is what the file said; no function of a mesh uses it, and no file
+        that is written has it.
+    periodic : tuple of bool, or None
+        Which of these vectors repeat.
 
     Examples
     --------
@@ -184,6 +190,9 @@ class Mesh:
         self.tetrahedra: Indices = np.asarray(views["tetrahedra"])
         self.edges: Indices = np.asarray(views["edges"])
         self._steps: Floats = np.stack([np.asarray(views["coordinate_step"]), np.asarray(views["coordinate_origin"])])
+        cell = views["cell"]
+        self.cell: Floats | None = None if cell is None else np.reshape(np.asarray(cell[0], float), (3, 3))
+        self.periodic: tuple[bool, ...] | None = None if cell is None else tuple(map(bool, cell[1]))
         self.properties = {k: np.asarray(v) for k, v in views["properties"].items()}
         self.face_properties = {k: np.asarray(v) for k, v in views["face_properties"].items()}
 
@@ -671,7 +680,7 @@ class Mesh:
         return {name: value for name, value in self.__dict__.items() if name != "_handle"}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(freeze_all({"face_properties": {}, **state}))
+        self.__dict__.update(freeze_all({"face_properties": {}, "cell": None, "periodic": None, **state}))
         views = {name: np.ascontiguousarray(state[name])
                  for name in ("vertices", "face_offsets", "face_vertices", "tetrahedra", "edges")}
         self._handle = _native.mesh(views["vertices"], views["face_offsets"], views["face_vertices"],

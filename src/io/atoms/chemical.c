@@ -1,5 +1,6 @@
 /* Reads atoms from chemical XYZ files: a line with their number, a comment, and a row for each atom: element, x, y, z,
  * and further numbers. The comment of an extended XYZ file names the columns: Properties=species:S:1:pos:R:3:...
+ * It may have a cell, Lattice="ax ay az bx by bz cx cy cz", and say which of its vectors repeat, pbc="T T F".
  *
  * An atom is a point with the properties atomic_number and radius (van der Waals, in angstrom, as the coordinates of
  * these files are). Of several frames the first is read; the others are passed over, but a line that is no number where
@@ -7,7 +8,7 @@
  *
  * Based on: XYZ file format of XMol, Minnesota Supercomputer Center; extended XYZ as written by ASE and QUIP. */
 #include "base/memory.h"
-#include "io/pdb.h"
+#include "io/atoms/atoms.h"
 #include "io/formats.h"
 #include "io/number.h"
 #include "io/textrow.h"
@@ -16,6 +17,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 /* Both chosen. MOST_COLUMNS: columns of a row. NAME: characters of a name in Properties=. */
 enum { MOST_COLUMNS = 256, NAME = 48 };
@@ -27,8 +29,6 @@ typedef struct {
     size_t target; /* axis, or index of the property */
 } chemical_column;
 
-enum { ATOMIC_NUMBER, RADIUS /* indices of these properties */ };
-
 typedef struct {
     brio_text text;
     brio_builder *builder;
@@ -37,7 +37,7 @@ typedef struct {
     bool free_columns; /* there is no Properties=: the first row decides how many columns there are */
 } chemical_reader;
 
-/* --- elements --- */
+/* --- words --- */
 
 static bool ends_word(char c) {
     return !c || brio_is_blank(c);
@@ -46,17 +46,6 @@ static bool ends_word(char c) {
 static const char *skip_blanks(const char *p) {
     while (brio_is_blank(*p)) p++;
     return p;
-}
-
-/* Finds the element of a word: a symbol, a label such as C12 or Fe3+, or an atomic number. 0 if it is none. */
-static int element_of(const char *word) {
-    const char *end = word;
-    uint64_t number;
-    if (brio_parse_count(&end, &number)) return ends_word(*end) && number <= BRIO_LAST_ELEMENT ? (int)number : 0;
-    size_t letters = 0;
-    while (isalpha((unsigned char)word[letters])) letters++;
-    if (letters && !ends_word(word[letters]) && !strchr("0123456789_+-", word[letters])) return 0;
-    return letters ? brio_element_of(word, letters) : 0;
 }
 
 /* --- the start --- */
@@ -86,7 +75,7 @@ static bool is_atom(const char *line, bool *symbol) {
     const char *p = skip_blanks(line);
     double value;
     *symbol = isalpha((unsigned char)*p);
-    if (!element_of(p)) return false;
+    if (!brio_element_of_word(p)) return false;
     while (!ends_word(*p)) p++;
     for (int k = 0; k < 3; k++) {
         p = skip_blanks(p);
@@ -196,28 +185,102 @@ static brio_status parse_properties(chemical_reader *r, const char *p) {
     return BRIO_OK;
 }
 
-/* Returns whether a comment has more than its word of properties, which may be NULL. */
-static bool has_more(const char *comment, const char *properties) {
-    while (*comment) {
-        if (comment == properties) {
-            bool quoted = comment[strlen("Properties=")] == '"';
-            comment += strlen("Properties=") + quoted;
-            comment += strcspn(comment, quoted ? "\"" : " \t");
-            comment += *comment == '"';
-        } else if (!ends_word(*comment)) {
-            return true;
+/* An entry of the comment: a word, or key=value. The value is without its quotes or brackets. */
+typedef struct {
+    const char *key, *value; /* value: NULL for a word */
+    size_t key_length, value_length;
+} comment_entry;
+
+/* Finds the next entry at *p and moves *p behind it. Returns false at the end. */
+static bool next_entry(const char **p, comment_entry *e) {
+    static const char open[] = "\"'{[", close[] = "\"'}]";
+    const char *at = skip_blanks(*p), *bracket;
+    *e = (comment_entry){.key = at};
+    if (!*at) return false;
+    while (!ends_word(*at) && *at != '=') at++;
+    e->key_length = (size_t)(at - e->key);
+    if (*at == '=') {
+        e->value = ++at;
+        bracket = *at ? strchr(open, *at) : NULL;
+        if (bracket) e->value = ++at;
+        if (bracket) {
+            const char end = close[bracket - open];
+            for (int depth = 1; *at; at++) {
+                depth += (*at == *bracket && end != *bracket) - (*at == end);
+                if (!depth) break;
+            }
         } else {
-            comment++;
+            while (!ends_word(*at)) at++;
         }
+        e->value_length = (size_t)(at - e->value);
+        at += bracket && *at;
     }
-    return false;
+    *p = at;
+    return true;
+}
+
+static bool is_key(const comment_entry *e, const char *key) {
+    return e->value && e->key_length == strlen(key) && !strncasecmp(e->key, key, e->key_length);
+}
+
+static brio_status bad_entry(const chemical_reader *r, const char *key, const char *what) {
+    const brio_stream *s = r->text.stream;
+    return brio_fail(s->ctx, BRIO_ERR_FORMAT, "%s: line %zu: %s=: expected %s", s->name, s->line, key, what);
+}
+
+/* Reads the nine numbers of a lattice, or three, which are the lengths of a box. */
+static brio_status parse_lattice(const chemical_reader *r, const comment_entry *e, double cell[9]) {
+    static const char wanted[] = "9 numbers, a vector after the other, or 3 lengths";
+    double numbers[9];
+    int count = 0;
+    for (const char *p = e->value; p < e->value + e->value_length;) {
+        if (brio_is_blank(*p) || strchr(",;[]", *p)) {
+            p++;
+            continue;
+        }
+        if (count == 9 || !brio_parse_number(&p, &numbers[count]) || !isfinite(numbers[count]))
+            return bad_entry(r, "Lattice", wanted);
+        count++;
+    }
+    if (count != 3 && count != 9) return bad_entry(r, "Lattice", wanted);
+    for (int i = 0; i < 9; i++) cell[i] = count == 9 ? numbers[i] : i % 4 == 0 ? numbers[i / 4] : 0;
+    return BRIO_OK;
+}
+
+/* Reads T or F, or 1 or 0, three times. */
+static brio_status parse_pbc(const chemical_reader *r, const comment_entry *e, bool periodic[3]) {
+    int count = 0;
+    for (size_t i = 0; i < e->value_length; i++) {
+        const char c = e->value[i];
+        if (brio_is_blank(c) || strchr(",[]", c)) continue;
+        if (count == 3 || !strchr("TtFf10", c)) return bad_entry(r, "pbc", "T or F of each direction");
+        periodic[count++] = strchr("Tt1", c) != NULL;
+        while (i + 1 < e->value_length && isalpha((unsigned char)e->value[i + 1])) i++; /* True */
+    }
+    return count == 3 ? BRIO_OK : bad_entry(r, "pbc", "T or F of each direction");
+}
+
+/* Takes the cell of a comment, and notes that what else it has is left out. */
+static brio_status take_comment(const chemical_reader *r, const char *comment) {
+    comment_entry e;
+    double cell[9] = {0};
+    bool periodic[3] = {true, true, true}, more = false;
+    while (next_entry(&comment, &e)) {
+        if (is_key(&e, "Lattice"))
+            BRIO_FORWARD(parse_lattice(r, &e, cell));
+        else if (is_key(&e, "pbc"))
+            BRIO_FORWARD(parse_pbc(r, &e, periodic));
+        else
+            more |= !is_key(&e, "Properties");
+    }
+    if (more) BRIO_FORWARD(brio_builder_leave_out(r->builder, "comment"));
+    return brio_cell_keep(r->builder, cell, periodic);
 }
 
 static brio_status plan(chemical_reader *r, const char *comment) {
     const char *properties = strstr(comment, "Properties=");
-    BRIO_FORWARD(brio_builder_property(r->builder, "atomic_number", BRIO_SCALAR_UINT8));
-    BRIO_FORWARD(brio_builder_property(r->builder, "radius", BRIO_SCALAR_FLOAT64));
-    if (has_more(comment, properties)) BRIO_FORWARD(brio_builder_leave_out(r->builder, "comment"));
+    BRIO_FORWARD(brio_atoms_plan(r->builder));
+    BRIO_FORWARD(take_comment(r, comment));
     if (properties) {
         properties += strlen("Properties=");
         return parse_properties(r, properties + (*properties == '"'));
@@ -251,12 +314,9 @@ static brio_status plan_more(chemical_reader *r, const char *p) {
 
 static brio_status read_element(chemical_reader *r) {
     brio_text *t = &r->text;
-    int element = element_of(t->at);
+    int element = brio_element_of_word(t->at);
     if (!element) return brio_text_expected(t, "the symbol or number of an element");
-    brio_mesh *m = r->builder->mesh;
-    size_t v = m->num_vertices - 1;
-    ((uint8_t *)m->properties[ATOMIC_NUMBER].data)[v] = (uint8_t)element;
-    ((double *)m->properties[RADIUS].data)[v] = brio_van_der_waals_radius(element);
+    brio_atoms_set_element(r->builder, element);
     return BRIO_OK;
 }
 
