@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets npm
 
 all:
 	@sh scripts/setup.sh build
@@ -95,6 +95,11 @@ threads:
 analyze:
 	@sh scripts/setup.sh analyze
 	@sh scripts/analyze.sh $(JOBS) $(ANALYZE)
+
+# The npm package, out/npm/brio-VERSION.tgz, tried in a fresh folder: docs/javascript.md.
+npm: all
+	@sh scripts/setup.sh npm
+	@BRIO=$(CURDIR)/$(BRIO) sh scripts/npm.sh test $(JOBS)
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:
