@@ -1,7 +1,7 @@
 #!/bin/sh
-# npm.sh pack|test [JOBS]: the npm package, in out/npm. Builds the module of wasm/ with the C cross compiler of scripts/setup.sh
-# targets, puts it beside the package's files, and packs them: out/npm/brio-VERSION.tgz. `test` installs that in a fresh folder,
-# runs wasm/test there, against the program that BRIO names, and checks the types.
+# npm.sh page|pack|test [JOBS]: builds the module of wasm/ with the C cross compiler of scripts/setup.sh targets. `page` makes the page
+# that takes a file, out/brio.html; `pack` the npm package, out/npm/brio-VERSION.tgz; `test` also installs that in a fresh folder, runs
+# wasm/test there, against the program that BRIO names, and checks the types.
 set -eu
 
 what=${1:-pack} jobs=${2:-$(nproc)}
@@ -22,6 +22,11 @@ cmake -S "$root" -B "$build" -DCMAKE_SYSTEM_NAME=WASI -DCMAKE_SYSTEM_PROCESSOR=w
     -DBRIO_TESTS=OFF -DBRIO_USE_ZLIB=OFF -DBRIO_USE_ZSTD=OFF -DBRIO_USE_EXPAT=OFF -DBRIO_USE_CJSON=OFF >"$build/log" 2>&1 ||
     { tail -n 20 "$build/log" >&2; exit 1; }
 cmake --build "$build" -j "$jobs" --target brio-wasm >>"$build/log" 2>&1 || { tail -n 20 "$build/log" >&2; exit 1; }
+
+if [ "$what" = page ]; then
+    node "$root/web/build.mjs" "$build/brio-module.wasm" "$root/out/brio.html"
+    exit 0
+fi
 
 # The package: what its folder holds is what is packed. The version is the library's.
 rm -rf "$package" && mkdir -p "$package"

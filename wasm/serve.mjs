@@ -1,5 +1,4 @@
 // The worker's side of worker.mjs: answers calls one after the other.
-import { load } from './brio.mjs';
 
 const EVERY = 50; // milliseconds between two words of progress
 
@@ -8,7 +7,7 @@ const EVERY = 50; // milliseconds between two words of progress
 export function serve(port, begin) {
   let calls;
   port.listen(async ({ start, name, given, flag }) => {
-    if (name === undefined) return void (calls = begin(start));
+    if (name === undefined) return void (calls = begin(start)).catch(() => {}); // the next call says why it failed
     try {
       const brio = await (calls ??= begin());
       let said = -Infinity;
@@ -33,15 +32,3 @@ function buffers(result, found = new Set()) {
   else if (result && typeof result === 'object') for (const part of Object.values(result)) buffers(part, found);
   return [...found];
 }
-
-/** The port of the worker that this runs in; null elsewhere. */
-export async function own() {
-  if (typeof WorkerGlobalScope !== 'undefined' && self instanceof WorkerGlobalScope)
-    return { post: (m, list) => self.postMessage(m, list), listen: (f) => { self.onmessage = (e) => f(e.data); } };
-  if (!globalThis.process?.versions?.node) return null;
-  const { parentPort } = await import('node:worker_threads');
-  return parentPort && { post: (m, list) => parentPort.postMessage(m, list), listen: (f) => parentPort.on('message', f) };
-}
-
-const port = await own();
-if (port) serve(port, (start) => load(start));

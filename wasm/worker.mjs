@@ -67,7 +67,7 @@ export class Caller {
 
 /** Starts a worker.   options.source  a compiled WebAssembly.Module, or the bytes of brio.wasm; not given: the package's. */
 export async function start({ source } = {}) {
-  const caller = new Caller(() => open(new URL('./serve.mjs', import.meta.url)), { start: source });
+  const caller = new Caller(() => open(new URL('./thread.mjs', import.meta.url)), { start: source });
   const brio = { end: () => caller.end() };
   for (const name of CALLS)
     brio[name] = (...given) => {
