@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets npm page
 
 all:
 	@sh scripts/setup.sh build
@@ -95,6 +95,18 @@ threads:
 analyze:
 	@sh scripts/setup.sh analyze
 	@sh scripts/analyze.sh $(JOBS) $(ANALYZE)
+
+# The npm package, out/npm/brio-VERSION.tgz, tried in a fresh folder: docs/javascript.md.
+npm: all
+	@sh scripts/setup.sh npm
+	@BRIO=$(CURDIR)/$(BRIO) sh scripts/npm.sh test $(JOBS)
+
+# The page that takes a file and makes a surface of it, out/brio.html, tried in Chromium where there is one: docs/view.md.
+page: all
+	@sh scripts/setup.sh npm
+	@sh scripts/setup.sh web
+	@sh scripts/npm.sh page $(JOBS)
+	@node tests/browser/drop_test.mjs $(CURDIR)/$(BRIO) $(CURDIR)/out/brio.html long || [ $$? = 77 ]
 
 # The Python package: a wheel and an sdist in out/python, tried in a new environment.
 python:

@@ -87,8 +87,9 @@ missing() {
         [ -x $python ] || echo python3
         return 0
     fi
-    if [ "$1" = targets ]; then
+    if [ "$1" = targets ] || [ "$1" = npm ]; then
         [ -x $python ] || echo python3
+        [ "$1" = targets ] || has npm || echo nodejs npm
         has_python_with ensurepip || echo python3-venv
         return 0
     fi
@@ -130,7 +131,7 @@ missing_peers() {
         has npm || echo nodejs npm
         return 0
     fi
-    case $1 in build | model | threads | analyze | fuzz | coverage | oracles | quality | deb) return 0 ;; esac
+    case $1 in build | model | npm | threads | analyze | fuzz | coverage | oracles | quality | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -227,7 +228,7 @@ install_open3d() {
     has_open3d || echo "setup: Open3D could not be installed from PyPI: it is left out" >&2
 }
 
-# The C cross compiler of make targets, in an environment of its own and in the version that was tried.
+# The C cross compiler of make targets and make npm, in an environment of its own and in the version that was tried.
 install_cross_compiler() {
     environment=out/targets-env
     has_ziglang() { "$environment/bin/python" -c 'import ziglang' >/dev/null 2>&1; }
@@ -276,9 +277,9 @@ packages)
     sh "$0" web || true
     exit 0
     ;;
-build | check | web | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | deb) ;;
+build | check | web | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | npm | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|web|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|deb" >&2
+    echo "usage: setup.sh build|check|packages|web|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|npm|deb" >&2
     exit 1
     ;;
 esac
@@ -294,7 +295,7 @@ fi
 if [ -z "$packages" ]; then
     [ "$purpose" != quality ] || install_poisson
     [ "$purpose" != rivals ] || install_open3d
-    [ "$purpose" != targets ] || install_cross_compiler
+    case $purpose in targets | npm) install_cross_compiler ;; esac
     [ "$purpose" != check ] || make_tests_environment
     [ "$purpose" != web ] || install_web
     exit 0

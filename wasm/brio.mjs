@@ -1,161 +1,321 @@
-// brio in WebAssembly: exact Delaunay and regular triangulations, and surfaces from points, in browsers, workers and Node.
+// brio in WebAssembly: exact Delaunay and regular triangulations, Voronoi cells, hulls, alpha shapes, and surfaces from points, in
+// browsers, workers, Node and Deno.
 //
-//   const brio = await load(fetch('brio.wasm'));          // or the bytes of the file
-//   const t = brio.delaunay(points);                      // Float64Array: x, y, z of each point
-//   const s = brio.surface(points);                       // { vertices, faces, certificate }
-//   const mesh = brio.read(bytes, 'scan.ply');            // any format; the name's extension tells where the content does not
-//   const file = brio.write(mesh, 'surface.glb');         // Uint8Array, in the format of the extension
+// `load` gives a Brio, whose methods run to their end in the thread that calls them; worker.mjs has them as promises. A call
+// gives a result that stays in the module's memory (results.mjs): what one reads of it are views, no copies. Points that are
+// such a view, as those of `room`, are not copied on their way in either.
 //
-// A call returns copies, which the module no longer knows. It runs to its end in the thread that calls it: use a worker for
-// much work. A function `progress(stage, share)` that returns true stops the call. Failures are BrioError, with the sentence
-// of the library.
+// A function `progress(stage, share)` that returns true stops the call. Failures are BrioError, with the sentence of the library.
 import { Files } from './files.mjs';
+import { AlphaComplex, Cells, Mesh, Points, Triangulation, TYPES } from './results.mjs';
 
 export class BrioError extends Error {
   constructor(status, message) { super(message); this.name = 'BrioError'; this.status = status; }
 }
+const ARGUMENT = 10, NO_MEMORY = 30, CANCELLED = 32; // brio_status
 
-/** Loads the module.   source  its bytes, a Response of fetch, a compiled WebAssembly.Module, or a promise of one. */
+const METHODS = ['labeled', 'power-crust', 'cocone', 'tight-cocone', 'offset'];
+const NOISE = ['auto', 'keep', 'smooth'], HOLES = ['auto', 'closed'];
+const HOLDS_FACES = 1;
+
+/** Loads the module.   source  its bytes, a Response of fetch, a compiled WebAssembly.Module, or a promise of one; nothing: the
+ *  file brio.wasm beside this one. */
 export async function load(source) {
-  source = await source;
+  source = await (source ?? own());
   const given = typeof Response !== 'undefined' && source instanceof Response ? await source.arrayBuffer() : source;
   const module = given instanceof WebAssembly.Module ? given : await WebAssembly.compile(given);
   const brio = new Brio();
   const instance = await WebAssembly.instantiate(module, {
     wasi_snapshot_preview1: brio.files.imports(),
-    brio: { progress: (stage, share) => (brio.progress && brio.progress(brio.text(stage), share) ? 1 : 0) },
+    brio: { progress: (stage, share) => brio.asked(brio.text(stage), share) },
   });
   brio.begin(instance.exports);
   return brio;
 }
 
+/** The bytes of brio.wasm: by fetch, or from the file system where fetch takes no addresses of files, as in Node. */
+async function own() {
+  const address = new URL('./brio.wasm', import.meta.url);
+  if (address.protocol === 'file:' && globalThis.process?.versions?.node) return (await import('node:fs/promises')).readFile(address);
+  const answer = await fetch(address);
+  if (!answer.ok) throw new BrioError(0, `${address}: the server answers ${answer.status} ${answer.statusText}`);
+  return answer;
+}
+
 class Brio {
-  constructor() { this.files = new Files(); this.progress = null; }
+  constructor() { this.files = new Files(); this.progress = null; this.thrown = null; }
+
+  /* Whether to stop. What `progress` throws stops the call, too, and is thrown when the library has put its things away. */
+  asked(stage, share) {
+    try {
+      return this.progress?.(stage, share) === true ? 1 : 0;
+    } catch (error) {
+      this.thrown = { error };
+      return 1;
+    }
+  }
 
   begin(exports) {
     this.x = exports;
     this.files.memory = exports.memory;
     exports._initialize();
     this.context = exports.context();
-    if (!this.context) throw new BrioError(0, 'no memory for a context');
+    if (!this.context) throw new BrioError(NO_MEMORY, 'no memory for a context');
   }
 
   get version() { return this.text(this.x.version()); }
+  /** Extensions that are read, and those that are written: of all formats, or of those that hold faces. */
+  get reads() { return this.text(this.x.formats(0, 0)).split(' '); }
+  get writes() { return this.text(this.x.formats(1, 0)).split(' '); }
+  get writesFaces() { return this.text(this.x.formats(1, HOLDS_FACES)).split(' '); }
+  /** The bytes of the module's memory, which never shrinks. */
+  get memory() { return this.x.memory.buffer.byteLength; }
 
-  /** Triangulates.   weights  Float64Array or undefined.
-   *  Returns { tetrahedra: Uint32Array of 4 corners each, hull: Uint32Array of 3 corners of each facet, checksum: text }. */
-  delaunay(points, weights) {
-    return this.during((blocks) => {
-      const count = points.length / 3, out = blocks.room(4), parts = blocks.room(20);
-      const status = this.x.delaunay(this.context, blocks.doubles(points), weights ? blocks.doubles(weights) : 0, count, out, parts);
-      const t = this.word(out);
+  /** Room for `count` points in the module's memory. Fill its `array`, and give that to a call, which takes it without a copy. */
+  room(count, coordinates = 3) {
+    const at = this.x.allocate(8 * count * coordinates);
+    if (!at) throw new BrioError(NO_MEMORY, `no memory for ${count} points`);
+    return new Points(this, at, count * coordinates);
+  }
+
+  /** Triangulates points.   options.dimension  2 for points of the plane. */
+  delaunay(points, options = {}) { return this.triangulate(points, undefined, options); }
+  /** Makes the regular triangulation of points with weights. */
+  regular(points, weights, options = {}) { return this.triangulate(points, weights, options); }
+
+  /** Makes the convex hull: a mesh, with `samples`, the point of each vertex.   options.polygons  facets are not cut. */
+  hull(points, options = {}) {
+    return this.during(options, (blocks) => {
+      const p = blocks.points(points, 3), samples = blocks.room(4 * p.count), dimension = blocks.room(4), out = blocks.room(4);
+      const mesh = this.made(this.x.hull(this.context, p.at, p.count, options.polygons ? 1 : 0, samples, out, dimension), out, Mesh);
+      mesh.samples = this.numbers(Uint32Array, samples, mesh.vertices.length / 3).slice();
+      mesh.dimension = this.numbers(Int32Array, dimension, 1)[0];
+      return mesh;
+    });
+  }
+
+  /** Makes the alpha complex of points, or of points with weights: every simplex with its alpha, a squared radius. */
+  alphaComplex(points, options = {}) {
+    const flat = options.dimension === 2;
+    return this.during(options, (blocks) => {
+      const given = blocks.weighted(points, options.weights, flat), out = blocks.room(4), t = this.triangulated(given, flat, out);
       try {
-        this.check(status);
-        const [finite, facets, at, low, high] = this.words(parts, 5);
-        const all = new Uint32Array(this.x.memory.buffer, at, 8 * (finite + facets));
-        const tetrahedra = new Uint32Array(4 * finite), hull = new Uint32Array(3 * facets);
-        for (let i = 0; i < finite; i++) tetrahedra.set(all.subarray(8 * i, 8 * i + 4), 4 * i);
-        for (let i = 0; i < facets; i++) hull.set(all.subarray(8 * (finite + i), 8 * (finite + i) + 3), 3 * i);
-        return { tetrahedra, hull, checksum: ((BigInt(high) << 32n) | BigInt(low)).toString(16).padStart(16, '0') };
+        return this.alphaValues(t, given, out);
       } finally {
-        if (t) this.x.triangulation_free(t);
+        t.free();
       }
     });
   }
 
-  /** Makes a surface through points of one.   Returns a mesh with its certificate. */
-  surface(points) {
-    return this.mesh((blocks, out) => this.x.surface(this.context, blocks.doubles(points), points.length / 3, out), true);
-  }
-
-  /** Reads a file's bytes.   Returns a mesh: { vertices, faces, offsets, tetrahedra }. */
-  read(bytes, name) {
-    return this.mesh((blocks, out) => this.x.read(this.context, blocks.bytes(bytes), bytes.length, name ? blocks.text(name) : 0, out), false);
-  }
-
-  /** Writes vertices and triangles.   Returns the bytes of the file. */
-  write(mesh, name) {
-    return this.during((blocks) => {
-      const out = blocks.room(4);
-      this.check(this.x.mesh(this.context, out));
-      const made = this.word(out), faces = mesh.faces || new Uint32Array(0);
+  /** Makes the surface of an alpha shape.   options.alpha  a squared radius; not given: the least one that makes one solid of all
+   *  points. Of the mesh, `alpha` is the one that was taken, `solid` the number of its tetrahedra, `uncovered` that of the points
+   *  outside. */
+  alphaShape(points, options = {}) {
+    if (options.alpha !== undefined && !(options.alpha >= 0)) throw new BrioError(ARGUMENT, `alpha is ${options.alpha}; expected a squared radius of 0 or more`);
+    return this.during(options, (blocks) => {
+      const given = blocks.weighted(points, options.weights, false), out = blocks.room(4), facts = blocks.room(24);
+      const t = this.triangulated(given, false, out);
+      let complex = null;
       try {
-        this.check(this.x.mesh_set(made, blocks.doubles(mesh.vertices), mesh.vertices.length / 3, blocks.words(faces), faces.length / 3));
-        this.check(this.x.write(this.context, blocks.text(name), made));
+        complex = this.alphaValues(t, given, out);
+        this.numbers(Uint32Array, out, 1)[0] = 0;
+        const mesh = this.made(this.x.alpha_shape(this.context, given.at, complex.at, options.alpha ?? -1, out, facts), out, Mesh);
+        [mesh.alpha, mesh.solid, mesh.uncovered] = this.numbers(Float64Array, facts, 3);
+        return mesh;
+      } finally {
+        complex?.free();
+        t.free();
+      }
+    });
+  }
+
+  /** Makes Voronoi cells, or power cells of points with weights.   options  weights; box: x0 y0 z0 x1 y1 z1, which clips them; faces,
+   *  vertices: whether these are made. */
+  voronoi(points, options = {}) {
+    return this.during(options, (blocks) => {
+      const { at, weights, count } = blocks.weighted(points, options.weights, false), out = blocks.room(4);
+      const box = options.box ? blocks.doubles(options.box, 6, 'box') : 0;
+      return this.made(this.x.voronoi(this.context, at, weights, count, box, options.faces ? 1 : 0, options.vertices ? 1 : 0, out), out, Cells);
+    });
+  }
+
+  /** Makes a surface through points: a mesh with `certificate` and `facts`.   points  an array, or a mesh, whose normals and scanners'
+   *  places tell where outside is, and whose properties the surface gets.   options  see index.d.ts. */
+  surface(points, options = {}) {
+    return this.during(options, (blocks) => {
+      const out = blocks.room(4), facts = blocks.room(48), given = blocks.doubles(choices(options));
+      let status;
+      if (points instanceof Mesh) status = this.x.surface_of(this.context, points.at, given, out, facts);
+      else {
+        const p = blocks.points(points, 3);
+        const normals = options.normals ? blocks.doubles(options.normals, 3 * p.count, 'normals') : 0;
+        const origins = options.origins ? blocks.doubles(options.origins) : 0;
+        status = this.x.surface(this.context, p.at, p.count, given, normals, origins, (options.origins?.length ?? 0) / 3, out, facts);
+      }
+      const mesh = this.made(status, out, Mesh);
+      const [noise, smoothed, holes, bridges, strays, agreement] = this.numbers(Float64Array, facts, 6);
+      mesh.facts = { noise, smoothed: !!smoothed, holes, bridges, strays, agreement };
+      return mesh;
+    });
+  }
+
+  /** Reads a file's bytes: a mesh.   name  tells the format where the content does not, and stands in messages. */
+  read(bytes, name, options = {}) {
+    return this.during(options, (blocks) => {
+      const out = blocks.room(4);
+      return this.made(this.x.read(this.context, blocks.bytes(bytes), bytes.byteLength, name ? blocks.text(name) : 0, out), out, Mesh);
+    });
+  }
+
+  /** Makes a mesh of arrays: { vertices, faces, offsets, tetrahedra, edges, properties, faceProperties }. Without offsets faces are
+   *  triangles. */
+  mesh({ vertices, faces = [], offsets, tetrahedra = [], edges = [], properties = {}, faceProperties = {} }) {
+    return this.during({}, (blocks) => {
+      const out = blocks.room(4), mesh = this.made(this.x.mesh(this.context, out), out, Mesh);
+      try {
+        const v = blocks.points(vertices, 3), count = offsets ? offsets.length - 1 : faces.length / 3;
+        const ends = BigUint64Array.from({ length: count + 1 }, (_, i) => BigInt(offsets ? offsets[i] : 3 * i));
+        if (ends[count] !== BigInt(faces.length)) throw new BrioError(ARGUMENT, `faces have ${faces.length} corners; expected ${ends[count]}`);
+        this.check(this.x.mesh_set(mesh.at, v.at, v.count, blocks.bytes(ends), blocks.words(faces), count, blocks.words(tetrahedra),
+          tetrahedra.length / 4, blocks.words(edges), edges.length / 2));
+        for (const [list, of_faces, length] of [[properties, 0, v.count], [faceProperties, 1, count]])
+          for (const [name, values] of Object.entries(list)) this.property(mesh, name, values, of_faces, length, blocks);
+        return mesh;
+      } catch (error) {
+        mesh.free();
+        throw error;
+      }
+    });
+  }
+
+  /** Writes a mesh, or arrays as `mesh` takes them, in the format of the name's extension.   options  ascii, float32.   Returns bytes. */
+  write(mesh, name, options = {}) {
+    return this.during(options, (blocks) => {
+      const made = mesh instanceof Mesh ? mesh : this.mesh(mesh);
+      try {
+        this.check(this.x.write(this.context, blocks.text(name), made.at, options.ascii ? 1 : 0, options.float32 ? 1 : 0));
         return this.files.take(name);
       } finally {
-        this.x.mesh_free(made);
+        if (made !== mesh) made.free();
       }
+    });
+  }
+
+  /** Makes a page that shows meshes (docs/view.md): the bytes of an HTML file.   layers  [{ mesh, name, report }]. */
+  page(layers, options = {}) {
+    return this.during(options, (blocks) => {
+      const texts = (key) => blocks.words(layers.map((l) => (l[key] ? blocks.text(l[key]) : 0)));
+      const name = 'page.html';
+      this.check(this.x.page(this.context, blocks.text(name), blocks.words(layers.map((l) => l.mesh.at)), texts('name'), texts('report'),
+        layers.length, options.selfIntersections ? 1 : 0));
+      return this.files.take(name);
     });
   }
 
   // --- within ---
 
-  /* Calls what fills a mesh, and copies its parts. Faces of three corners each need no offsets. */
-  mesh(fill, certify) {
-    return this.during((blocks) => {
-      const out = blocks.room(4), parts = blocks.room(28), status = fill(blocks, out), mesh = this.word(out);
-      try {
-        this.check(status);
-        this.x.mesh_parts(mesh, parts);
-        const [vertices, at, faces, offsets_at, corners_at, tetrahedra, tetrahedra_at] = this.words(parts, 7);
-        const buffer = this.x.memory.buffer;
-        const offsets = faces ? Uint32Array.from(new BigUint64Array(buffer, offsets_at, faces + 1), Number) : new Uint32Array(1);
-        const found = {
-          vertices: new Float64Array(buffer, at, 3 * vertices).slice(), offsets,
-          faces: new Uint32Array(buffer, corners_at, offsets[faces]).slice(),
-          tetrahedra: new Uint32Array(buffer, tetrahedra_at, 4 * tetrahedra).slice(),
-        };
-        if (certify) found.certificate = this.certificate(mesh, blocks);
-        return found;
-      } finally {
-        if (mesh) this.x.mesh_free(mesh);
-      }
-    });
+  triangulate(points, weights, options) {
+    const flat = options.dimension === 2;
+    return this.during(options, (blocks) => this.triangulated(blocks.weighted(points, weights, flat), flat, blocks.room(4)));
+  }
+  triangulated({ at, weights, count }, flat, out) {
+    return this.made(this.x[flat ? 'delaunay2' : 'delaunay'](this.context, at, weights, count, out), out, Triangulation, flat);
+  }
+  alphaValues(t, { at, weights, count }, out) {
+    this.numbers(Uint32Array, out, 1)[0] = 0;
+    return this.made(this.x[t.flat ? 'alpha_values2' : 'alpha_values'](this.context, t.at, at, weights, count, out), out, AlphaComplex);
   }
 
-  certificate(mesh, blocks) {
-    const at = blocks.room(80);
-    this.check(this.x.certificate(this.context, mesh, at));
-    const [closed, manifold, oriented, components, genus, boundary_edges, boundary_loops, self_intersections, area, volume] =
-      new Float64Array(this.x.memory.buffer, at, 10);
-    return { closed: !!closed, manifold: !!manifold, oriented: !!oriented, components, genus, boundary_edges, boundary_loops,
-      self_intersections, area, volume };
+  property(mesh, name, values, of_faces, length, blocks) {
+    const type = TYPES.findIndex((t) => values instanceof t), kind = TYPES[type] ?? Float64Array, out = blocks.room(4);
+    if (values.length !== length) throw new BrioError(ARGUMENT, `the property ${name} has ${values.length} values; expected ${length}`);
+    this.check(this.x.mesh_add(mesh.at, blocks.text(name), TYPES.indexOf(kind), of_faces, out));
+    this.numbers(kind, this.numbers(Uint32Array, out, 1)[0], length).set(values);
+  }
+
+  /* What a call made, as a result of that kind; what a failed call left is released. */
+  made(status, out, kind, ...more) {
+    const at = this.numbers(Uint32Array, out, 1)[0];
+    const result = at ? new kind(this, at, ...more) : null;
+    try {
+      this.check(status);
+    } catch (error) {
+      result?.free();
+      throw error;
+    }
+    return result;
   }
 
   /* Calls with blocks of the module's memory, which are released at the end. */
-  during(call) {
-    const taken = [], x = this.x;
+  during(options, call) {
+    const taken = [], x = this.x, before = this.progress;
     const room = (size) => {
       const at = x.allocate(size);
-      if (!at) throw new BrioError(0, 'no memory for ' + size + ' bytes');
+      if (!at) throw new BrioError(NO_MEMORY, `no memory for ${size} bytes`);
       taken.push(at);
       new Uint8Array(x.memory.buffer, at, size).fill(0);
       return at;
     };
     const bytes = (array) => {
+      if (array.buffer.detached) throw new BrioError(ARGUMENT, 'an array was a view of memory that has moved since: read it from its result again');
+      if (array.buffer === x.memory.buffer) return array.byteOffset; // it is there already
       const at = room(array.byteLength);
       new Uint8Array(x.memory.buffer, at, array.byteLength).set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
       return at;
     };
-    const blocks = { room, bytes, doubles: (a) => bytes(a instanceof Float64Array ? a : Float64Array.from(a)),
+    const doubles = (array, length, name) => {
+      if (length !== undefined && array.length !== length) throw new BrioError(ARGUMENT, `${name} has ${array.length} numbers; expected ${length}`);
+      return bytes(array instanceof Float64Array ? array : Float64Array.from(array));
+    };
+    const points = (array, coordinates) => {
+      const count = array.length / coordinates;
+      if (!Number.isInteger(count)) throw new BrioError(ARGUMENT, `points have ${array.length} numbers; expected ${coordinates} of each point, one after the other`);
+      return { at: doubles(array), count };
+    };
+    const weights = (w, count) => (w ? doubles(w, count, 'weights') : 0);
+    const weighted = (array, w, flat) => {
+      const p = points(array, flat ? 2 : 3);
+      return { ...p, weights: weights(w, p.count) };
+    };
+    const blocks = { room, bytes, doubles, points, weights, weighted,
       words: (a) => bytes(a instanceof Uint32Array ? a : Uint32Array.from(a)), text: (t) => bytes(new TextEncoder().encode(t + '\0')) };
     try {
+      if (options.progress) this.progress = options.progress;
       return call(blocks);
     } finally {
+      this.progress = before;
       for (const at of taken) x.release(at);
     }
   }
 
   check(status) {
+    const thrown = this.thrown;
+    this.thrown = null;
+    if (thrown && status === CANCELLED) throw thrown.error;
     if (status !== 0) throw new BrioError(status, this.text(this.x.message(this.context)));
   }
 
-  words(at, count) { return Array.from(new Uint32Array(this.x.memory.buffer, at, count)); }
-  word(at) { return this.words(at, 1)[0]; }
+  /** A view of numbers in the module's memory. */
+  numbers(kind, at, count) { return new kind(this.x.memory.buffer, at, count); }
 
   text(at) {
     const bytes = new Uint8Array(this.x.memory.buffer, at);
     return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
   }
 }
+
+/* The options of a surface as numbers, in the order of module.c. */
+function choices(o) {
+  const named = (list, key) => {
+    const found = o[key] === undefined ? 0 : list.indexOf(o[key]);
+    if (found < 0) throw new BrioError(ARGUMENT, `${key} is '${o[key]}'; expected one of ${list.join(', ')}`);
+    return found;
+  };
+  const boundaries = o.boundaries === 'auto' ? 2 : o.boundaries ? 1 : 0;
+  return [named(METHODS, 'method'), named(NOISE, 'noise'), o.open ?? 0, named(HOLES, 'holes'), o.simplify ? 1 : 0, o.confidence ? 1 : 0,
+    o.polygons ? 1 : 0, o.distance ?? 0, o.theta ?? 0, boundaries, o.density ? 1 : 0, o.pieces ?? 0, o.seed ?? 0];
+}
+
+/** Whether an error says that a call was stopped. */
+export const isCancelled = (error) => error?.name === 'BrioError' && error.status === CANCELLED;
+export { AlphaComplex, Cells, Mesh, Points, Triangulation };
