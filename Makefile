@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets npm page
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets npm page
 
 all:
 	@sh scripts/setup.sh build
@@ -15,7 +15,7 @@ setup:
 	@BRIO_SETUP=1 sh scripts/setup.sh build
 
 # Also for `all`, which these build first.
-demo bench quality votes thesis: export BRIO_SETUP := 1
+demo bench quality votes thesis site: export BRIO_SETUP := 1
 
 demo: all
 	@sh scripts/demo.sh $(BRIO) out
@@ -169,6 +169,11 @@ machines:
 targets:
 	@sh scripts/setup.sh targets
 	/usr/bin/python3 tests/targets/targets.py . build/targets out/targets-env/bin/python $(TARGETS)
+
+# The documentation as a site, out/site: scripts/site.sh. PICTURES=1 draws docs/images/gallery anew.
+site: all
+	@sh scripts/setup.sh site
+	@sh scripts/site.sh build
 
 # Debian packages of what is committed, in out/deb.
 deb:

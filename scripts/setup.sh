@@ -93,6 +93,13 @@ missing() {
         has_python_with ensurepip || echo python3-venv
         return 0
     fi
+    if [ "$1" = site ]; then
+        has doxygen || echo doxygen
+        has pkg-config || echo pkg-config
+        has_python_with ensurepip || echo python3-venv
+        [ -f "$($python -c 'import sysconfig; print(sysconfig.get_path("include"))')/Python.h" ] || echo python3-dev
+        return 0
+    fi
     if [ "$1" = deb ]; then
         has git || echo git
         has dpkg-buildpackage || echo dpkg-dev
@@ -131,7 +138,7 @@ missing_peers() {
         has npm || echo nodejs npm
         return 0
     fi
-    case $1 in build | model | npm | threads | analyze | fuzz | coverage | oracles | quality | deb) return 0 ;; esac
+    case $1 in build | model | npm | threads | analyze | fuzz | coverage | oracles | quality | site | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -277,9 +284,9 @@ packages)
     sh "$0" web || true
     exit 0
     ;;
-build | check | web | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | npm | deb) ;;
+build | check | web | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | npm | site | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|web|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|npm|deb" >&2
+    echo "usage: setup.sh build|check|packages|web|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|npm|site|deb" >&2
     exit 1
     ;;
 esac

@@ -1,0 +1,27 @@
+#!/bin/sh
+# site.sh BUILD: the documentation as a site, in out/site: pages of docs/, the manual of C from the headers (Doxygen), and pages of
+# the gallery, which the commands of docs/gallery.md and docs/start make. With PICTURES=1 also docs/images/gallery, by Chromium.
+#
+# BUILD is the folder of a build of brio.
+set -eu
+
+build=$1
+environment=out/site-env
+prefix="$PWD/out/site-prefix"
+
+if ! cmp -s docs/requirements.txt "$environment/requirements.txt"; then
+    /usr/bin/python3 -m venv "$environment"
+    "$environment/bin/pip" install -q --no-compile -r docs/requirements.txt ./python
+    cp docs/requirements.txt "$environment/requirements.txt"
+fi
+cmake --install "$build" --prefix "$prefix" >/dev/null
+
+export BRIO_GALLERY="$PWD/out/gallery" NO_MKDOCS_2_WARNING=1 PKG_CONFIG_PATH="$prefix/lib/pkgconfig"
+export PATH="$prefix/bin:$PWD/$environment/bin:$PATH"
+rm -rf "$BRIO_GALLERY" out/site
+mkdir -p "$BRIO_GALLERY"
+/usr/bin/python3 scripts/run_page.py "$BRIO_GALLERY" docs/gallery.md docs/start/*.md
+[ "${PICTURES:-}" != 1 ] || node scripts/pictures.mjs "$BRIO_GALLERY" docs/images/gallery
+"$environment/bin/mkdocs" build -q
+doxygen docs/Doxyfile
+echo "Written: out/site; open out/site/index.html in a browser"
