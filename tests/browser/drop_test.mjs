@@ -116,6 +116,7 @@ async function surface() {
     await page.getByRole("button", { name: "Reconstruct" }).focus();
     await page.keyboard.press("Enter");
     await page.evaluate(() => window.brioDrop.ready);
+    expect(await page.evaluate(() => document.activeElement.textContent) === "Reconstruct", "the focus went away");
     expect(/^Surface in .* s: closed, manifold, oriented, genus 0, 0 crossing pairs of faces/.test(await done(page)), `said ${await done(page)}, ${await wrong(page)}`);
     expect((await page.textContent("#panel")).includes("crossing faces0 pairs"), "the panel has the certificate");
     await settled(page);
