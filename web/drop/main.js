@@ -4,7 +4,7 @@ import { App } from "../src/app.js";
 import { at, count, labelled, make, short } from "../src/dom.js";
 import { Caller } from "../../wasm/worker.mjs";
 
-const METHODS = [["labeled", "most data"], ["power-crust", "dense points of closed solids"], ["tight-cocone", "all points kept, closed"], ["cocone", "all points kept"]];
+const METHODS = [["labeled", "for most data"], ["power-crust", "power crust"], ["tight-cocone", "all points, closed"], ["cocone", "all points"]];
 const SAVED = ["ply", "stl", "obj", "glb"];
 
 /** The bytes of an element's text: base 64, packed by gzip. */
@@ -23,7 +23,7 @@ class Drop {
         const button = (words, onclick, more) => make("button", { type: "button", onclick, ...more }, words);
         this.input = make("input", { type: "file", hidden: true, tabIndex: -1, "aria-label": "File", onchange: () => { this.take(this.input.files); this.input.value = ""; } });
         this.choose = button("Choose a file", () => this.input.click());
-        this.method = make("select", {}, ...METHODS.map(([value, words]) => make("option", { value }, `${value}: ${words}`)));
+        this.method = make("select", {}, ...METHODS.map(([value, words]) => make("option", { value }, words)));
         this.closed = make("input", { type: "checkbox" });
         this.simplify = make("input", { type: "checkbox" });
         this.go = button("Reconstruct", () => this.reconstruct(), { className: "go" });
@@ -41,7 +41,13 @@ class Drop {
             this.choose, this.input, this.wrong, this.making, this.running, this.done, this.keeping)];
     }
 
+    /** The words in the middle of an empty page. */
+    invite() {
+        at("stage").append(make("div", { id: "invite" }, make("p", {}, "Drop a scan here"), make("p", { className: "note" }, "PLY, OBJ, STL, OFF, LAS, LAZ, PCD, PTX, PTS, XYZ, CSV, NPY, VTU, VTP, VTK, also by gzip")));
+        document.body.classList.add("without");
+    }
     async start() {
+        this.invite();
         this.module = WebAssembly.compile(await embedded("wasm"));
         const program = URL.createObjectURL(new Blob([at("worker").textContent], { type: "text/javascript" }));
         const module = await this.module;
@@ -61,7 +67,7 @@ class Drop {
     /** Runs what calls the worker, with progress and a way to stop it. Failures are said; returns whether there was none. */
     async run(words, work) {
         this.stop?.abort(new DOMException("Cancelled.", "AbortError"));
-        const stop = this.stop = new AbortController();
+        const stop = this.stop = new AbortController(), focused = document.activeElement;
         const say = (stage, share) => { this.stage.textContent = stage; if (share >= 0) this.bar.value = share; else this.bar.removeAttribute("value"); };
         this.wrong.textContent = this.done.textContent = "";
         this.running.hidden = false;
@@ -79,6 +85,7 @@ class Drop {
                 this.stop = null;
                 this.running.hidden = true;
                 this.go.disabled = this.saving.disabled = false;
+                if (document.activeElement === document.body) focused.focus(); // whoever works by keys stays where they were
             }
         }
     }
@@ -104,6 +111,8 @@ class Drop {
             this.file = file;
             this.app.camera.reset();
             await this.show(page);
+            at("invite")?.remove();
+            document.body.classList.remove("without");
             this.making.hidden = false;
             this.keeping.hidden = true;
             this.done.textContent = `${file.name}: ${count(points)} points`;
