@@ -1,4 +1,5 @@
 /* VTU and VTP files: what is written reads back in every encoding; files of other programs. */
+#include "base/rng.h"
 #include "failing_allocator.h"
 #include "vtk_ways.h"
 
@@ -300,6 +301,35 @@ static void vertices_beyond_doubles_are_no_part_of_files(void) {
     brio_cells_free(cells);
 }
 
+/* A wall between two cells is a face of each; what the file says of a cell, its faces have. */
+static void cells_read_back_as_their_faces(void) {
+    enum { POINTS = 40 };
+    double points[3 * POINTS];
+    brio_rng rng = brio_rng_new(5);
+    uint64_t faces = 0, corners = 0, read_corners = 0;
+    brio_cells_options o = {0};
+    brio_cells *cells = NULL;
+    brio_mesh *mesh = NULL;
+    for (size_t i = 0; i < 3 * POINTS; i++) points[i] = brio_rng_double(&rng);
+    o.vertices = 1;
+    EXPECT(brio_voronoi_cells(io_ctx, NULL, points, NULL, POINTS, &o, &cells) == BRIO_OK, "%s", brio_message(io_ctx));
+    const char *path = io_path("cells.vtu");
+    EXPECT(brio_cells_write(io_ctx, path, cells, BRIO_CELLS_FORMAT_AUTO, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(brio_read(io_ctx, path, NULL, &mesh) == BRIO_OK, "%s", brio_message(io_ctx));
+    const brio_property *volume = brio_mesh_face_property(mesh, "volume");
+    for (size_t c = 0; c < cells->num_cells; c++) {
+        if (!cells->bounded[c]) continue;
+        for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++, faces++) {
+            EXPECT(faces < mesh->num_faces && volume && ((const double *)volume->data)[faces] == cells->volume[c]);
+            corners += cells->corner_offsets[f + 1] - cells->corner_offsets[f];
+        }
+    }
+    for (size_t f = 0; f < mesh->num_faces; f++) read_corners += mesh->face_offsets[f + 1] - mesh->face_offsets[f];
+    EXPECT(faces > 100 && mesh->num_faces == faces && read_corners == corners);
+    brio_mesh_free(mesh);
+    brio_cells_free(cells);
+}
+
 SUITE(test_io_vtk) {
     io_begin();
     RUN(all_parts_read_back);
@@ -313,5 +343,6 @@ SUITE(test_io_vtk) {
     RUN(names_stay_distinct);
     RUN(names_of_control_characters_stay_distinct);
     RUN(vertices_beyond_doubles_are_no_part_of_files);
+    RUN(cells_read_back_as_their_faces);
     return io_end();
 }

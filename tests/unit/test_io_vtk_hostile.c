@@ -178,6 +178,21 @@ static void errors_of_cells(void) {
     io_expect_error("a.vtu", CELLS("0 1 2", "2"), BRIO_ERR_FORMAT, "2 corners, expected 3");
     io_expect_error("a.vtu", CELLS("0 1 2", "3 4"), BRIO_ERR_FORMAT, "has 2 or more rows, not 1");
 #undef CELLS
+#define POLYHEDRON(faces, end)                                                                                         \
+    VTU_TAG "><Piece NumberOfPoints=\"3\" NumberOfCells=\"1\"><Points><DataArray type=\"Int8\" "                       \
+            "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points><Cells><DataArray "       \
+            "type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2</DataArray><DataArray type=\"Int64\" "        \
+            "Name=\"offsets\" format=\"ascii\">3</DataArray><DataArray type=\"UInt8\" Name=\"types\" "                 \
+            "format=\"ascii\">42</DataArray><DataArray type=\"Int64\" Name=\"faces\" format=\"ascii\">" faces          \
+            "</DataArray><DataArray type=\"Int64\" Name=\"faceoffsets\" format=\"ascii\">" end                         \
+            "</DataArray></Cells></Piece></VTKFile>"
+    io_expect_error("a.vtu", POLYHEDRON("1 3 0 1 3", "5"), BRIO_ERR_FORMAT, "point 3, expected one of the 3");
+    io_expect_error("a.vtu", POLYHEDRON("1 4 0 1 2", "5"), BRIO_ERR_FORMAT, "numbers in the array faces");
+    io_expect_error("a.vtu", POLYHEDRON("2 3 0 1 2", "5"), BRIO_ERR_FORMAT, "numbers in the array faces");
+    io_expect_error("a.vtu", POLYHEDRON("1 -3 0 1 2", "5"), BRIO_ERR_FORMAT, "numbers in the array faces");
+    io_expect_error("a.vtu", POLYHEDRON("1 3 0 1 2", "6"), BRIO_ERR_FORMAT, "face offset 6, expected 0 to 5");
+    io_expect_error("a.vtu", POLYHEDRON("1 3 0 1 2", "-1"), BRIO_ERR_FORMAT, "face offset -1");
+#undef POLYHEDRON
     io_expect_error("a.vtp",
                     VTP_TAG "><Piece NumberOfPoints=\"0\"><PointData><DataArray type=\"Int8\" Name=\"a\" "
                             "format=\"appended\" offset=\"0\"/><DataArray type=\"Int8\" Name=\"b\" "

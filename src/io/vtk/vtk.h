@@ -255,6 +255,7 @@ typedef struct brio_vtk_cells {
     brio_vtk_section section;
     const brio_vtk_piece *piece;
     brio_vtk_values connectivity, offsets, types; /* VTP has no types */
+    brio_vtk_values faces, face_offsets;          /* of polyhedra; may be left out */
 } brio_vtk_cells;
 
 /** Adds the cells to a mesh whose vertices have all been read.   rows  NULL, or receives the rows of its faces.

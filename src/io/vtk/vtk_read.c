@@ -19,7 +19,8 @@
 /* The cells of a VTU or VTP file as polygons, tetrahedra and edges.
  *
  * A strip of n corners is n - 2 triangles, of which every second one is turned round; a line of n corners is n - 1
- * edges. Of quadratic cells the corners are kept. Other cells are passed over. */
+ * edges. Of quadratic cells the corners are kept. A polyhedron is its faces, so that a wall between two polyhedra is there
+ * twice. Other cells are passed over. */
 
 /* Types of cells of VTK. */
 enum {
@@ -35,7 +36,8 @@ enum {
     TETRAHEDRON = 10,
     QUADRATIC_TRIANGLE = 22,
     QUADRATIC_QUAD = 23,
-    QUADRATIC_TETRAHEDRON = 24
+    QUADRATIC_TETRAHEDRON = 24,
+    POLYHEDRON = 42
 };
 
 /* Cells between two reports of progress. Chosen. */
@@ -46,6 +48,7 @@ typedef struct {
     brio_builder *builder;
     const brio_vtk_cells *cells;
     uint64_t number, from, count; /* corners from `from` on */
+    uint64_t faces_from;          /* where the faces of the next polyhedron begin */
 } cell;
 
 /* Returns brio_vtk_number, without a call for the types that indices have. */
@@ -61,16 +64,21 @@ static inline double number_of(const brio_vtk_values *values, uint64_t i) {
     return (double)wide;
 }
 
-/* Reads corner i of the cell, a vertex of the mesh. */
-static brio_status corner(const cell *c, uint64_t i, double *vertex) {
+/* Sets the vertex of the mesh that number i of an array names. */
+static brio_status vertex_of(const cell *c, const brio_vtk_values *array, uint64_t i, double *vertex) {
     const brio_vtk_piece *piece = c->cells->piece;
-    double index = number_of(&c->cells->connectivity, c->from + i);
+    double index = number_of(array, i);
     BRIO_EXPECT(
         c->builder->ctx, index >= 0 && index < (double)piece->num_points && index == floor(index), BRIO_ERR_FORMAT,
         "%s: cell %" PRIu64 " (counted from 0): point %.17g, expected one of the %" PRIu64 " points, counted from 0",
         c->builder->name, c->number, index, piece->num_points);
     *vertex = index + (double)piece->first_point;
     return BRIO_OK;
+}
+
+/* Reads corner i of the cell. */
+static brio_status corner(const cell *c, uint64_t i, double *vertex) {
+    return vertex_of(c, &c->cells->connectivity, c->from + i, vertex);
 }
 
 /* Adds a polygon.   order  the places of its corners in the cell; NULL for all of them, as they come. */
@@ -105,6 +113,42 @@ static brio_status add_line(const cell *c) {
     return BRIO_OK;
 }
 
+/* Reads number *at of the array of faces, which says how many numbers follow; `end` is that of the polyhedron. */
+static brio_status faces_count(const cell *c, uint64_t *at, uint64_t end, uint64_t *count) {
+    double value = *at < end ? number_of(&c->cells->faces, *at) : -1;
+    *at += 1;
+    BRIO_EXPECT(c->builder->ctx, value >= 0 && value <= (double)end - (double)*at && value == floor(value),
+                BRIO_ERR_FORMAT,
+                "%s: cell %" PRIu64 " (counted from 0): its numbers in the array faces do not end with it",
+                c->builder->name, c->number);
+    *count = (uint64_t)value;
+    return BRIO_OK;
+}
+
+/* The array `faces` has for each polyhedron the number of its faces, and for each of these that of its corners, then
+ * them; `faceoffsets` has where it ends. */
+static brio_status add_polyhedron(cell *c) {
+    const brio_vtk_cells *cells = c->cells;
+    if (!cells->faces.bytes || !cells->face_offsets.bytes)
+        return brio_builder_leave_out(c->builder, "polyhedra without an array of faces");
+    double to = number_of(&cells->face_offsets, c->number), vertex = 0;
+    BRIO_EXPECT(c->builder->ctx, to >= (double)c->faces_from && to <= (double)cells->faces.count, BRIO_ERR_FORMAT,
+                "%s: cell %" PRIu64 " (counted from 0): face offset %.17g, expected %" PRIu64 " to %" PRIu64,
+                c->builder->name, c->number, to, c->faces_from, cells->faces.count);
+    uint64_t at = c->faces_from, end = (uint64_t)to, faces = 0, corners = 0;
+    BRIO_FORWARD(faces_count(c, &at, end, &faces));
+    for (; faces; faces--) {
+        BRIO_FORWARD(faces_count(c, &at, end, &corners));
+        for (; corners; corners--) {
+            BRIO_FORWARD(vertex_of(c, &cells->faces, at++, &vertex));
+            BRIO_FORWARD(brio_builder_corner(c->builder, vertex));
+        }
+        BRIO_FORWARD(brio_builder_face(c->builder));
+    }
+    c->faces_from = end;
+    return BRIO_OK;
+}
+
 /* Returns the corners that a cell of this type has at least. */
 static uint64_t least_corners(int type) {
     switch (type) {
@@ -125,7 +169,7 @@ static uint64_t least_corners(int type) {
     }
 }
 
-static brio_status add_typed(const cell *c, int type) {
+static brio_status add_typed(cell *c, int type) {
     BRIO_EXPECT(c->builder->ctx, c->count >= least_corners(type), BRIO_ERR_FORMAT,
                 "%s: cell %" PRIu64 " (counted from 0): %" PRIu64 " corners, expected %" PRIu64 " of a cell of type %d",
                 c->builder->name, c->number, c->count, least_corners(type), type);
@@ -152,6 +196,8 @@ static brio_status add_typed(const cell *c, int type) {
         return add_tetrahedron(c);
     case TETRAHEDRON:
         return add_tetrahedron(c);
+    case POLYHEDRON:
+        return add_polyhedron(c);
     case VERTEX:
     case POLY_VERTEX:
         break; /* points are there without */
@@ -161,7 +207,7 @@ static brio_status add_typed(const cell *c, int type) {
     return BRIO_OK;
 }
 
-static brio_status add_cell(const cell *c) {
+static brio_status add_cell(cell *c) {
     switch (c->cells->section) {
     case BRIO_VTK_LINES:
         return add_line(c);
@@ -298,16 +344,24 @@ static brio_status find_cells(vtk_reader *r, const brio_vtk_array *a, brio_vtk_c
     return BRIO_OK;
 }
 
+/* Returns where an array of cells goes to, or NULL if it is none that is read. */
+static brio_vtk_values *cells_array(brio_vtk_cells *cells, brio_vtk_section section, const char *name) {
+    bool typed = section == BRIO_VTK_CELLS;
+    if (!strcmp(name, "connectivity")) return &cells->connectivity;
+    if (!strcmp(name, "offsets")) return &cells->offsets;
+    if (typed && !strcmp(name, "types")) return &cells->types;
+    if (typed && !strcmp(name, "faces")) return &cells->faces;
+    return typed && !strcmp(name, "faceoffsets") ? &cells->face_offsets : NULL;
+}
+
 static brio_status read_cells(vtk_reader *r, uint64_t bytes, const brio_vtk_array *a) {
     brio_vtk_cells *cells = NULL;
     BRIO_FORWARD(find_cells(r, a, &cells));
-    bool connectivity = !strcmp(a->name, "connectivity");
-    brio_vtk_values *target = connectivity                  ? &cells->connectivity
-                              : !strcmp(a->name, "offsets") ? &cells->offsets
-                                                            : &cells->types;
+    brio_vtk_values *target = cells_array(cells, a->section, a->name);
     BRIO_EXPECT(r->stream->ctx, !target->bytes, BRIO_ERR_FORMAT, "%s: byte %" PRIu64 ": two arrays %s", r->stream->name,
                 brio_stream_offset(r->stream), a->name);
-    uint64_t count = connectivity ? UINT64_MAX : r->header.pieces[a->piece].num_cells[a->section];
+    bool any_count = target == &cells->connectivity || target == &cells->faces;
+    uint64_t count = any_count ? UINT64_MAX : r->header.pieces[a->piece].num_cells[a->section];
     return brio_vtk_read_values(&r->decoder, bytes, count, target);
 }
 
@@ -334,8 +388,7 @@ static bool is_kept(const brio_vtk_array *a) {
     if (a->section < BRIO_VTK_POINTS) return false;
     if (a->section == BRIO_VTK_POINTS) return true;
     if (a->section == BRIO_VTK_POINT_DATA || a->section == BRIO_VTK_CELL_DATA) return brio_vtk_is_kept(a);
-    return a->components == 1 && (!strcmp(a->name, "connectivity") || !strcmp(a->name, "offsets") ||
-                                  (a->section == BRIO_VTK_CELLS && !strcmp(a->name, "types")));
+    return a->components == 1 && cells_array(&(brio_vtk_cells){.section = a->section}, a->section, a->name);
 }
 
 /* Reads the array whose first byte is the next one. */
@@ -443,6 +496,8 @@ static void free_reader(vtk_reader *r) {
         brio_release(ctx, r->cells[i].connectivity.bytes);
         brio_release(ctx, r->cells[i].offsets.bytes);
         brio_release(ctx, r->cells[i].types.bytes);
+        brio_release(ctx, r->cells[i].faces.bytes);
+        brio_release(ctx, r->cells[i].face_offsets.bytes);
     }
     brio_release(ctx, r->cells);
     brio_release(ctx, r->appended);
