@@ -481,6 +481,35 @@ static void cancelled_changes_leave_all(void) {
     world_free(&w);
 }
 
+/* A call that was told to stop has failed, wherever it was: one that was about to build anew did so, and succeeded. */
+static void cancelled_moves_of_all_leave_all(void) {
+    static const double SHARE[] = {0.01, 0.03, 0.06};
+    size_t n = 1200, cancelled = 0;
+    double *p = calloc(3 * n, sizeof *p);
+    for (int s = 0; s < 3; s++) {
+        world w = world_new(UNIFORM, 0, n + 1);
+        size_t left = 0;
+        brio_status status = BRIO_ERR_CANCELLED;
+        EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+        insert_many(&w, n);
+        brio_context_set_progress(w.ctx, stop_at, &left);
+        for (size_t k = 1; k < 400 && status != BRIO_OK; k += BRIEF_TESTS ? 5 : 1) {
+            for (size_t i = 0; i < 3 * n; i++) p[i] = w.point[i] + SHARE[s] / cbrt((double)n) * (2 * draw() - 1);
+            left = k;
+            status = brio_dynamic_move(w.d, NULL, p, NULL, n);
+            EXPECT((status == BRIO_OK) == (left > 0) && (status == BRIO_OK || status == BRIO_ERR_CANCELLED),
+                   "%s, %zu are left", brio_message(w.ctx), left);
+            left = 0;
+            cancelled += status != BRIO_OK;
+            if (status == BRIO_OK) memcpy(w.point, p, 3 * n * sizeof *p);
+            EXPECT(is_as_built(&w), "share %g, stopped at %zu", SHARE[s], k);
+        }
+        world_free(&w);
+    }
+    EXPECT(cancelled > 3, "%zu", cancelled);
+    free(p);
+}
+
 static void wrong_arguments_are_refused(void) {
     world w = world_new(UNIFORM, 0, 200);
     double p[9] = {0.1, 0.2, 0.3, NAN, 0, 0, 1, 1, 1}, weight[3] = {1, 1, 1};
@@ -559,6 +588,7 @@ SUITE(test_dynamic) {
     RUN(centres_of_spheres_go);
     RUN(failing_memory_leaves_all);
     RUN(cancelled_changes_leave_all);
+    RUN(cancelled_moves_of_all_leave_all);
     RUN(wrong_arguments_are_refused);
     RUN(questions_are_answered_between_changes);
     return harness_end();
