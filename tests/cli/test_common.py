@@ -37,7 +37,7 @@ OWN_OPTIONS = {
     "subdivide": ["--levels"],
     "simplify": ["--faces", "--error"],
     "terrain": ["--class", "--max-edge", "--raster", "--cell"],
-    "locate": ["--at", "--plane", "--weights", "--weights-mod", "--unweighted"],
+    "locate": ["--at", "--plane", "--weights", "--weights-mod", "--unweighted", "--cell", "--periodic"],
     "voronoi": ["--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--box", "--faces"],
     "interpolate": ["--at", "--plane", "--property", "--method"],
     "restricted": ["--surface"],
