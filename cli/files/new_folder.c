@@ -1,6 +1,9 @@
-/* Folders that get their names when they are complete: see new_folder.h. The older folder is the one that the older
- * index names for its first file. Of it, files 0.EXT, 1.EXT and so on are removed, and the folder if it is then empty. */
-#include "cli/files/new_folder.h"
+/* Folders that get their names when they are complete: see new_file.h.
+ *
+ * The older folder is the one that the older index names for its first file. Of it, files 0.EXT, 1.EXT and so on are
+ * removed, and the folder if it is then empty. */
+#include "cli/files/new_file.h"
+#include "platform/disk.h"
 #include "platform/folder.h"
 #include <errno.h>
 #include <stdlib.h>
@@ -44,13 +47,13 @@ static bool is_named_in(const char *text, const char *folder, const char *extens
 /* Finds the folder of the index that is there now. */
 static void find_old(const char *index, new_folder *f) {
     char *head = calloc(1, HEAD_BYTES + 1);
-    FILE *file = fopen(index, "rb");
-    if (head && file && fread(head, 1, HEAD_BYTES, file) > 0)
+    int file = brio_open_input(index);
+    if (head && file >= 0 && brio_read_bytes_at(file, head, HEAD_BYTES, 0) > 0)
         for (int i = 0; i < MOST_NAMES && !*f->old; i++) {
             name_of(f, i, f->old);
             if (!is_named_in(head, f->old, f->extension)) *f->old = 0;
         }
-    if (file) fclose(file);
+    if (file >= 0) brio_close(file);
     free(head);
 }
 

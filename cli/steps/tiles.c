@@ -2,7 +2,6 @@
 #include "cli/steps/tiles.h"
 #include "cli/files/files.h"
 #include "cli/files/new_file.h"
-#include "cli/files/new_folder.h"
 #include "cli/files/read_write.h"
 #include "platform/file.h"
 #include <errno.h>

@@ -66,7 +66,7 @@ class Tiles(CliTest):
 
     def test_an_older_output_was_lost_when_a_run_failed(self):
         cloud, index = self.rows("a.csv", 800), self.path("a&b.pvtu")
-        command = ("delaunay", cloud, "--tiles", "3", "--scratch", self.scratch(), "-o", index)
+        command = ("delaunay", cloud, "--threads", "1", "--tiles", "3", "--scratch", self.scratch(), "-o", index)
 
         def pieces():
             names = [piece.get("Source") for piece in xml.etree.ElementTree.parse(index).iter("Piece")]
@@ -165,6 +165,35 @@ class Tiles(CliTest):
         if process.wait() != -signal.SIGKILL:
             self.skipTest("the run was over before it could be killed")
         return command
+
+    def test_runs_killed_at_random_moments_go_on(self):
+        cloud = self.rows("a.csv", 5000)
+        command = ("delaunay", cloud, "--tiles", "3", "--scratch", self.scratch(), "-o", self.path("x.pvtu"))
+        begin = time.monotonic()
+        plain = self.facts(*command)["checksum"]
+        seconds = time.monotonic() - begin
+        rng = random.Random(3)
+        for _ in range(50 if os.environ.get("BRIO_LONG") else 3):
+            process = subprocess.Popen([BRIO, *command, "--quiet"], stdout=subprocess.DEVNULL)
+            time.sleep(rng.random() * seconds)
+            process.kill()
+            process.wait()
+            pieces = xml.etree.ElementTree.parse(self.path("x.pvtu")).iter("Piece")
+            self.assertTrue(all(os.path.exists(self.path(piece.get("Source"))) for piece in pieces))
+            self.assertEqual(self.facts(*command)["checksum"], plain)
+            self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_a_full_disk_is_said(self):
+        cloud = self.rows("a.csv", 5000)
+        for size in (1000, 150000, 240000):  # in the points, in a tile
+            with self.subTest(size):
+                run = subprocess.run([BRIO, "delaunay", cloud, "--tiles", "2", "--scratch", self.scratch(), "--quiet"],
+                                     stderr=subprocess.PIPE, check=False, preexec_fn=lambda most=size: (
+                                         signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                         resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))))
+                self.assertEqual(run.returncode, 6, run.stderr)
+                self.assertRegex(run.stderr.decode(), r"brio-tiles-\w+/[\w.-]+: cannot write: File too large")
+                self.assertEqual(os.listdir(self.scratch()), [])
 
     def test_an_interrupted_run_leaves_nothing(self):
         cloud = self.rows("a.csv", 20000)
