@@ -195,6 +195,15 @@ class Tiles(CliTest):
                 self.assertRegex(run.stderr.decode(), r"brio-tiles-\w+/[\w.-]+: cannot write: File too large")
                 self.assertEqual(os.listdir(self.scratch()), [])
 
+    def test_too_small_a_disk_is_said_before_the_work(self):
+        cloud, disk = self.rows("a.csv", 20000), self.scratch()
+        line = 'mount -t tmpfs -o size=2m none "$1" && exec "$0" delaunay "$2" --tiles 2 --scratch "$1" --quiet'
+        run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, cloud], stderr=subprocess.PIPE, check=False)
+        if run.returncode in (1, 32, 126, 127):
+            self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
+        self.assertEqual(run.returncode, 6, run.stderr)
+        self.assertRegex(run.stderr.decode(), r"20000 points need about 3 MB more on this disk, which has room for \d MB")
+
     def test_an_interrupted_run_leaves_nothing(self):
         cloud = self.rows("a.csv", 20000)
         process = subprocess.Popen([BRIO, "delaunay", cloud, "--tiles", "8", "--scratch", self.scratch(), "--quiet"],
