@@ -4,14 +4,13 @@
 #include "cli/files/new_file.h"
 #include "cli/files/read_write.h"
 #include "platform/file.h"
-#include "platform/folder.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_TILES = 1 << 16, NAME_BYTES = 4096 };
+enum { MOST_TILES = 1 << 16 };
 
 static const char EXTENSION[] = ".pvtu";
 
@@ -175,21 +174,6 @@ done:
     return status;
 }
 
-/* Writes the name of a folder as text of XML. */
-static void write_name(FILE *file, const char *name) {
-    for (; *name; name++) {
-        const char *escape = *name == '&'   ? "&amp;"
-                             : *name == '<' ? "&lt;"
-                             : *name == '>' ? "&gt;"
-                             : *name == '"' ? "&quot;"
-                                            : NULL;
-        if (escape)
-            fputs(escape, file);
-        else
-            fputc(*name, file);
-    }
-}
-
 static brio_status write_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
     new_file f = {0};
     brio_status status = BRIO_OK;
@@ -202,7 +186,7 @@ static brio_status write_index(run *r, const char *folder, uint32_t tiles, bool 
     fprintf(f.file, "</PPointData>\n");
     for (uint32_t i = 0; i < tiles; i++) {
         fprintf(f.file, "<Piece Source=\"");
-        write_name(f.file, folder + brio_folder_length(folder));
+        cli_write_attribute(f.file, folder + brio_folder_length(folder));
         fprintf(f.file, "/%u.vtu\"/>\n", i);
     }
     fprintf(f.file, "</PUnstructuredGrid>\n</VTKFile>\n");
@@ -212,29 +196,21 @@ done:
     return status;
 }
 
-/* Writes a file for each tile, then the index. Without the index there is no output: on failure the tiles are removed.
- */
+/* Writes a file for each tile, then the index. Without the index there is no output: on failure the tiles are removed,
+ * and an older output stays as it was. */
 static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weighted) {
-    char folder[NAME_BYTES], path[NAME_BYTES + 32];
+    char path[BRIO_PATH_MOST + 32];
+    new_folder folder = {.path = ""};
     brio_status status = BRIO_OK;
-    uint32_t written = 0;
-    bool made;
-    size_t stem = strlen(r->common.output) - strlen(EXTENSION);
-    if (stem >= sizeof folder) return cli_fail_output(r, "%s: the name is too long", r->common.output);
-    snprintf(folder, sizeof folder, "%.*s", (int)stem, r->common.output);
-    if (!brio_make_folder(folder, false, &made))
-        return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", folder, strerror(errno));
-    for (; written < tiles; written++) {
-        snprintf(path, sizeof path, "%s/%u.vtu", folder, written);
-        TRY(write_tile(r, t, written, weighted, path));
+    TRY(cli_new_folder_open(r, r->common.output, ".vtu", &folder));
+    for (uint32_t i = 0; i < tiles; i++) {
+        snprintf(path, sizeof path, "%s/%u.vtu", folder.path, i);
+        TRY(write_tile(r, t, i, weighted, path));
     }
-    status = write_index(r, folder, tiles, weighted);
+    TRY(cli_new_folder_name(r, &folder));
+    status = write_index(r, folder.path, tiles, weighted);
 done:
-    for (uint32_t i = 0; status != BRIO_OK && i < written; i++) {
-        snprintf(path, sizeof path, "%s/%u.vtu", folder, i);
-        brio_remove_file(path);
-    }
-    if (status != BRIO_OK && made) brio_remove_folder(folder);
+    cli_new_folder_close(&folder, status == BRIO_OK);
     cli_lap(r, "write");
     return status;
 }

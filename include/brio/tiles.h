@@ -88,7 +88,8 @@ BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const doub
  *  points are refused.
  *  Memory: about 520 bytes a point of the largest tile, and at most one byte for each of all points. Points whose
  *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE,
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE (the
+ *  disk is full, or before the work, has less room than about 195 bytes a point),
  *  BRIO_ERR_OPEN (a scratch file was cut or removed), BRIO_ERR_NO_MEMORY (also where the memory limit of the context
  *  is too low for the largest tile; the sentence says how many tiles would do), BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t);

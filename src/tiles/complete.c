@@ -243,24 +243,23 @@ void brio_tile_result_free(brio_tiles *t, brio_tile_result *r) {
     *r = (brio_tile_result){0};
 }
 
-brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, brio_tile_result *out) {
+brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, brio_tile_result *out) {
     const brio_tile *facts = &t->tile[tile];
     brio_store_file f = {.file = -1};
     brio_status status = BRIO_OK;
     char name[32];
-    uint64_t at = sizeof(tile_head);
+    uint64_t tetrahedra = facts->tetrahedra * sizeof *out->tetrahedra, halo = facts->halo * sizeof *out->halo;
     *out = (brio_tile_result){0};
     snprintf(name, sizeof name, "tile-%u", tile);
-    BRIO_TRY(BRIO_ALLOC(t->ctx, out->tetrahedra, facts->tetrahedra + 1));
-    BRIO_TRY(BRIO_ALLOC(t->ctx, out->halo, facts->halo + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, out->is_vertex, facts->points + 1));
+    if (wants_all) BRIO_TRY(BRIO_ALLOC(t->ctx, out->tetrahedra, facts->tetrahedra + 1));
+    if (wants_all) BRIO_TRY(BRIO_ALLOC(t->ctx, out->halo, facts->halo + 1));
     if (!facts->points) goto done;
     BRIO_TRY(brio_store_open(&t->folder, name, &f));
-    BRIO_TRY(brio_store_read(&f, at, out->tetrahedra, facts->tetrahedra * sizeof *out->tetrahedra));
-    at += facts->tetrahedra * sizeof *out->tetrahedra;
-    BRIO_TRY(brio_store_read(&f, at, out->halo, facts->halo * sizeof *out->halo));
-    at += facts->halo * sizeof *out->halo;
-    BRIO_TRY(brio_store_read(&f, at, out->is_vertex, facts->points));
+    BRIO_TRY(brio_store_read(&f, sizeof(tile_head) + tetrahedra + halo, out->is_vertex, facts->points));
+    if (!wants_all) goto done;
+    BRIO_TRY(brio_store_read(&f, sizeof(tile_head), out->tetrahedra, tetrahedra));
+    BRIO_TRY(brio_store_read(&f, sizeof(tile_head) + tetrahedra, out->halo, halo));
 done:
     brio_store_close(&f);
     if (status != BRIO_OK) brio_tile_result_free(t, out);

@@ -70,7 +70,7 @@ static brio_status read_part(brio_tiles *t, uint32_t tile, brio_tile_part *p) {
     brio_status status = BRIO_OK;
     size_t n = facts->points + facts->halo;
     if (!facts->tetrahedra) return BRIO_OK;
-    BRIO_TRY(brio_tile_result_read(t, tile, &result));
+    BRIO_TRY(brio_tile_result_read(t, tile, true, &result));
     for (size_t i = 0; i < facts->tetrahedra; i++)
         for (int k = 0; k < 4; k++)
             BRIO_REQUIRE(t->ctx, result.tetrahedra[i][k] < n, BRIO_ERR_OPEN, "%s/tile-%u was changed from outside",

@@ -134,7 +134,8 @@ typedef struct {
     uint8_t *is_vertex;
 } brio_tile_result;
 
-brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, brio_tile_result *out);
+/** Reads it.   wants_all  false: only which points are vertices. */
+brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, brio_tile_result *out);
 void brio_tile_result_free(brio_tiles *t, brio_tile_result *r);
 
 /** Sums the hashes of all tetrahedra: the checksum. */
