@@ -66,7 +66,10 @@ typedef struct brio_cells {
  *  t  the result of brio_delaunay for these points and weights, or NULL to compute it.
  *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
  *  out  owned by the caller, freed with brio_cells_free; NULL on error.
- *  The result has the same bits for every number of threads.
+ *  The result has the same bits for every number of threads. The numbers of a cell and of its faces, and the order of
+ *  its faces (by the neighbours' positions), have the same bits in whatever order the points are given; volumes
+ *  without areas, centroids and faces differ in their last bits then, and so do vertices that more than four points
+ *  make.
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
  *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes
  *  take one pass over the facets, about as long as brio_delaunay.
