@@ -307,7 +307,8 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     uint64_t vertices = brio_tiles_facts(t)->vertices;
     if (r->common.output) TRY(brio_cells_table_new(r->ctx, r->common.output, format, vertices, &out.cells));
     if (a->faces) TRY(brio_cells_table_new(r->ctx, a->faces, BRIO_CELLS_FORMAT_FACES_CSV, vertices, &out.faces));
-    cli_tell_idle(r, r->common.output ? r->common.output : "", format != BRIO_CELLS_FORMAT_NPY, false);
+    if (out.cells) cli_tell_idle(r, r->common.output, format != BRIO_CELLS_FORMAT_NPY, false);
+    if (out.faces) cli_tell_idle(r, a->faces, true, false);
     status = brio_tiles_cells(r->ctx, t, o, 1, take_cells, &out, &s);
     TRY(out.status);
     TRY(status);
