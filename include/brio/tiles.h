@@ -129,14 +129,16 @@ typedef struct brio_tiles_cells_stats {
  *  ordered  1: cells come in ascending order of their sites, and volume_sum is that of brio_voronoi_cells. They are
  *           sorted in the scratch folder: 56 bytes a cell and, with faces, 40 a face (about 620 a cell). 0: as they are
  *           computed.
- *  stats    receives the facts; NULL: not.
- *  Memory: about 300 bytes a point of the largest tile, and 100 MB for cells at hand. With `ordered` and faces about 350
- *  bytes a point of the largest tile, after that.
+ *  Memory: about 300 bytes a point of the largest tile, and 100 MB for cells at hand. With `ordered` and faces then
+ *  about 350 bytes a point of the largest tile.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no result, or without `stars`; a wrong region), BRIO_ERR_NO_ANSWER (points in a
  *  plane; a region that the cells do not fill), BRIO_ERR_WRITE, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED (also where the function ended it). */
 BRIO_API brio_status brio_tiles_cells(brio_context *ctx, brio_tiles *t, const brio_cells_options *options, int ordered,
-                                      brio_tile_cells_fn take, void *user, brio_tiles_cells_stats *stats);
+                                      brio_tile_cells_fn take, void *user);
+
+/** Returns the facts of the last call of brio_tiles_cells that ended well. The view is valid until brio_tiles_free. */
+BRIO_API const brio_tiles_cells_stats *brio_tiles_cells_facts(const brio_tiles *t);
 
 /** Frees everything, and removes all files; NULL is accepted. */
 BRIO_API void brio_tiles_free(brio_tiles *t);

@@ -58,7 +58,6 @@
 #define BRIO_FIRST_brio_surface_options       pieces
 #define BRIO_FIRST_brio_surface_stats         rounding
 #define BRIO_FIRST_brio_tile_part             num_tetrahedra
-#define BRIO_FIRST_brio_tiles_cells_stats     region_volume
 #define BRIO_FIRST_brio_tiles_options         key
 #define BRIO_FIRST_brio_voronoi_axis_options  seed
 #define BRIO_FIRST_brio_voronoi_axis_stats    label_seconds

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "base/versioned.h"
 #include "tiles/cells.h"
-#include "tiles/slab.h"
 #include <math.h>
 #include <string.h>
 
@@ -147,14 +146,13 @@ static brio_status check_call(brio_context *ctx, const brio_tiles *t, const brio
 }
 
 brio_status brio_tiles_cells(brio_context *ctx, brio_tiles *t, const brio_cells_options *options, int ordered,
-                             brio_tile_cells_fn take, void *user, brio_tiles_cells_stats *stats) {
+                             brio_tile_cells_fn take, void *user) {
     BRIO_DOOR;
     brio_cells_options o = {0};
     brio_tiles_cells_stats s = {.size = sizeof s, .region_volume = INFINITY};
     caller c = {.ctx = ctx, .take = take, .user = user, .stats = &s};
     const brio_tile_cells_sink sink = {call, &c};
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_cells_options, options, &o));
-    BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_tiles_cells_stats, stats));
     BRIO_FORWARD(check_call(ctx, t, &o, ordered));
     brio_status status =
         ordered ? brio_tiles_run_ordered_cells(t, &o, &sink, &s) : brio_tiles_run_cells(t, &o, &sink, &s);
@@ -162,6 +160,10 @@ brio_status brio_tiles_cells(brio_context *ctx, brio_tiles *t, const brio_cells_
     BRIO_FORWARD(status);
     s.volume_sum += c.lost;
     BRIO_FORWARD(check_filled(ctx, &s));
-    BRIO_GIVE(brio_tiles_cells_stats, stats, &s);
+    t->cells = s;
     return BRIO_OK;
+}
+
+const brio_tiles_cells_stats *brio_tiles_cells_facts(const brio_tiles *t) {
+    return &t->cells;
 }

@@ -146,8 +146,8 @@ static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_verte
     memcpy(head.magic, MAGIC, sizeof head.magic);
     snprintf(name, sizeof name, "tile-%u", tile);
     BRIO_FORWARD(brio_store_append(f, w->halo, w->facts->halo * sizeof *w->halo));
-    BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points));
     if (w->t->stars) BRIO_FORWARD(copy_border(w));
+    BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points)); /* last: all else is whole words */
     head.hash = f->hash;
     head.own = brio_tiles_hash(head.key, &head, sizeof head);
     BRIO_FORWARD(brio_store_write(f, 0, &head, sizeof head));
@@ -322,7 +322,7 @@ brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, brio_tile_result
     BRIO_TRY(brio_store_read(&f, at, out->tetrahedra, facts->tetrahedra * sizeof *out->tetrahedra));
     at += facts->tetrahedra * sizeof *out->tetrahedra;
     BRIO_TRY(brio_store_read(&f, at, out->halo, facts->halo * sizeof *out->halo));
-    at += facts->halo * sizeof *out->halo;
+    at += facts->halo * sizeof *out->halo + facts->border * 4 * sizeof(uint32_t);
     BRIO_TRY(brio_store_read(&f, at, out->is_vertex, facts->points));
 done:
     brio_store_close(&f);
@@ -335,8 +335,7 @@ brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]
     brio_store_file f = {.file = -1};
     brio_status status = BRIO_OK;
     char name[32];
-    uint64_t at =
-        sizeof(tile_head) + facts->tetrahedra * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t) + facts->points;
+    uint64_t at = sizeof(tile_head) + facts->tetrahedra * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t);
     if (!facts->border) return BRIO_OK;
     snprintf(name, sizeof name, "tile-%u", tile);
     BRIO_TRY(brio_store_open(&t->folder, name, &f));

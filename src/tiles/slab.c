@@ -4,7 +4,7 @@
  *
  * The tile's file has the tetrahedra that belong to the tile, and its border; a tetrahedron is of each slab that has a
  * vertex of it. Mates are found by a hash table of the facets that have a site. */
-#include "tiles/slab.h"
+#include "tiles/cells.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include <assert.h>

@@ -53,6 +53,7 @@ struct brio_tiles {
     brio_context *ctx;
     brio_store_folder folder;
     brio_tiles_stats stats;
+    brio_tiles_cells_stats cells;
     bool weighted, has_points, has_result, has_ranks, stars;
     bool torn; /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
@@ -127,9 +128,9 @@ brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, brio_found *found, brio
 
 /** --- results --- */
 
-/** The file of a finished tile: its tetrahedra, the places of the points of other tiles that it knew, and a byte for
- *  each of its points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the
- *  tile's number of points subtracted, rows of the halo. Behind them the border follows, whose infinite tetrahedra have
+/** The file of a finished tile: its tetrahedra, the places of the points of other tiles that it knew, the border, and a
+ *  byte for each of its points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or
+ *  with the tile's number of points subtracted, rows of the halo. Infinite tetrahedra, which only the border has, have
  *  BRIO_INFINITE last. */
 typedef struct {
     uint32_t (*tetrahedra)[4];

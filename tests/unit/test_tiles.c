@@ -271,13 +271,13 @@ static void compare_all_cells(uint64_t seed, size_t n, int kind, bool weighted, 
     brio_tiles *t = tiles_of(ctx, tiles, n, weighted, 0);
     if (brio_tiles_run(ctx, t) == BRIO_OK && brio_tiles_facts(t)->dimension == 3) {
         cell_comparison c = {.whole = whole, .ordered = ordered};
-        brio_tiles_cells_stats s = {.size = sizeof s};
-        brio_status tiled = brio_tiles_cells(ctx, t, &o, ordered, compare_cells, &c, &s);
+        brio_status tiled = brio_tiles_cells(ctx, t, &o, ordered, compare_cells, &c);
         EXPECT(tiled == status, "kind %d, %u tiles: %s", kind, tiles, brio_message(ctx));
         if (status == BRIO_OK) {
             EXPECT(c.seen == whole->num_cells && c.differ == 0,
                    "kind %d, weighted %d, %u tiles, %zu points: %llu of %zu cells, %llu differ", kind, weighted, tiles,
                    n, (unsigned long long)c.seen, whole->num_cells, (unsigned long long)c.differ);
+            const brio_tiles_cells_stats s = *brio_tiles_cells_facts(t);
             EXPECT(s.faces == whole->face_offsets[whole->num_cells] && s.region_volume == whole->region_volume);
             EXPECT(!ordered || !memcmp(&s.volume_sum, &whole->volume_sum, sizeof(double)));
         }
@@ -307,17 +307,17 @@ static void wrong_calls_for_cells_are_refused(void) {
     int calls = 0;
     size_t n = make_points(6, 500, 0);
     brio_tiles *t = tiles_of(ctx, 2, n, false, 0);
-    EXPECT(brio_tiles_cells(ctx, t, NULL, 0, count_calls, &calls, NULL) == BRIO_ERR_ARGUMENT &&
+    EXPECT(brio_tiles_cells(ctx, t, NULL, 0, count_calls, &calls) == BRIO_ERR_ARGUMENT &&
            strstr(brio_message(ctx), "not triangulated"));
     EXPECT(brio_tiles_run(ctx, t) == BRIO_OK);
-    EXPECT(brio_tiles_cells(ctx, t, &o, 1, count_calls, &calls, NULL) == BRIO_ERR_ARGUMENT && calls == 0);
-    EXPECT(brio_tiles_cells(ctx, t, &o, 0, count_calls, &calls, NULL) == BRIO_ERR_CANCELLED && calls == 1);
-    EXPECT(brio_tiles_cells(ctx, t, NULL, 1, count_calls, &calls, NULL) == BRIO_ERR_CANCELLED && calls == 2);
+    EXPECT(brio_tiles_cells(ctx, t, &o, 1, count_calls, &calls) == BRIO_ERR_ARGUMENT && calls == 0);
+    EXPECT(brio_tiles_cells(ctx, t, &o, 0, count_calls, &calls) == BRIO_ERR_CANCELLED && calls == 1);
+    EXPECT(brio_tiles_cells(ctx, t, NULL, 1, count_calls, &calls) == BRIO_ERR_CANCELLED && calls == 2);
     brio_tiles_free(t);
     brio_tiles_options without = {.size = sizeof without, .scratch = folder, .tiles = 2};
     EXPECT(brio_tiles_new(ctx, &without, &t) == BRIO_OK && brio_tiles_add(ctx, t, points, NULL, n) == BRIO_OK &&
            brio_tiles_run(ctx, t) == BRIO_OK);
-    EXPECT(brio_tiles_cells(ctx, t, NULL, 0, count_calls, &calls, NULL) == BRIO_ERR_ARGUMENT &&
+    EXPECT(brio_tiles_cells(ctx, t, NULL, 0, count_calls, &calls) == BRIO_ERR_ARGUMENT &&
            strstr(brio_message(ctx), "no stars"));
     brio_tiles_free(t);
     EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
