@@ -308,9 +308,9 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     if (a->faces) TRY(brio_cells_table_new(r->ctx, a->faces, BRIO_CELLS_FORMAT_FACES_CSV, vertices, &out.faces));
     if (out.cells) cli_tell_idle(r, r->common.output, format != BRIO_CELLS_FORMAT_NPY, false);
     if (out.faces) cli_tell_idle(r, a->faces, true, false);
-    status = brio_tiles_cells(r->ctx, t, o, 1, take_cells, &out);
-    TRY(out.status);
-    TRY(status);
+    brio_status ended = brio_tiles_cells(r->ctx, t, o, 1, take_cells, &out);
+    TRY(out.status); /* why the function ended it */
+    TRY(ended);
     cli_lap(r, "cells");
     report_tiles(r, brio_tiles_facts(t), brio_tiles_cells_facts(t));
     TRY(cli_check_interrupt(r));
