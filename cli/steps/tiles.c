@@ -26,6 +26,10 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     if (weights->file)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles: not with --weights FILE; the points can have a property weight or radius");
+    return BRIO_OK;
+}
+
+brio_status cli_check_tile_files(run *r) {
     const char *output = r->common.output;
     if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
         return cli_fail_output(r, "%s: --tiles writes .pvtu, with a file for each tile beside it", output);
@@ -217,22 +221,29 @@ done:
 
 /* --- the run --- */
 
-brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
-    brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles};
-    brio_tiles *t = NULL;
-    brio_status status = BRIO_OK;
+brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars,
+                                  brio_tiles **out) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles, .stars = stars};
     o.key = key_of(r, weights);
-    TRY(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
-    TRY(brio_tiles_new(r->ctx, &o, &t));
-    if (!brio_tiles_has_points(t)) TRY(read_into(r, weights, t));
+    FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
+    FORWARD(brio_tiles_new(r->ctx, &o, out));
+    if (!brio_tiles_has_points(*out)) FORWARD(read_into(r, weights, *out));
     cli_lap(r, "read");
-    TRY(brio_tiles_run(r->ctx, t));
-    const brio_tiles_stats *s = brio_tiles_facts(t);
+    FORWARD(brio_tiles_run(r->ctx, *out));
+    const brio_tiles_stats *s = brio_tiles_facts(*out);
     cli_stage(r, "divide", s->divide_seconds);
     cli_stage(r, "insert", s->triangulate_seconds);
     r->lap = cli_clock();
-    TRY(report(r, t, s->weighted));
-    if (r->common.output) TRY(write_tiles(r, t, o.tiles, s->weighted));
+    return BRIO_OK;
+}
+
+brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
+    brio_tiles *t = NULL;
+    brio_status status = BRIO_OK;
+    TRY(cli_triangulate_tiles(r, weights, tiles, false, &t));
+    bool weighted = brio_tiles_facts(t)->weighted;
+    TRY(report(r, t, weighted));
+    if (r->common.output) TRY(write_tiles(r, t, (uint32_t)tiles, weighted));
 done:
     brio_tiles_free(t);
     return status;

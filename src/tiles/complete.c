@@ -21,12 +21,16 @@ typedef struct {
 
 _Static_assert(sizeof(tile_head) % 8 == 0, "whole words");
 
-static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '2'};
+static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '3'}, BORDER[] = "border.new";
+
+enum { BUFFER = 1 << 13 };
 
 typedef struct {
     brio_tiles *t;
     brio_tile *facts;
-    brio_store_file out;
+    brio_store_file out, border; /* the border is copied to the end of `out` */
+    uint32_t (*buffer)[4];       /* of the border */
+    size_t num_buffer;
     uint64_t *halo;
 } writing;
 
@@ -41,6 +45,52 @@ static brio_status take(void *user, const brio_set_point *known, const uint32_t 
         w->facts->hull_facets += end < count;
         w->facts->tetrahedra += end - i;
         BRIO_FORWARD(brio_store_append(&w->out, vertex + i, (end - i) * sizeof *vertex));
+    }
+    return BRIO_OK;
+}
+
+static bool belongs_here(const writing *w, const brio_set_point *known, const uint32_t *v, int count) {
+    int least = 0;
+    for (int i = 1; i < count; i++)
+        if (brio_lexicographic(known[v[i]].record, known[v[least]].record) < 0) least = i;
+    return v[least] < w->facts->points;
+}
+
+static brio_status flush_border(writing *w) {
+    brio_status status = brio_store_append(&w->border, w->buffer, w->num_buffer * sizeof *w->buffer);
+    w->num_buffer = 0;
+    return status;
+}
+
+/* Takes final tetrahedra of all stars, as a brio_final_fn. */
+static brio_status take_stars(void *user, const brio_set_point *known, const uint32_t (*vertex)[4], size_t count) {
+    writing *w = user;
+    for (size_t i = 0, end; i < count; i = end + 1) { /* up to one of the border */
+        bool here = true, finite = true;
+        for (end = i; end < count; end++) {
+            finite = vertex[end][3] != BRIO_INFINITE;
+            here = belongs_here(w, known, vertex[end], finite ? 4 : 3);
+            if (!finite || !here) break;
+        }
+        w->facts->tetrahedra += end - i;
+        BRIO_FORWARD(brio_store_append(&w->out, vertex + i, (end - i) * sizeof *vertex));
+        if (end == count) break;
+        w->facts->hull_facets += here && !finite;
+        w->facts->border++;
+        memcpy(w->buffer[w->num_buffer++], vertex[end], sizeof *vertex);
+        if (w->num_buffer == BUFFER) BRIO_FORWARD(flush_border(w));
+    }
+    return BRIO_OK;
+}
+
+/* Appends the border to the tile's file. */
+static brio_status copy_border(writing *w) {
+    BRIO_FORWARD(flush_border(w));
+    for (uint64_t done = 0; done < w->facts->border; done += BUFFER) {
+        size_t some = w->facts->border - done < BUFFER ? (size_t)(w->facts->border - done) : BUFFER;
+        size_t size = some * sizeof *w->buffer;
+        BRIO_FORWARD(brio_store_read(&w->border, done * sizeof *w->buffer, w->buffer, size));
+        BRIO_FORWARD(brio_store_append(&w->out, w->buffer, size));
     }
     return BRIO_OK;
 }
@@ -73,7 +123,7 @@ static brio_status list_known(brio_tiles *t, uint32_t tile, brio_tile_source *so
 }
 
 static void note_facts(brio_tile *facts, const brio_completion_stats *s, const brio_tile_source *source,
-                       size_t num_known) {
+                       size_t num_known, bool stars) {
     facts->vertices = s->vertices;
     facts->asked = s->asked;
     facts->found = s->found;
@@ -84,6 +134,7 @@ static void note_facts(brio_tile *facts, const brio_completion_stats *s, const b
     facts->most_tetrahedra = s->most_tetrahedra;
     facts->rounds = (uint32_t)s->rounds;
     facts->finished = 1;
+    facts->stars = stars;
 }
 
 static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_vertex) {
@@ -95,7 +146,8 @@ static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_verte
     memcpy(head.magic, MAGIC, sizeof head.magic);
     snprintf(name, sizeof name, "tile-%u", tile);
     BRIO_FORWARD(brio_store_append(f, w->halo, w->facts->halo * sizeof *w->halo));
-    BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points));
+    if (w->t->stars) BRIO_FORWARD(copy_border(w));
+    BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points)); /* last: all else is whole words */
     head.hash = f->hash;
     head.own = brio_tiles_hash(head.key, &head, sizeof head);
     BRIO_FORWARD(brio_store_write(f, 0, &head, sizeof head));
@@ -162,16 +214,16 @@ static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {
                                  .weighted = t->weighted,
                                  .all = t->all,
                                  .home = &seen,
-                                 .final = take,
+                                 .final = t->stars ? take_stars : take,
                                  .final_user = w,
-                                 .least_only = true};
+                                 .least_only = !t->stars};
     BRIO_TRY(brio_completion_new(t->ctx, &task, &c));
     brio_release(t->ctx, list.point);
     list.point = NULL;
     BRIO_TRY(run_rounds(t, c, source));
     brio_completion_vertices(c, is_vertex);
     BRIO_TRY(list_halo(w, c));
-    note_facts(w->facts, brio_completion_facts(c), source, list.count);
+    note_facts(w->facts, brio_completion_facts(c), source, list.count, t->stars);
     status = write_rest(w, tile, is_vertex);
 done:
     brio_completion_delete(c);
@@ -194,7 +246,9 @@ static brio_status check_finished(brio_tiles *t, uint32_t tile, const brio_store
         head->key != t->key || head->tile != tile || head->points != t->tile[tile].points)
         return BRIO_OK;
     const brio_tile *facts = &head->facts;
-    uint64_t size = facts->tetrahedra * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t) + head->points;
+    uint64_t size =
+        (facts->tetrahedra + facts->border) * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t) + head->points;
+    if (facts->stars < t->stars) return BRIO_OK;
     return f->size == sizeof *head + size ? brio_store_check(f, sizeof *head, head->hash, is_good) : BRIO_OK;
 }
 
@@ -214,7 +268,7 @@ static brio_status take_finished(brio_tiles *t, uint32_t tile, bool *found) {
 }
 
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
-    writing w = {.t = t, .facts = &t->tile[tile], .out.file = -1};
+    writing w = {.t = t, .facts = &t->tile[tile], .out.file = -1, .border.file = -1};
     const brio_tile before = *w.facts;
     brio_status status = BRIO_OK;
     tile_head none = {.points = 0};
@@ -226,10 +280,19 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
     BRIO_TRY(brio_store_create(&t->folder, "tile.new", &w.out));
     BRIO_TRY(brio_store_append(&w.out, &none, sizeof none));
     w.out.hashes = t->key != 0;
+    if (t->stars) {
+        BRIO_TRY(brio_store_create(&t->folder, BORDER, &w.border));
+        BRIO_TRY(BRIO_ALLOC(t->ctx, w.buffer, BUFFER));
+    }
     status = complete(t, tile, &w);
 done:
     if (status != BRIO_OK) *w.facts = before; /* the tile may be tried again */
     brio_store_close(&w.out);
+    if (w.border.file >= 0) {
+        brio_store_close(&w.border);
+        brio_store_remove(&t->folder, BORDER);
+    }
+    brio_release(t->ctx, w.buffer);
     brio_release(t->ctx, w.halo);
     return status;
 }
@@ -249,6 +312,7 @@ brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, 
     brio_status status = BRIO_OK;
     char name[32];
     uint64_t tetrahedra = facts->tetrahedra * sizeof *out->tetrahedra, halo = facts->halo * sizeof *out->halo;
+    uint64_t border = facts->border * 4 * sizeof(uint32_t);
     *out = (brio_tile_result){0};
     snprintf(name, sizeof name, "tile-%u", tile);
     BRIO_TRY(BRIO_ALLOC(t->ctx, out->is_vertex, facts->points + 1));
@@ -256,12 +320,27 @@ brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, 
     if (wants_all) BRIO_TRY(BRIO_ALLOC(t->ctx, out->halo, facts->halo + 1));
     if (!facts->points) goto done;
     BRIO_TRY(brio_store_open(&t->folder, name, &f));
-    BRIO_TRY(brio_store_read(&f, sizeof(tile_head) + tetrahedra + halo, out->is_vertex, facts->points));
+    BRIO_TRY(brio_store_read(&f, sizeof(tile_head) + tetrahedra + halo + border, out->is_vertex, facts->points));
     if (!wants_all) goto done;
     BRIO_TRY(brio_store_read(&f, sizeof(tile_head), out->tetrahedra, tetrahedra));
     BRIO_TRY(brio_store_read(&f, sizeof(tile_head) + tetrahedra, out->halo, halo));
 done:
     brio_store_close(&f);
     if (status != BRIO_OK) brio_tile_result_free(t, out);
+    return status;
+}
+
+brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]) {
+    const brio_tile *facts = &t->tile[tile];
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    char name[32];
+    uint64_t at = sizeof(tile_head) + facts->tetrahedra * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t);
+    if (!facts->border) return BRIO_OK;
+    snprintf(name, sizeof name, "tile-%u", tile);
+    BRIO_TRY(brio_store_open(&t->folder, name, &f));
+    BRIO_TRY(brio_store_read(&f, at, border, facts->border * sizeof *border));
+done:
+    brio_store_close(&f);
     return status;
 }

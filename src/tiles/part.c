@@ -35,6 +35,12 @@ done:
     return status;
 }
 
+brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *halo, brio_set_point *points) {
+    const brio_tile *facts = &t->tile[tile];
+    BRIO_FORWARD(brio_tile_points(t, facts->place, facts->points, points));
+    return read_halo(t, halo, facts->halo, points + facts->points);
+}
+
 /* Gives the vertices of the tetrahedra consecutive numbers, in the order of the points. Returns how many there are. */
 static size_t number_vertices(brio_tile_result *r, size_t num_tetrahedra, size_t n, uint32_t *number) {
     size_t used = 0;
@@ -77,8 +83,7 @@ static brio_status read_part(brio_tiles *t, uint32_t tile, brio_tile_part *p) {
                          t->folder.path, tile);
     BRIO_TRY(BRIO_ALLOC(t->ctx, points, n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, number, n + 1));
-    BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
-    BRIO_TRY(read_halo(t, result.halo, facts->halo, points + facts->points));
+    BRIO_TRY(brio_tile_all_points(t, tile, result.halo, points));
     p->num_tetrahedra = facts->tetrahedra;
     p->num_vertices = number_vertices(&result, facts->tetrahedra, n, number);
     BRIO_TRY(fill(t, points, number, n, p));

@@ -44,8 +44,10 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     t->raw.file = -1;
     t->folder.lock = -1;
     t->num_tiles = o.tiles ? o.tiles : TILES;
+    t->stars = o.stars != 0;
     t->key = o.key ? brio_hash(o.key, t->num_tiles) : 0;
     t->stats.size = sizeof t->stats;
+    t->cells.size = sizeof t->cells;
     t->stats.dimension = -1;
     BRIO_TRY(begin_folder(t, o.scratch));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->tile, t->num_tiles));

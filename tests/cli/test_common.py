@@ -38,7 +38,7 @@ OWN_OPTIONS = {
     "simplify": ["--faces", "--error"],
     "terrain": ["--class", "--max-edge", "--raster", "--cell"],
     "locate": ["--at", "--plane", "--weights", "--weights-mod", "--unweighted", "--cell", "--periodic"],
-    "voronoi": ["--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--box", "--faces"],
+    "voronoi": ["--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--box", "--faces", "--tiles"],
     "interpolate": ["--at", "--plane", "--property", "--method"],
     "restricted": ["--surface"],
     "tree": ["--plane"],

@@ -1,4 +1,4 @@
-"""brio delaunay --tiles: the same report as without, files for each tile, runs that are killed and resumed."""
+"""--tiles: the same report as without, and the same cells; files for each tile, runs that are killed and resumed."""
 
 import os
 import random
@@ -46,6 +46,46 @@ class Tiles(CliTest):
         self.assertGreater(self.same(self.rows("w.csv", 3000, weight=True), tiles=4)["hidden"], 0)
         self.same(self.path("w.csv"), "--unweighted")
         self.same(self.path("a.csv"), "--weights-mod", "-9")
+
+    def cells(self, *arguments, tiles=3):
+        """Compares tables of cells and of faces, and the report."""
+        reports = {}
+        for name, more in (("whole", ()), ("tiled", ("--tiles", str(tiles), "--scratch", self.scratch()))):
+            for kind in ("csv", "npy"):
+                reports[name] = self.facts("voronoi", *arguments, *more, "-o", self.path("%s.%s" % (name, kind)),
+                                           "--faces", self.path(name + "-faces.csv"))
+        for end in (".csv", ".npy", "-faces.csv"):
+            with open(self.path("whole" + end), "rb") as a, open(self.path("tiled" + end), "rb") as b:
+                self.assertEqual(a.read(), b.read(), end)
+        for key in reports["whole"]:
+            if key not in ("output", "seconds", "peak_bytes", "warnings"):  # with tiles, duplicates are not outside
+                self.assertEqual(reports["whole"][key], reports["tiled"][key], key)
+        self.assertEqual(reports["tiled"]["tiles"], tiles)
+        self.assertEqual(os.listdir(self.scratch()), [])
+        return reports["tiled"]
+
+    def test_cells_are_those_without_tiles(self):
+        cloud = self.rows("a.csv", 2000)
+        self.assertEqual(self.cells(cloud)["cells"], 2000)
+        box = self.cells(cloud, "--box", "-1,-1,-1,1,1.5,2", "--weights-mod", "-9", tiles=7)
+        self.assertLess(box["box_error"], 1e-12)
+        self.assertTrue(box["warnings"])
+        self.assertGreater(self.cells(self.rows("w.csv", 2000, weight=True))["hidden"], 0)
+        with open(self.path("grid.xyz"), "w", encoding="ascii") as f:  # ties everywhere, and duplicates
+            f.writelines("%d %d %d\n" % (x, y, z % 6) for x in range(7) for y in range(7) for z in range(7))
+        self.assertEqual(self.cells(self.path("grid.xyz"), tiles=4)["duplicates"], 49)
+
+    def test_what_cells_in_tiles_have_not_is_refused(self):
+        cloud, folder = self.rows("a.csv", 20), self.scratch()
+        self.usage("writes cells to .npy and .csv", "voronoi", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path("x.vtu"))
+        self.usage("--cell: not with --tiles", "voronoi", cloud, "--cell", "9,9,9", "--tiles", "2", "--scratch", folder, "-o", self.path("x.csv"))
+        self.usage("--tiles needs --scratch", "voronoi", cloud, "--tiles", "2", "-o", self.path("x.csv"))
+        with open(self.path("flat.xyz"), "w", encoding="ascii") as f:
+            f.writelines("%d %d 0\n" % (i, i * i) for i in range(9))
+        run = self.expect(3, "voronoi", self.path("flat.xyz"), "--tiles", "2", "--scratch", folder, "-o", self.path("x.csv"))
+        self.assertIn("without tiles only", run.err)
+        self.assertFalse(os.path.exists(self.path("x.csv")))
+        self.assertEqual(os.listdir(folder), [])
 
     def test_standard_input(self):
         with open(self.rows("a.csv", 500), "rb") as f:
