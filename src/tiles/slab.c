@@ -85,7 +85,7 @@ brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, brio_slabs *s) {
                       .count = ((size_t)facts->points + SITES - 1) / SITES};
     BRIO_EXPECT(ctx, s->num_tets + s->num_border < UINT32_MAX, BRIO_ERR_TOO_LARGE,
                 "tile %u has 2^32 tetrahedra or more: take more tiles", tile);
-    BRIO_FORWARD(brio_tile_result_read(t, tile, &s->result));
+    BRIO_FORWARD(brio_tile_result_read(t, tile, true, &s->result));
     BRIO_FORWARD(BRIO_ALLOC(ctx, s->border, s->num_border + 1));
     BRIO_FORWARD(brio_tile_border(t, tile, s->border));
     BRIO_FORWARD(BRIO_ALLOC(ctx, s->points, s->num_rows + 1));
