@@ -168,7 +168,7 @@ machines:
 # Every system that brio is for, built here, and run where this machine can: docs/platforms.md. TARGETS="--only wasm32-wasi" for some.
 targets:
 	@sh scripts/setup.sh targets
-	/usr/bin/python3 tests/targets/targets.py . build/targets out/targets-env/bin/python $(TARGETS)
+	/usr/bin/python3 tests/targets/targets.py . build/targets $(TARGETS)
 
 # The documentation as a site, out/site: scripts/site.sh. PICTURES=1 draws docs/images/gallery anew.
 site: all
