@@ -222,14 +222,12 @@ def main():
         run([native, 'generate', kind, '-n', count, '-o', points / (kind + '.ply')], check=True)
     expected = checksums(native, points, points)
     columns, wrong = ['target', 'built', 'ran', 'passed', 'failed', 'checksums'], False
-    rows = {}
     table = out / 'TABLE.tsv'
-    if table.exists():  # rows of targets that are not tried now stay
-        rows = {line.split('\t')[0]: line for line in table.read_text().splitlines()[1:]}
     for target in wanted:
         with wine(out) if RUNS.get(target.name, ('',))[0] == 'wine' else contextlib.nullcontext():
             row, bad = try_target(root, out, target, not a.no_units, expected, points, 60 * a.minutes)
         wrong |= bad
+        rows = {line.split('\t')[0]: line for line in table.read_text().splitlines()[1:]} if table.exists() else {}
         rows[target.name] = '\t'.join(str(row[c]) for c in columns)
         print(rows[target.name], flush=True)
         table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in cross.TARGETS if t.name in rows)]) + '\n')
