@@ -1,6 +1,6 @@
 /* Folders that get their names when they are complete: see new_file.h.
  *
- * The older folder is the one that the older index names for its first file. Of it, files 0.EXT, 1.EXT and so on are
+ * The older folder is the one that the older index names for its first file. Of it, the files that the index names are
  * removed, and the folder if it is then empty. */
 #include "cli/files/new_file.h"
 #include "platform/disk.h"
@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_NAMES = 10, HEAD_BYTES = 1 << 14 };
+enum { MOST_NAMES = 10, MOST_FILES = 1 << 16, MOST_INDEX = 1 << 24 /* bytes */ };
+
+static const char MARK[] = ".brio-part";
 
 static void name_of(const new_folder *f, int number, char path[BRIO_PATH_MOST]) {
     if (number)
@@ -31,76 +33,170 @@ void cli_write_attribute(FILE *file, const char *text) {
     }
 }
 
-/* Returns whether a text of XML names the file 0.EXT in a folder. */
-static bool is_named_in(const char *text, const char *folder, const char *extension) {
+/* --- the older output --- */
+
+/* Returns the text behind the name of file `number` in a folder, or NULL if a text of XML does not have it. */
+static const char *after_name(const char *text, const char *folder, uint32_t number, const char *extension) {
     char quoted[6 * BRIO_NAME_MOST + 64] = "=\"", *end = quoted + 2;
     const char *name = folder + brio_folder_length(folder);
-    if (strlen(name) >= BRIO_NAME_MOST) return false;
+    if (strlen(name) >= BRIO_NAME_MOST) return NULL;
     for (; *name; name++) {
         const char *escape = escape_of(*name);
         end += snprintf(end, 8, "%s", escape ? escape : (char[2]){*name, 0});
     }
-    snprintf(end, 64, "/0%s\"", extension);
-    return strstr(text, quoted) != NULL;
+    snprintf(end, 64, "/%u%s\"", number, extension);
+    const char *found = strstr(text, quoted);
+    return found ? found + strlen(quoted) : NULL;
 }
 
-/* Finds the folder of the index that is there now. */
-static void find_old(const char *index, new_folder *f) {
-    char *head = calloc(1, HEAD_BYTES + 1);
+/* Reads an index. Returns NULL if it cannot be read. */
+static char *read_index(const char *index) {
+    char *text = calloc(1, MOST_INDEX + 1);
     int file = brio_open_input(index);
-    if (head && file >= 0 && brio_read_bytes_at(file, head, HEAD_BYTES, 0) > 0)
-        for (int i = 0; i < MOST_NAMES && !*f->old; i++) {
-            name_of(f, i, f->old);
-            if (!is_named_in(head, f->old, f->extension)) *f->old = 0;
-        }
+    uint64_t size = 0;
+    for (int64_t n = 1; text && file >= 0 && n > 0 && size<MOST_INDEX; size += n> 0 ? (uint64_t)n : 0)
+        n = brio_read_bytes_at(file, text + size, (size_t)(MOST_INDEX - size), size);
     if (file >= 0) brio_close(file);
-    free(head);
+    if (size) return text;
+    free(text);
+    return NULL;
 }
 
-static void remove_files(const char *folder, const char *extension) {
+/* Finds the folder of the index that is there now, and how many files of it the index names. */
+static void find_old(const char *index, new_folder *f) {
+    char *text = read_index(index);
+    for (int i = 0; text && i < MOST_NAMES && !*f->old; i++) {
+        name_of(f, i, f->old);
+        const char *rest = text;
+        while (f->num_old < MOST_FILES && (rest = after_name(rest, f->old, f->num_old, f->extension)) != NULL)
+            f->num_old++;
+        if (!f->num_old) *f->old = 0;
+    }
+    free(text);
+}
+
+/* --- folders of runs --- */
+
+static void mark_of(const char *folder, char path[BRIO_PATH_MOST + 64]) {
+    snprintf(path, BRIO_PATH_MOST + 64, "%s/%s", folder, MARK);
+}
+
+/* Removes the files 0.EXT, 1.EXT and so on, `most` of them at most. */
+static void remove_files(const char *folder, const char *extension, uint32_t most) {
     char path[BRIO_PATH_MOST + 64];
     bool removed = true;
-    for (int i = 0; removed; i++) {
-        snprintf(path, sizeof path, "%s/%d%s", folder, i, extension);
+    for (uint32_t i = 0; removed && i < most; i++) {
+        snprintf(path, sizeof path, "%s/%u%s", folder, i, extension);
         removed = brio_remove_file(path);
     }
+}
+
+/* Removes what a killed run left; nothing of a folder that is another's. */
+static void remove_left(const char *folder, const char *extension) {
+    char mark[BRIO_PATH_MOST + 64];
+    mark_of(folder, mark);
+    int lock = brio_is_there(mark) ? brio_lock_file(mark) : -1;
+    if (lock < 0) return;
+    remove_files(folder, extension, MOST_FILES);
+    brio_unlock_file(lock, mark);
     brio_remove_folder(folder);
 }
 
-brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out) {
-    bool made;
+/* Removes all that killed runs left beside an index. */
+static void remove_all_left(const new_folder *f) {
+    char path[BRIO_PATH_MOST];
+    snprintf(path, sizeof path, "%s.part", f->stem);
+    remove_left(path, f->extension);
+    for (int i = 0; i < MOST_NAMES; i++) {
+        name_of(f, i, path);
+        if (strcmp(path, f->old) != 0) remove_left(path, f->extension);
+    }
+}
+
+/* --- life --- */
+
+static brio_status fail_folder(run *r, const char *path) {
+    if (errno == EEXIST)
+        return cli_fail(r, BRIO_ERR_WRITE,
+                        "%s: is in the way: it is yours, or that of a run that goes on; move it, or take another -o",
+                        path);
+    return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", path, strerror(errno));
+}
+
+static brio_status begin(run *r, const char *index, const char *extension, new_folder *f) {
     const char *dot = strrchr(index, '.');
     size_t stem = dot ? (size_t)(dot - index) : strlen(index);
-    *out = (new_folder){.extension = extension};
-    if (stem >= sizeof out->stem) return cli_fail_output(r, "%s: the name is too long", index);
-    memcpy(out->stem, index, stem);
-    find_old(index, out);
-    snprintf(out->path, sizeof out->path, "%s.part", out->stem);
-    remove_files(out->path, extension);
-    if (!brio_make_folder(out->path, false, &made)) {
-        brio_status status = cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", out->path, strerror(errno));
-        *out->path = 0;
-        return status;
-    }
+    *f = (new_folder){.extension = extension, .lock = -1};
+    if (stem >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", index);
+    memcpy(f->stem, index, stem);
+    find_old(index, f);
+    remove_all_left(f);
     return BRIO_OK;
 }
 
-brio_status cli_new_folder_name(run *r, new_folder *f) {
-    char path[BRIO_PATH_MOST];
+/* Finds a name that is free.   path  receives it. */
+static brio_status find_name(run *r, const new_folder *f, char path[BRIO_PATH_MOST]) {
     for (int i = 0; i < MOST_NAMES; i++) {
         name_of(f, i, path);
-        if (brio_is_there(path)) continue;
-        if (!brio_rename_file(f->path, path))
-            return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot name it %s: %s", f->path, path, strerror(errno));
-        memcpy(f->path, path, sizeof path);
-        return BRIO_OK;
+        if (!brio_is_there(path)) return BRIO_OK;
     }
     return cli_fail(r, BRIO_ERR_WRITE, "%s, and folders of that name from -1 to -%d: they are there: remove some",
                     f->stem, MOST_NAMES - 1);
 }
 
+brio_status cli_new_folder_check(run *r, const char *index, const char *extension) {
+    new_folder f;
+    char path[BRIO_PATH_MOST];
+    FORWARD(begin(r, index, extension, &f));
+    FORWARD(find_name(r, &f, path));
+    snprintf(path, sizeof path, "%s.part", f.stem);
+    errno = EEXIST;
+    return brio_is_there(path) ? fail_folder(r, path) : BRIO_OK;
+}
+
+brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out) {
+    char mark[BRIO_PATH_MOST + 64];
+    bool made;
+    FORWARD(begin(r, index, extension, out));
+    snprintf(out->path, sizeof out->path, "%s.part", out->stem);
+    mark_of(out->path, mark);
+    bool there = brio_make_folder(out->path, false, &made);
+    if (there && !made) errno = EEXIST;
+    if (there && made) out->lock = brio_lock_file(mark);
+    if (out->lock >= 0) return BRIO_OK;
+    brio_status status = fail_folder(r, out->path);
+    if (made) brio_remove_folder(out->path);
+    *out->path = 0;
+    return status;
+}
+
+brio_status cli_new_folder_name(run *r, new_folder *f) {
+    char path[BRIO_PATH_MOST], mark[BRIO_PATH_MOST + 64];
+    FORWARD(find_name(r, f, path));
+    brio_close(f->lock); /* some systems rename no folder with an open file */
+    bool renamed = brio_rename_file(f->path, path);
+    int error = errno;
+    mark_of(renamed ? path : f->path, mark);
+    f->lock = brio_lock_file(mark);
+    if (!renamed) return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot name it %s: %s", f->path, path, strerror(error));
+    memcpy(f->path, path, sizeof path);
+    return f->lock >= 0 ? BRIO_OK : cli_fail(r, BRIO_ERR_WRITE, "%s: in use by another process", mark);
+}
+
 void cli_new_folder_close(new_folder *f, bool published) {
-    const char *goes = published ? f->old : f->path;
-    if (*goes) remove_files(goes, f->extension);
+    char mark[BRIO_PATH_MOST + 64];
+    if (f->lock >= 0) {
+        if (!published) remove_files(f->path, f->extension, MOST_FILES);
+        mark_of(f->path, mark);
+        brio_unlock_file(f->lock, mark);
+        if (!published) brio_remove_folder(f->path);
+    }
+    if (published && *f->old) {
+        remove_files(f->old, f->extension, f->num_old);
+        mark_of(f->old, mark);
+        brio_remove_file(mark); /* of a run that was killed when its index was there */
+        brio_remove_folder(f->old);
+    }
+    f->lock = -1;
     *f->path = 0;
 }

@@ -355,11 +355,12 @@ const glossary_line cli_glossary[] = {
     {NULL, NULL, "exit", NULL, "the exit code of a failed run", LINE_JSON, STYLE_PLAIN},
 
     /* Tiles. */
-    {"delaunay", NULL, "tiles", NULL, "parts of space that hold points (--tiles)", LINE_PLAIN, STYLE_PLAIN},
-    {"delaunay", NULL, "resumed", NULL, "tiles that a run that was killed had finished", LINE_PLAIN, STYLE_UNLESS_ZERO},
-    {"delaunay", NULL, "largest_tile", NULL, "points in the largest triangulation, those about the tile included",
+    {TRIANGULATIONS, NULL, "tiles", NULL, "parts of space that hold points (--tiles)", LINE_PLAIN, STYLE_PLAIN},
+    {TRIANGULATIONS, NULL, "resumed", NULL, "tiles that a run that was killed had finished", LINE_PLAIN,
+     STYLE_UNLESS_ZERO},
+    {TRIANGULATIONS, NULL, "largest_tile", NULL, "points in the largest triangulation, those about the tile included",
      LINE_PLAIN, STYLE_PLAIN},
-    {"delaunay", NULL, "scratch_bytes", NULL, "the most that were in the scratch folder", LINE_PLAIN, STYLE_PLAIN},
+    {TRIANGULATIONS, NULL, "scratch_bytes", NULL, "the most that were in the scratch folder", LINE_PLAIN, STYLE_PLAIN},
     {"delaunay", NULL, "asked", NULL, "spheres and half-spaces for which a tile asked others", LINE_VERBOSE,
      STYLE_PLAIN},
     {"delaunay", NULL, "found", NULL, "points of other tiles that were in them", LINE_VERBOSE, STYLE_PLAIN},

@@ -12,7 +12,7 @@
 
 enum { MOST_TILES = 1 << 16 };
 
-static const char EXTENSION[] = ".pvtu";
+static const char EXTENSION[] = ".pvtu", OF_TILES[] = ".vtu";
 
 static bool ends_with(const char *text, const char *end) {
     size_t n = strlen(text), m = strlen(end);
@@ -33,7 +33,7 @@ brio_status cli_check_tile_files(run *r) {
     const char *output = r->common.output;
     if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
         return cli_fail_output(r, "%s: --tiles writes .pvtu, with a file for each tile beside it", output);
-    return BRIO_OK;
+    return output ? cli_new_folder_check(r, output, OF_TILES) : BRIO_OK;
 }
 
 /* --- reading --- */
@@ -204,11 +204,11 @@ done:
  * and an older output stays as it was. */
 static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weighted) {
     char path[BRIO_PATH_MOST + 32];
-    new_folder folder = {.path = ""};
+    new_folder folder = {.lock = -1};
     brio_status status = BRIO_OK;
-    TRY(cli_new_folder_open(r, r->common.output, ".vtu", &folder));
+    TRY(cli_new_folder_open(r, r->common.output, OF_TILES, &folder));
     for (uint32_t i = 0; i < tiles; i++) {
-        snprintf(path, sizeof path, "%s/%u.vtu", folder.path, i);
+        snprintf(path, sizeof path, "%s/%u%s", folder.path, i, OF_TILES);
         TRY(write_tile(r, t, i, weighted, path));
     }
     TRY(cli_new_folder_name(r, &folder));

@@ -1,5 +1,6 @@
 """--tiles: the same report as without, and the same cells; files for each tile, runs that are killed and resumed."""
 
+import fcntl
 import os
 import random
 import re
@@ -60,9 +61,13 @@ class Tiles(CliTest):
         for key in reports["whole"]:
             if key not in ("output", "seconds", "peak_bytes", "warnings"):  # with tiles, duplicates are not outside
                 self.assertEqual(reports["whole"][key], reports["tiled"][key], key)
-        self.assertEqual(reports["tiled"]["tiles"], tiles)
+        self.assertEqual(reports["tiled"]["tiles"], tiles if reports["tiled"]["points"] else 0)
         self.assertEqual(os.listdir(self.scratch()), [])
         return reports["tiled"]
+
+    def test_a_box_without_points_had_no_volume(self):
+        self.rows("none.csv", 0)
+        self.assertEqual(self.cells(self.path("none.csv"), "--box", "0,0,0,1,2,3")["box_volume"], 6)
 
     def test_cells_are_those_without_tiles(self):
         cloud = self.rows("a.csv", 2000)
@@ -74,6 +79,12 @@ class Tiles(CliTest):
         with open(self.path("grid.xyz"), "w", encoding="ascii") as f:  # ties everywhere, and duplicates
             f.writelines("%d %d %d\n" % (x, y, z % 6) for x in range(7) for y in range(7) for z in range(7))
         self.assertEqual(self.cells(self.path("grid.xyz"), tiles=4)["duplicates"], 49)
+
+    def test_lines_of_cells_in_tiles_had_no_names(self):
+        run = self.expect(0, "voronoi", self.rows("a.csv", 50), "--tiles", "2", "--scratch", self.scratch(), "-o",
+                          self.path("x.csv"))
+        self.assertRegex(run.out.decode(), "(?m)^largest tile  .*\n^scratch bytes ")
+        self.assertNotIn("resumed", run.out.decode())
 
     def test_what_cells_in_tiles_have_not_is_refused(self):
         cloud, folder = self.rows("a.csv", 20), self.scratch()
@@ -118,6 +129,8 @@ class Tiles(CliTest):
         os.mkdir(self.path("a&b.part"))
         with open(self.path("a&b.part/0.vtu"), "w", encoding="ascii") as f:
             f.write("left by a run that was killed")
+        with open(self.path("a&b.part/.brio-part"), "wb"):
+            pass
         size = max(map(len, before.values()))
         self.assertLess(len(before["a&b/0.vtu"]), size)
         run = subprocess.run([BRIO, *command, "--quiet"], stderr=subprocess.PIPE, check=False, preexec_fn=lambda: (
@@ -134,6 +147,58 @@ class Tiles(CliTest):
             f.write("no output of this index")
         self.facts(*command[:-1], self.path("b.pvtu"))
         self.assertEqual(os.listdir(self.path("b")), ["0.vtu"])
+
+    def test_a_folder_of_the_user_was_emptied(self):
+        cloud = self.rows("a.csv", 300)
+        command = ("delaunay", cloud, "--tiles", "2", "--scratch", self.scratch(), "-o", self.path("out.pvtu"))
+        os.mkdir(self.path("mine"))
+        for name in "0.vtu", "other":
+            with open(self.path("mine/" + name), "w", encoding="ascii") as f:
+                f.write("mine")
+        part = self.path("out.part")
+        for lay in os.symlink, os.rename:
+            lay(self.path("mine"), part)
+            self.assertIn("out.part: is in the way", self.expect(6, *command).err)
+            self.assertEqual(sorted(os.listdir(part)), ["0.vtu", "other"])
+            if os.path.islink(part):
+                os.remove(part)
+        for name in "0.vtu", "other":
+            os.rename(os.path.join(part, name), self.path(name))
+        os.rmdir(part)
+        os.rename(self.path("other"), part)
+        self.assertIn("out.part: is in the way", self.expect(6, *command).err)
+        self.assertFalse(os.path.exists(self.path("out.pvtu")))
+
+    def test_a_file_that_the_older_index_does_not_name_was_removed(self):
+        cloud = self.rows("a.csv", 300)
+        command = ("delaunay", cloud, "--scratch", self.scratch(), "-o", self.path("out.pvtu"), "--tiles")
+        self.facts(*command, "2")
+        with open(self.path("out/2.vtu"), "w", encoding="ascii") as f:
+            f.write("mine")
+        self.facts(*command, "3")
+        self.assertEqual(os.listdir(self.path("out")), ["2.vtu"])
+        self.assertEqual(sorted(os.listdir(self.path("out-1"))), ["0.vtu", "1.vtu", "2.vtu"])
+
+    def test_the_folder_of_a_run_that_was_killed_before_its_index_stayed(self):
+        cloud = self.rows("a.csv", 300)
+        command = ("delaunay", cloud, "--tiles", "2", "--scratch", self.scratch(), "-o", self.path("out.pvtu"))
+        self.facts(*command)
+        os.rename(self.path("out"), self.path("out-1"))  # as it is when a run is killed before the index is there
+        with open(self.path("out-1/.brio-part"), "wb"):
+            pass
+        os.remove(self.path("out.pvtu"))
+        self.facts(*command)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a.csv", "out", "out.pvtu", "scratch"])
+
+    def test_two_runs_with_one_output_mixed_their_files(self):
+        cloud = self.rows("a.csv", 300)
+        os.mkdir(self.path("out.part"))
+        with open(self.path("out.part/.brio-part"), "wb") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            run = self.expect(6, "delaunay", cloud, "--tiles", "2", "--scratch", self.scratch(), "-o",
+                              self.path("out.pvtu"))
+        self.assertIn("that of a run that goes on", run.err)
+        self.assertEqual(os.listdir(self.path("out.part")), [".brio-part"])
 
     def test_the_index_was_no_xml(self):
         cloud = self.rows("a.csv", 300)
