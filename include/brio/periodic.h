@@ -131,7 +131,8 @@ typedef struct brio_periodic_alpha {
  *  simplex whose lexicographically least vertex is an image i < #P; tetrahedra come in the order of
  *  brio_periodic_tetrahedra. A face of a simplex is in the list, or a translate of it is. No value is greater than that
  *  of a coface, and translates have the same bits. The Euler characteristic, counts[0] - counts[1] + counts[2] -
- *  counts[3], is 0. brio_alpha_order and brio_write_filtration take the complex.
+ *  counts[3], is 0. brio_alpha_order takes the complex, and brio_write_filtration; but a program that reads
+ *  such a file as a complex of its vertices does not know which images are translates of each other.
  *  out  owned by the caller, freed with brio_periodic_alpha_free; NULL on error.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (there are no tetrahedra), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED.

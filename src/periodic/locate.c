@@ -3,7 +3,7 @@
  * A place is put on the grid and into the domain, as points are. The nearest vertex is found by the tree of boxes
  * (translates.h). From a tetrahedron there a walk goes across facets that have the place on their other side; the
  * class of a tetrahedron and a shift say where it is. Such a walk ends, because regular triangulations have no cycles
- * of tetrahedra that hide each other.
+ * of tetrahedra that hide each other. One that takes more steps than any should is given up, and said.
  *
  * Based on: Edelsbrunner. An acyclicity theorem for cell complexes in d dimensions. Combinatorica 1990.
  *           Devillers, Pion, Teillaud. Walking in a triangulation. IJFCS 2002. */
@@ -17,8 +17,9 @@
 #include <assert.h>
 #include <string.h>
 
-/* Chosen: QUERIES_A_THREAD are worth a thread; CHUNK of them go to one at a time. */
-enum { QUERIES_A_THREAD = 256, CHUNK = 64 };
+/* Chosen: QUERIES_A_THREAD are worth a thread; CHUNK of them go to one at a time. MOST_STEPS: of a walk, with those for
+ * each tetrahedron; far more than it takes. */
+enum { QUERIES_A_THREAD = 256, CHUNK = 64, MOST_STEPS = 1 << 20, MOST_STEPS_A_TET = 64 };
 
 struct brio_periodic_locator {
     brio_context *ctx;
@@ -84,9 +85,12 @@ static bool is_far(const brio_translates *t, const double *x) {
     return false;
 }
 
-/* Walks from a tetrahedron to that which holds x. Ends at an infinite one if none does. */
-static void walk(const brio_periodic *t, brio_filter *filter, const double *x, brio_place *at) {
+/* Walks from a tetrahedron to that which holds x. Ends at an infinite one if none does. Returns false if the walk is
+ * given up. */
+static bool walk(const brio_periodic *t, brio_filter *filter, const double *x, brio_place *at) {
+    size_t steps = MOST_STEPS + MOST_STEPS_A_TET * t->stats.tetrahedra;
     for (bool moved = true; moved && at->class < t->stats.tetrahedra;) {
+        if (!steps--) return false;
         double v[4][3];
         moved = false;
         for (int i = 0; i < 4; i++)
@@ -101,6 +105,7 @@ static void walk(const brio_periodic *t, brio_filter *filter, const double *x, b
             moved = true;
         }
     }
+    return true;
 }
 
 /* --- all queries --- */
@@ -111,15 +116,17 @@ typedef struct {
     brio_image *out;
     bool nearest;    /* whether vertices are asked for, not tetrahedra */
     size_t *too_far; /* #threads: a query that is too many cells away, or SIZE_MAX */
+    size_t *lost;    /* #threads, behind those: one whose walk was given up */
 } query_job;
 
-static void answer(const query_job *job, brio_filter *filter, const brio_home *home, brio_image *out) {
+/* Answers a query. Returns false if a walk was given up. */
+static bool answer(const query_job *job, brio_filter *filter, const brio_home *home, brio_image *out) {
     const brio_periodic_locator *l = job->locator;
     const brio_periodic *t = l->t;
     brio_image vertex;
     *out = (brio_image){.point = BRIO_INFINITE};
-    if (!l->translates.count) return;
-    if (!job->nearest && (t->stats.tetrahedra == 0 || is_far(&l->translates, home->x))) return;
+    if (!l->translates.count) return true;
+    if (!job->nearest && (t->stats.tetrahedra == 0 || is_far(&l->translates, home->x))) return true;
     brio_translates_nearest(&l->translates, home->x, &vertex);
     if (!job->nearest) {
         uint32_t corner = l->corner[vertex.point];
@@ -127,23 +134,25 @@ static void answer(const query_job *job, brio_filter *filter, const brio_home *h
         const brio_image *seen = &t->images.list[t->tet[at.class].vertex[corner & 3]];
         assert(corner != UINT32_MAX && seen->point == vertex.point);
         for (int k = 0; k < 3; k++) at.shift[k] = vertex.shift[k] - seen->shift[k];
-        walk(t, filter, home->x, &at);
-        if (at.class >= t->stats.tetrahedra) return;
+        if (!walk(t, filter, home->x, &at)) return false;
+        if (at.class >= t->stats.tetrahedra) return true;
         vertex.point = at.class;
         memcpy(vertex.shift, at.shift, sizeof at.shift);
     }
     *out = brio_periodic_show(t, &vertex, job->nearest ? t->home[vertex.point] : NULL, home->shift);
+    return true;
 }
 
 static void answer_some(void *user, size_t begin, size_t end, int thread) {
     const query_job *job = user;
     brio_filter filter = job->locator->translates.filter;
-    for (size_t q = begin; q < end; q++) {
+    for (size_t q = begin; q < end && job->lost[thread] == SIZE_MAX; q++) {
         brio_home home;
-        if (brio_lattice_home(&job->locator->t->lattice, job->query + 3 * q, &home))
-            answer(job, &filter, &home, &job->out[q]);
-        else if (q < job->too_far[thread])
-            job->too_far[thread] = q;
+        if (!brio_lattice_home(&job->locator->t->lattice, job->query + 3 * q, &home)) {
+            if (q < job->too_far[thread]) job->too_far[thread] = q;
+        } else if (!answer(job, &filter, &home, &job->out[q])) {
+            job->lost[thread] = q;
+        }
     }
 }
 
@@ -152,11 +161,15 @@ static brio_status answer_all(brio_context *ctx, query_job *job, size_t count) {
     int threads = brio_threads(ctx, count, QUERIES_A_THREAD);
     size_t worst = SIZE_MAX;
     BRIO_TRY(brio_refuse_not_finite(ctx, job->query, NULL, count, NULL));
-    BRIO_TRY(BRIO_ALLOC(ctx, job->too_far, threads));
-    for (int i = 0; i < threads; i++) job->too_far[i] = SIZE_MAX;
+    BRIO_TRY(BRIO_ALLOC(ctx, job->too_far, 2 * (size_t)threads));
+    job->lost = job->too_far + threads;
+    for (int i = 0; i < 2 * threads; i++) job->too_far[i] = SIZE_MAX;
     BRIO_TRY(brio_for_chunks(ctx, threads, count, CHUNK, answer_some, job));
-    for (int i = 0; i < threads; i++)
+    for (int i = 0; i < threads; i++) {
+        BRIO_REQUIRE(ctx, job->lost[i] == SIZE_MAX, BRIO_ERR_INTERNAL, "the walk to place %zu does not end",
+                     job->lost[i]);
         if (job->too_far[i] < worst) worst = job->too_far[i];
+    }
     BRIO_REQUIRE(ctx, worst == SIZE_MAX, BRIO_ERR_ARGUMENT, "place %zu is more than 2^26 cells away from the points",
                  worst);
 done:

@@ -36,6 +36,26 @@ static void expect_point(const brio_mesh *m, size_t v, double x, double y, doubl
     EXPECT(m && v < m->num_vertices);
 }
 
+typedef struct {
+    const char *name;
+    bool found;
+} part;
+
+static void look_at(const char *name, void *user) {
+    part *wanted = user;
+    wanted->found |= !strcmp(name, wanted->name);
+}
+
+/* Expects that reading a text names a part that the mesh has not. */
+static void expect_left_out(const char *name, const char *text, const char *what) {
+    part wanted = {what, false};
+    brio_read_options o = {.size = sizeof o, .left_out = look_at, .left_out_user = &wanted};
+    brio_mesh *m = NULL;
+    io_put(name, text, strlen(text));
+    EXPECT(brio_read(io_ctx, io_path(name), &o, &m) == BRIO_OK && wanted.found, "%s", what);
+    brio_mesh_free(m);
+}
+
 static const double unit[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, tilted[9] = {2, 0, 0, 1, 2, 0, 0, 0, 2};
 
 static void extended_xyz(void) {
@@ -232,6 +252,77 @@ static void lammps_data(void) {
     io_expect_error("a.lmp", "", BRIO_ERR_FORMAT, "ends at byte 0");
 }
 
+/* --- what was read wrongly, or refused --- */
+
+#define ZERO_CELL "CRYST1    0.000    0.000    0.000  90.00  90.00  90.00 P 1           1\n"
+
+static void pdb_with_a_cell_of_zeros_was_refused(void) {
+    expect_no_cell("a.pdb", ZERO_CELL ATOM); /* as VMD writes it where there is no cell */
+}
+
+static void pdb_whose_residues_are_no_decimal_numbers_was_refused(void) {
+    static const char *const numbers[] = {"A000", "****", "1e10", "2-71"};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        char text[256];
+        snprintf(text, sizeof text, "ATOM  186a0  OH2 TIP3W%s      -0.011   0.302   0.113\n" ATOM, numbers[i]);
+        brio_mesh *m = io_read_text("a.pdb", text);
+        EXPECT(m && m->num_vertices == 2 && isnan(value(m, "residue", 0)) && value(m, "residue", 1) == 12);
+        expect_left_out("a.pdb", text, "numbers of residues that are not decimal");
+        brio_mesh_free(m);
+    }
+    brio_mesh *m = io_read_text("a.pdb", "ATOM      1  CA  GLY A  -3       1.000   2.000   3.000\n");
+    EXPECT(value(m, "residue", 0) == -3);
+    brio_mesh_free(m);
+}
+
+static void cif_had_the_atoms_of_all_models_and_alternate_locations(void) {
+    static const char text[] = "data_a\nloop_\n_atom_site.type_symbol\n_atom_site.label_alt_id\n_atom_site.Cartn_x\n"
+                               "_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.pdbx_PDB_model_num\n"
+                               "C . 0 0 0 3\nC A 1 0 0 3\nC B 2 0 0 3\nC ? 3 0 0 3\nC 1 4 0 0 3\nC . 0 1 0 4\n";
+    brio_mesh *m = io_read_text("a.cif", text);
+    EXPECT(m && m->num_vertices == 4);
+    for (size_t v = 0; m && v < m->num_vertices; v++) expect_point(m, v, (double)(v + (v > 1)), 0, 0);
+    expect_left_out("a.cif", text, "further models");
+    expect_left_out("a.cif", text, "alternate locations");
+    brio_mesh_free(m);
+}
+
+static void poscar_with_comments_behind_its_species_was_refused(void) {
+    static const char text[] = "c\n1 ! scale\n1 0 0 # a\n0 1 0\n0 0 1\nSi O ! of these\n1 1 #n\nDirect\n"
+                               "0 0 0 ! Si\n.5 .5 .5\n";
+    brio_mesh *m = io_read_text("POSCAR", text);
+    EXPECT(m && m->num_vertices == 2 && value(m, "atomic_number", 1) == 8);
+    expect_left_out("POSCAR", text, "comment");
+    brio_mesh_free(m);
+}
+
+static void xyz_whose_comment_is_a_sentence_was_refused_for_a_cell(void) {
+    expect_no_cell("a.xyz", "1\nthe lattice=small one, pbc=maybe\nC 0 0 0\n");
+    io_expect_error("a.xyz", "1\nLattice=small Properties=species:S:1:pos:R:3\nC 0 0 0\n", BRIO_ERR_FORMAT,
+                    "Lattice=: expected 9 numbers");
+}
+
+static void xyz_with_pbc_in_one_word_was_refused(void) {
+    static const struct {
+        const char *pbc, *directions;
+    } words[] = {{"\"TFT\"", "xz"}, {"T", "xyz"}, {"\"F\"", ""}, {"[true,False,TRUE]", "xz"}, {"\"101\"", "xz"}};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        char text[256];
+        snprintf(text, sizeof text, "1\nLattice=\"1 1 1\" Properties=species:S:1:pos:R:3 pbc=%s\nC 0 0 0\n",
+                 words[i].pbc);
+        brio_mesh *m = io_read_text("a.xyz", text);
+        expect_cell(m, words[i].directions, unit, 0);
+        brio_mesh_free(m);
+    }
+}
+
+static void lammps_spheres_without_a_style_had_the_names_of_others(void) {
+    brio_mesh *m = io_read_text("a.lmp", BOX "\nAtoms\n\n1 1 0.5 2.5 1 2 3\n");
+    EXPECT(value(m, "diameter", 0) == 0.5 && value(m, "density", 0) == 2.5);
+    expect_point(m, 0, 1, 2, 3);
+    brio_mesh_free(m);
+}
+
 /* --- damage --- */
 
 static const struct {
@@ -288,6 +379,13 @@ SUITE(test_io_atoms) {
     RUN(poscar);
     RUN(lammps_dump);
     RUN(lammps_data);
+    RUN(pdb_with_a_cell_of_zeros_was_refused);
+    RUN(pdb_whose_residues_are_no_decimal_numbers_was_refused);
+    RUN(cif_had_the_atoms_of_all_models_and_alternate_locations);
+    RUN(poscar_with_comments_behind_its_species_was_refused);
+    RUN(xyz_whose_comment_is_a_sentence_was_refused_for_a_cell);
+    RUN(xyz_with_pbc_in_one_word_was_refused);
+    RUN(lammps_spheres_without_a_style_had_the_names_of_others);
     RUN(every_prefix_and_changed_byte);
     RUN(each_allocation_fails);
     return io_end();

@@ -99,6 +99,51 @@ static void grows(const brio_periodic_alpha *a) {
             }
 }
 
+/* Expects that each simplex begins with an image in the domain: so one stands for each class, always the same. */
+static void stand_for_their_classes(const sample *s, const brio_periodic_alpha *a) {
+    const brio_alpha_complex *c = a->complex;
+    size_t wrong = 0;
+    for (size_t k = 0; k < 4; k++)
+        for (size_t n = 0; n < c->counts[k]; n++) {
+            const uint32_t *v = c->simplices[k] + n * (k + 1);
+            uint32_t least = v[0];
+            for (size_t i = 1; i <= k; i++) {
+                wrong += v[i - 1] >= v[i];
+                if (before(a->positions + 3 * (size_t)v[i], a->positions + 3 * (size_t)least) < 0) least = v[i];
+            }
+            wrong += least >= brio_periodic_facts(s->t)->points;
+        }
+    EXPECT(wrong == 0, "%zu simplices", wrong);
+}
+
+/* Expects an order in which values and, among equals, dimensions grow, and a file with a line for each simplex. */
+static void has_an_order(const brio_periodic_alpha *a) {
+    static uint32_t order[1 << 16];
+    static uint8_t seen[1 << 16];
+    static const char path[] = "periodic-filtration.txt";
+    const brio_alpha_complex *c = a->complex;
+    size_t total = 0, before_k = 0, wrong = 0, last_k = 0, lines = 0;
+    double last = -INFINITY;
+    for (size_t k = 0; k < 4; k++) total += c->counts[k];
+    EXPECT(total <= 1 << 16 && brio_alpha_order(ctx, c, order) == BRIO_OK, "%s", brio_message(ctx));
+    memset(seen, 0, sizeof seen);
+    for (size_t i = 0; i < total && order[i] < total; i++) {
+        size_t k = 0;
+        for (before_k = 0; order[i] - before_k >= c->counts[k]; k++) before_k += c->counts[k];
+        double value = c->values[k][order[i] - before_k];
+        wrong += seen[order[i]]++ || value < last || (value == last && k < last_k);
+        last = value, last_k = k;
+    }
+    for (size_t i = 0; i < total; i++) wrong += seen[i] != 1;
+    EXPECT(wrong == 0, "%zu of %zu", wrong, total);
+    EXPECT(brio_write_filtration(ctx, path, c, order, BRIO_FILTRATION_GUDHI) == BRIO_OK, "%s", brio_message(ctx));
+    FILE *f = fopen(path, "r");
+    for (int ch; f && (ch = getc(f)) != EOF;) lines += ch == '\n';
+    EXPECT(f && lines == total, "%zu lines of %zu simplices", lines, total);
+    if (f) fclose(f);
+    remove(path);
+}
+
 static void compare_with_copies(uint64_t seed, sample s) {
     static double mine[1 << 16], theirs[1 << 16];
     brio_periodic_alpha *a = NULL;
@@ -125,6 +170,8 @@ static void compare_with_copies(uint64_t seed, sample s) {
     EXPECT(counts[0] + counts[2] == counts[1] + counts[3], "the Euler characteristic");
     EXPECT(counts[3] == brio_periodic_facts(s.t)->tetrahedra);
     grows(a);
+    stand_for_their_classes(&s, a);
+    has_an_order(a);
     brio_periodic_alpha_free(a);
     brio_alpha_complex_free(&c);
     brio_triangulation_free(t);

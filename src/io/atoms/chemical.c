@@ -189,6 +189,7 @@ static brio_status parse_properties(chemical_reader *r, const char *p) {
 typedef struct {
     const char *key, *value; /* value: NULL for a word */
     size_t key_length, value_length;
+    bool bracketed; /* by quotes or brackets */
 } comment_entry;
 
 /* Finds the next entry at *p and moves *p behind it. Returns false at the end. */
@@ -202,8 +203,9 @@ static bool next_entry(const char **p, comment_entry *e) {
     if (*at == '=') {
         e->value = ++at;
         bracket = *at ? strchr(open, *at) : NULL;
-        if (bracket) e->value = ++at;
+        e->bracketed = bracket != NULL;
         if (bracket) {
+            e->value = ++at;
             const char end = close[bracket - open];
             for (int depth = 1; *at; at++) {
                 depth += (*at == *bracket && end != *bracket) - (*at == end);
@@ -247,7 +249,7 @@ static brio_status parse_lattice(const chemical_reader *r, const comment_entry *
     return BRIO_OK;
 }
 
-/* Reads T or F, or 1 or 0, three times. */
+/* Reads T or F, True or False, or 1 or 0: three times, or once for all directions. */
 static brio_status parse_pbc(const chemical_reader *r, const comment_entry *e, bool periodic[3]) {
     int count = 0;
     for (size_t i = 0; i < e->value_length; i++) {
@@ -255,20 +257,25 @@ static brio_status parse_pbc(const chemical_reader *r, const comment_entry *e, b
         if (brio_is_blank(c) || strchr(",[]", c)) continue;
         if (count == 3 || !strchr("TtFf10", c)) return bad_entry(r, "pbc", "T or F of each direction");
         periodic[count++] = strchr("Tt1", c) != NULL;
-        while (i + 1 < e->value_length && isalpha((unsigned char)e->value[i + 1])) i++; /* True */
+        const char *rest = strchr("Tt", c) ? "rue" : "alse";
+        if (i + strlen(rest) < e->value_length && !strncasecmp(e->value + i + 1, rest, strlen(rest))) i += strlen(rest);
     }
-    return count == 3 ? BRIO_OK : bad_entry(r, "pbc", "T or F of each direction");
+    if (count == 1) periodic[1] = periodic[2] = periodic[0];
+    return count == 1 || count == 3 ? BRIO_OK : bad_entry(r, "pbc", "T or F of each direction");
 }
 
-/* Takes the cell of a comment, and notes that what else it has is left out. */
+/* Takes the cell of a comment, and notes that what else it has is left out. Without Properties= a comment may be any
+ * text, so only values in quotes or brackets count. */
 static brio_status take_comment(const chemical_reader *r, const char *comment) {
     comment_entry e;
     double cell[9] = {0};
     bool periodic[3] = {true, true, true}, more = false;
+    const bool extended = strstr(comment, "Properties=");
     while (next_entry(&comment, &e)) {
-        if (is_key(&e, "Lattice"))
+        const bool counts = extended || e.bracketed;
+        if (counts && is_key(&e, "Lattice"))
             BRIO_FORWARD(parse_lattice(r, &e, cell));
-        else if (is_key(&e, "pbc"))
+        else if (counts && is_key(&e, "pbc"))
             BRIO_FORWARD(parse_pbc(r, &e, periodic));
         else
             more |= !is_key(&e, "Properties");

@@ -1,5 +1,6 @@
 /* Reads crystallographic information files: items of a tag and a value, and loops of tags and rows of values. Of the
- * first data block that has sites of atoms, the sites become points.
+ * first data block that has sites of atoms, the sites become points: of several models those of the first, and of
+ * alternate locations those marked with none, A or 1, as of PDB files.
  *
  * Sites are fractions of the cell (_atom_site_fract_x), or positions (_atom_site_Cartn_x, as files of macromolecules
  * have them). Copies by symmetry are not made: fractions in another space group than P1 are refused, and positions in
@@ -28,7 +29,17 @@ typedef struct {
     char text[VALUE]; /* the beginning of it */
 } cif_token;
 
-typedef enum { TAG_OTHER, TAG_FRACTION, TAG_POSITION, TAG_SYMBOL, TAG_LABEL, TAG_NUMBER, TAG_OPERATION } tag_role;
+typedef enum {
+    TAG_OTHER,
+    TAG_FRACTION,
+    TAG_POSITION,
+    TAG_SYMBOL,
+    TAG_LABEL,
+    TAG_NUMBER,
+    TAG_MODEL,
+    TAG_ALTERNATE,
+    TAG_OPERATION
+} tag_role;
 
 /* What a column of a loop is. */
 typedef struct {
@@ -48,6 +59,7 @@ typedef struct {
     size_t operations;     /* of symmetry, that are listed */
     bool other_operations; /* one of them is not the identity */
     bool has_sites, fractions, has_symbols;
+    char model[VALUE]; /* that of the first site, or empty */
     char tags[MOST_TAGS][64];
     cif_column columns[MOST_TAGS];
     size_t num_tags;
@@ -199,6 +211,8 @@ static cif_column column_of(const char *tag) {
     }
     if (is_tag(tag, "_atom_site_type_symbol")) return (cif_column){TAG_SYMBOL, 0};
     if (is_tag(tag, "_atom_site_label")) return (cif_column){TAG_LABEL, 0};
+    if (is_tag(tag, "_atom_site_pdbx_pdb_model_num")) return (cif_column){TAG_MODEL, 0};
+    if (is_tag(tag, "_atom_site_label_alt_id")) return (cif_column){TAG_ALTERNATE, 0};
     return (cif_column){is_tag(tag, OPERATION_TAGS) ? TAG_OPERATION : TAG_OTHER, 0};
 }
 
@@ -228,6 +242,7 @@ static brio_status plan(cif_reader *r, bool *sites) {
             BRIO_FORWARD(brio_builder_property(r->b, numbers[n][1], BRIO_SCALAR_FLOAT64));
         }
         bool used = c->role == TAG_NUMBER || c->role == TAG_OPERATION ||
+                    (*sites && (c->role == TAG_MODEL || c->role == TAG_ALTERNATE)) ||
                     (*sites && c->role == (r->fractions ? TAG_FRACTION : TAG_POSITION)) ||
                     (*sites && c->role == (r->has_symbols ? TAG_SYMBOL : TAG_LABEL));
         if (!used) BRIO_FORWARD(brio_builder_leave_out(r->b, r->tags[i]));
@@ -250,6 +265,7 @@ typedef struct {
     int element;
     double number[3];
     size_t target[3], num_numbers;
+    bool further_model, alternate;
 } cif_site;
 
 static brio_status take_value(cif_reader *r, const cif_column *c, cif_site *site) {
@@ -273,6 +289,13 @@ static brio_status take_value(cif_reader *r, const cif_column *c, cif_site *site
         site->number[site->num_numbers] = NAN;
         site->num_numbers++;
         return is_missing(&r->token) ? BRIO_OK : number(r, &site->number[site->num_numbers - 1]);
+    case TAG_MODEL:
+        if (!r->model[0]) memcpy(r->model, r->token.text, sizeof r->model);
+        site->further_model = strcmp(r->model, r->token.text) != 0;
+        break;
+    case TAG_ALTERNATE:
+        site->alternate = !is_missing(&r->token) && strcmp(r->token.text, "A") != 0 && strcmp(r->token.text, "1") != 0;
+        break;
     case TAG_OTHER:
         break;
     }
@@ -281,6 +304,8 @@ static brio_status take_value(cif_reader *r, const cif_column *c, cif_site *site
 
 static brio_status add_site(cif_reader *r, const cif_site *site) {
     brio_mesh *m = r->b->mesh;
+    if (site->further_model) return brio_builder_leave_out(r->b, "further models");
+    if (site->alternate) return brio_builder_leave_out(r->b, "alternate locations");
     if (!site->known[0] || !site->known[1] || !site->known[2])
         return brio_builder_leave_out(r->b, "sites without positions");
     BRIO_FORWARD(brio_builder_vertex(r->b, site->x));

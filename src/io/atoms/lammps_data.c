@@ -115,6 +115,7 @@ static brio_status guess_style(data_reader *r) {
     size_t count = w->count - (flags ? 3 : 0);
     const char *name = count == 5 ? "atomic" : count == 7 ? "full" : count == 9 ? "dipole" : NULL;
     if (count == 6) name = is_integer(w->of[2]) ? "molecular" : "charge";
+    if (count == 7 && !is_integer(w->of[2])) name = "sphere";
     BRIO_EXPECT(r->s->ctx, name, BRIO_ERR_FORMAT,
                 "%s: line %zu: %zu columns are those of no atom style that is known; the line Atoms names none",
                 r->s->name, r->s->line, w->count);

@@ -44,20 +44,37 @@ static brio_status parse_columns(const brio_stream *s, const char *line, pdb_col
     return BRIO_OK;
 }
 
-/* Keeps the cell of CRYST1. Files without a crystal have one of 1 by 1 by 1, which is none. */
+/* Reads the number of a residue: NaN where the columns are blank, or have letters or stars instead, as many programs
+ * write numbers that four columns cannot hold. */
+static brio_status take_residue(brio_builder *b, const char *line, double *value) {
+    char field[16];
+    const char *p = take_columns(line, NUMBER, field);
+    const bool blank = !*p, negative = *p == '-';
+    uint64_t number;
+    p += negative;
+    *value = NAN;
+    if (blank) return BRIO_OK;
+    if (!brio_parse_count(&p, &number) || *p)
+        return brio_builder_leave_out(b, "numbers of residues that are not decimal");
+    *value = negative ? -(double)number : (double)number;
+    return BRIO_OK;
+}
+
+/* Keeps the cell of CRYST1. Files without a crystal have one of 1 by 1 by 1, or of lengths of 0, which is none. */
 static brio_status take_cell(const brio_stream *s, brio_builder *b, const char *line) {
     static const bool all[3] = {true, true, true};
     double lengths[3], angles[3], cell[9];
     char field[16], none[96];
-    bool unit = true;
+    bool unit = true, zero = true;
     for (int k = 0; k < 3; k++) {
         const pdb_columns length = {CELL + k * LENGTH_WIDTH, LENGTH_WIDTH},
                           angle = {ANGLES + k * ANGLE_WIDTH, ANGLE_WIDTH};
         BRIO_FORWARD(parse_columns(s, line, length, "a length of the cell", &lengths[k]));
         BRIO_FORWARD(parse_columns(s, line, angle, "an angle of the cell", &angles[k]));
         unit &= lengths[k] == 1 && angles[k] == 90;
+        zero &= lengths[k] == 0;
     }
-    if (unit) return BRIO_OK;
+    if (unit || zero) return BRIO_OK;
     BRIO_EXPECT(s->ctx, brio_cell_of_lengths(lengths, angles, cell), BRIO_ERR_FORMAT,
                 "%s: line %zu: there is no cell of the lengths %g, %g, %g and the angles %g, %g, %g", s->name, s->line,
                 lengths[0], lengths[1], lengths[2], angles[0], angles[1], angles[2]);
@@ -81,18 +98,16 @@ static brio_status leave_out_columns(brio_builder *b, const char *line) {
 }
 
 static brio_status add_point(const brio_stream *s, brio_builder *b, const char *line) {
-    static const char *const what[3] = {"an occupancy", "a temperature factor", "the number of a residue"};
-    const pdb_columns columns[3] = {OCCUPANCY, FACTOR, NUMBER};
-    double x[3], value;
+    double x[3], value[3];
     int element;
     BRIO_FORWARD(brio_pdb_atom(s, line, x, &element));
     if (!brio_pdb_is_first_location(line)) return brio_builder_leave_out(b, "alternate locations");
     BRIO_FORWARD(brio_builder_vertex(b, x));
     brio_atoms_set_element(b, element);
-    for (size_t k = 0; k < 3; k++) {
-        BRIO_FORWARD(parse_columns(s, line, columns[k], what[k], &value));
-        ((double *)b->mesh->properties[2 + k].data)[b->mesh->num_vertices - 1] = value;
-    }
+    BRIO_FORWARD(parse_columns(s, line, OCCUPANCY, "an occupancy", &value[0]));
+    BRIO_FORWARD(parse_columns(s, line, FACTOR, "a temperature factor", &value[1]));
+    BRIO_FORWARD(take_residue(b, line, &value[2]));
+    for (size_t k = 0; k < 3; k++) ((double *)b->mesh->properties[2 + k].data)[b->mesh->num_vertices - 1] = value[k];
     return leave_out_columns(b, line);
 }
 

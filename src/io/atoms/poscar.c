@@ -26,9 +26,17 @@ typedef struct {
 
 static const bool all_directions[3] = {true, true, true};
 
+/* Reads the next line with words. Words from the second on end at a comment. */
 static brio_status next(poscar_reader *r) {
-    BRIO_FORWARD(brio_words_next(r->s, 0, &r->words));
-    return r->words.count ? BRIO_OK : brio_stream_truncated(r->s);
+    brio_words *w = &r->words;
+    BRIO_FORWARD(brio_words_next(r->s, 0, w));
+    if (!w->count) return brio_stream_truncated(r->s);
+    for (size_t i = 1; i < w->count; i++) {
+        if (!strchr("!#", *w->of[i])) continue;
+        w->count = i;
+        return brio_builder_leave_out(r->b, "comment");
+    }
+    return BRIO_OK;
 }
 
 /* Reads the scale and the vectors, and multiplies. */
@@ -134,7 +142,7 @@ static brio_status read_atom(poscar_reader *r, size_t species) {
 static brio_status read_atoms(poscar_reader *r, uint64_t all) {
     size_t species = 0;
     uint64_t left = r->species ? r->count[0] : 0;
-    BRIO_FORWARD(brio_stream_expect(r->s, all, 6, "the numbers of atoms")); /* "0 0 0" */
+    BRIO_FORWARD(brio_stream_expect(r->s, all, 6, "the line of the numbers of atoms")); /* "0 0 0" */
     brio_builder_stream(r->b, all);
     brio_stream_element(r->s, "atom", all);
     for (; r->s->row < all; r->s->row++) {
