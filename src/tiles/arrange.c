@@ -103,15 +103,20 @@ static bool spans_more(const brio_tiles *t, brio_filter *f, const double *p) {
     }
 }
 
+void brio_tiles_note(brio_tiles *t, brio_filter *f, const brio_set_point *p) {
+    bool first = t->num_basis == 0;
+    for (int d = 0; d < TILE_DIRECTIONS; d++)
+        if (first || along(d, p->record) > along(d, t->extreme[d].record)) t->extreme[d] = *p;
+    if (spans_more(t, f, p->record)) t->basis[t->num_basis++] = *p;
+}
+
 static void note_points(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
     brio_filter f;
     brio_tiles_filter(t, &f);
     for (size_t i = 0; i < n; i++) {
         brio_set_point p = points[i];
         p.name = place + i;
-        for (int d = 0; d < TILE_DIRECTIONS; d++)
-            if (place + i == 0 || along(d, p.record) > along(d, t->extreme[d].record)) t->extreme[d] = p;
-        if (spans_more(t, &f, p.record)) t->basis[t->num_basis++] = p;
+        brio_tiles_note(t, &f, &p);
     }
 }
 
@@ -160,7 +165,7 @@ brio_status brio_tiles_arrange(brio_tiles *t) {
     brio_store_file out = {.file = -1};
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(t->ctx);
-    uint64_t place = 0;
+    uint64_t place = t->first_place;
     BRIO_TRY(brio_store_create(&t->folder, "points.new", &out));
     out.hashes = t->key != 0;
     for (uint32_t i = 0; i < t->num_tiles; i++) {
