@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets npm page mpi
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets wheels integrations release npm page mpi
 
 all:
 	@sh scripts/setup.sh build
@@ -175,12 +175,31 @@ machines:
 # Every system that brio is for, built here, and run where this machine can: docs/platforms.md. TARGETS="--only wasm32-wasi" for some.
 targets:
 	@sh scripts/setup.sh targets
-	/usr/bin/python3 tests/targets/targets.py . build/targets out/targets-env/bin/python $(TARGETS)
+	/usr/bin/python3 tests/targets/targets.py . build/targets $(TARGETS)
 
 # The documentation as a site, out/site: scripts/site.sh. PICTURES=1 draws docs/images/gallery anew.
 site: all
 	@sh scripts/setup.sh site
 	@sh scripts/site.sh build
+
+# The Python package for every system, and an sdist, in build/wheels: docs/python/building.md. WHEELS="--only windows-x86_64" for some.
+wheels:
+	@sh scripts/setup.sh check
+	@sh scripts/setup.sh packages
+	@sh scripts/setup.sh targets
+	/usr/bin/python3 scripts/wheels.py . build/wheels out/tests-env/bin/python $(WHEELS)
+
+# PyVista, meshio and trimesh, Blender, QGIS: each as integrations/README.md says. BLENDER=1 installs Blender's Python package, 1.4 GB.
+integrations: all
+	@sh scripts/setup.sh check
+	@sh scripts/setup.sh packages
+	@[ -z "$(BLENDER)" ] || sh scripts/setup.sh blender
+	cmake -S . -B build -DBRIO_TESTS=ON && cmake --build build -j $(JOBS) --target brio-python
+	BRIO=$(CURDIR)/$(BRIO) BRIO_PYTHON=$(CURDIR)/build/python out/tests-env/bin/python integrations/run_tests.py
+
+# Every archive of a release with its checksum, in build/release. It signs nothing and uploads nothing: docs/release.md.
+release: wheels deb
+	@sh scripts/release.sh
 
 # Debian packages of what is committed, in out/deb.
 deb:

@@ -1,6 +1,7 @@
 /* brio-mpi: what `brio delaunay --tiles` does, by the ranks of an MPI job. Rank 0 reports; all have one exit code. */
 #include "brio/mpi.h"
 #include "cli/files/files.h"
+#include "cli/files/new_file.h"
 #include "cli/files/read_write.h"
 #include "cli/report/plain.h"
 #include "cli/run/interrupt.h"
@@ -10,18 +11,16 @@
 #include "platform/folder.h"
 #include "platform/program.h"
 #include "platform/thread.h"
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum {
     MOST_TILES = 1 << 12,
-    NAME_BYTES = 4096,
     FILE_SHIFT = 40 /* of a point's name: below it the index in its file */
 };
 
-static const char EXTENSION[] = ".pvtu";
+static const char VTU[] = ".vtu";
 
 typedef struct {
     weights_options weights;
@@ -130,14 +129,18 @@ done:
 
 /* --- output --- */
 
+static void name_part(const char *folder, uint64_t number, char path[BRIO_PATH_MOST + 64]) {
+    snprintf(path, BRIO_PATH_MOST + 64, "%s/%" PRIu64 "%s", folder, number, VTU);
+}
+
 /* Writes a tile of this rank into a folder. */
 static brio_status write_part(job *j, brio_tile_part *part, uint32_t tile, const char *folder) {
-    char path[NAME_BYTES + 64];
+    char path[BRIO_PATH_MOST + 64];
     for (size_t v = 0; v < part->num_vertices; v++) {
         uint64_t name = part->index[v];
         part->index[v] = j->first[name >> FILE_SHIFT] + (name & ((UINT64_C(1) << FILE_SHIFT) - 1));
     }
-    snprintf(path, sizeof path, "%s/%" PRIu64 ".vtu", folder, (uint64_t)j->rank * j->a.tiles + tile);
+    name_part(folder, (uint64_t)j->rank * j->a.tiles + tile, path);
     return cli_write_part(j->r, part, brio_ranks_facts(j->ranks)->weighted, path);
 }
 
@@ -154,46 +157,47 @@ static brio_status write_parts(job *j, const char *folder) {
     return BRIO_OK;
 }
 
-static brio_status make_folder(job *j, const char *folder) {
-    bool made;
-    if (j->rank == 0 && !brio_make_folder(folder, false, &made))
-        return cli_fail(j->r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", folder, strerror(errno));
-    return BRIO_OK;
+/* Makes the folder, on rank 0. */
+static brio_status open_folder(job *j, new_folder *folder) {
+    return j->rank ? BRIO_OK : cli_new_folder_open(j->r, j->r->common.output, VTU, folder);
 }
 
-/* Rank 0 gives all files their names, and then writes the index: without it there is no output. */
-static brio_status publish(job *j, const char *from, const char *to) {
-    char old[NAME_BYTES + 64], new[NAME_BYTES + 64];
+/* Rank 0 gives the folder its name, and then writes the index: without it there is no output. */
+static brio_status publish(job *j, new_folder *folder) {
+    char path[BRIO_PATH_MOST + 64];
     uint64_t all = (uint64_t)j->size * j->a.tiles;
     if (j->rank) return BRIO_OK;
-    FORWARD(make_folder(j, to));
     for (uint64_t i = 0; i < all; i++) {
-        snprintf(old, sizeof old, "%s/%" PRIu64 ".vtu", from, i);
-        snprintf(new, sizeof new, "%s/%" PRIu64 ".vtu", to, i);
-        if (!brio_rename_file(old, new))
-            return cli_fail(j->r, BRIO_ERR_WRITE, "%s: cannot give it its name: %s (all ranks must see one folder)",
-                            new, strerror(errno));
+        name_part(folder->path, i, path);
+        if (!brio_is_there(path))
+            return cli_fail(j->r, BRIO_ERR_WRITE,
+                            "%s: another rank wrote it, and it is not there: all ranks must see one folder", path);
     }
-    brio_remove_folder(from);
-    return cli_write_tiles_index(j->r, to, (uint32_t)all, brio_ranks_facts(j->ranks)->weighted);
+    FORWARD(cli_new_folder_name(j->r, folder));
+    return cli_write_tiles_index(j->r, folder->path, (uint32_t)all, brio_ranks_facts(j->ranks)->weighted);
 }
 
-static brio_status write_all(job *j) {
-    char to[NAME_BYTES], from[NAME_BYTES + 8], path[NAME_BYTES + 64];
-    brio_status status = BRIO_OK;
-    size_t stem = strlen(j->r->common.output) - strlen(EXTENSION);
-    if (stem >= sizeof to) return cli_fail_output(j->r, "%s: the name is too long", j->r->common.output);
-    snprintf(to, sizeof to, "%.*s", (int)stem, j->r->common.output);
-    snprintf(from, sizeof from, "%s.new", to);
-    TRY(agree(j, make_folder(j, from)));
-    TRY(write_parts(j, from));
-    status = agree(j, publish(j, from, to));
-done:
-    for (uint32_t i = 0; status != BRIO_OK && i < j->a.tiles; i++) {
-        snprintf(path, sizeof path, "%s/%" PRIu64 ".vtu", from, (uint64_t)j->rank * j->a.tiles + i);
+/* Removes what this rank wrote into the folder, and the folder if it was the last in it. */
+static void remove_parts(job *j, const char *folder) {
+    char path[BRIO_PATH_MOST + 64];
+    for (uint32_t i = 0; i < j->a.tiles; i++) {
+        name_part(folder, (uint64_t)j->rank * j->a.tiles + i, path);
         brio_remove_file(path);
     }
-    if (status != BRIO_OK) brio_remove_folder(from);
+    brio_remove_folder(folder);
+}
+
+/* Writes all files, then the index. On failure the files are removed, and an older output stays as it was. */
+static brio_status write_all(job *j) {
+    new_folder folder = {.path = ""};
+    brio_status status = BRIO_OK;
+    TRY(agree(j, open_folder(j, &folder)));
+    MPI_Bcast(folder.path, sizeof folder.path, MPI_CHAR, 0, MPI_COMM_WORLD);
+    TRY(write_parts(j, folder.path));
+    status = agree(j, publish(j, &folder));
+done:
+    if (j->rank == 0) cli_new_folder_close(&folder, status == BRIO_OK);
+    if (j->rank && status != BRIO_OK && *folder.path) remove_parts(j, folder.path);
     cli_lap(j->r, "write");
     return status;
 }
@@ -283,7 +287,8 @@ static brio_status check(run *r, arguments *a) {
     for (int i = 0; i < r->num_operands; i++)
         if (!strcmp(r->operands[i], "-"))
             return cli_fail(r, BRIO_ERR_ARGUMENT, "-: the ranks have no standard input; give files");
-    return cli_check_tiles(r, &a->weights, a->tiles);
+    FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
+    return cli_check_tile_files(r);
 }
 
 static brio_status parse(run *r, arguments *a, int argc, char **argv, bool *help) {

@@ -42,7 +42,7 @@ rm -rf try && mkdir try && cd try
 printf '{ "private": true, "type": "module" }\n' >package.json
 npm install --silent --no-audit --no-fund --ignore-scripts ../brio-"$version".tgz typescript@$typescript @types/node@20
 cp "$root"/wasm/test/* .
-node --test .
+node --expose-gc --test .
 node browser.mjs "$root/out/web-env" || [ $? = 77 ]
 npx tsc --noEmit --strict --module nodenext --target es2024 --lib es2024,dom --types node types.ts
 echo "npm: tests and types hold; $(wc -c <../brio-"$version".tgz) bytes packed"

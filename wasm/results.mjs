@@ -2,11 +2,12 @@
 //
 // An array that one reads of it is a view of that memory: no copy. A view is good until the next call, which may let the memory
 // grow: then the array has the length 0, and the result gives a new one. copy() has all arrays of its own, for keeping or for
-// sending to another thread.
+// sending to another thread. A result lives as long as one of its views; subarrays of a view do not count.
 
 /** Types of properties, in the order of brio_scalar. */
 export const TYPES = [Int8Array, Uint8Array, Int16Array, Uint16Array, Int32Array, Uint32Array, Float32Array, Float64Array];
 
+const owners = new WeakMap(); // a view keeps its result from being freed
 const forgotten = new FinalizationRegistry(({ x, free, at }) => x[free](at));
 
 class Result {
@@ -32,7 +33,11 @@ class Result {
       return Array.from(this.brio.numbers(Uint32Array, at, count));
     });
   }
-  view(kind, at, count) { return at ? this.brio.numbers(kind, at, count) : new kind(0); }
+  view(kind, at, count) {
+    const view = at ? this.brio.numbers(kind, at, count) : new kind(0);
+    owners.set(view, this);
+    return view;
+  }
 }
 if (Symbol.dispose) Result.prototype[Symbol.dispose] = Result.prototype.free; // for `using`
 

@@ -1,5 +1,6 @@
 // npm's delaunay-triangulate, brio's package and brio's program on the same points, one after the other in one run: node delaunay.mjs
-// BRIO [POINTS], in a folder that has `brio` and `delaunay-triangulate` (bench/javascript/run.sh). Medians of 3 of ours; theirs runs once.
+// BRIO [POINTS], in a folder that has `brio` and `delaunay-triangulate` (npm install). Seconds of processor time, which other programs on
+// the machine change little; medians of 3 of ours, theirs runs once. That of the program is of its whole run, in one thread.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -13,7 +14,7 @@ let state = 1;
 const next = () => (state = (state * 48271) % 2147483647) / 2147483647;
 const points = Float64Array.from({ length: 3 * n }, next), rows = Array.from({ length: n }, (_, i) => [...points.subarray(3 * i, 3 * i + 3)]);
 const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
-const times = (work, runs = 3) => median(Array.from({ length: runs }, () => { const began = performance.now(); work(); return (performance.now() - began) / 1000; }));
+const times = (work, runs = 3) => median(Array.from({ length: runs }, () => { const began = process.cpuUsage(); work(); const { user, system } = process.cpuUsage(began); return (user + system) / 1e6; }));
 const flat = (cells) => cells.filter(([a, b, c, d]) => {
   const [u, v, w] = [b, c, d].map((k) => rows[k].map((x, i) => x - rows[a][i]));
   return u[0] * (v[1] * w[2] - v[2] * w[1]) - u[1] * (v[0] * w[2] - v[2] * w[0]) + u[2] * (v[0] * w[1] - v[1] * w[0]) === 0;
@@ -25,7 +26,8 @@ writeFileSync(file, Buffer.concat([Buffer.from([0x93, 78, 85, 77, 80, 89, 1, 0, 
 delaunay(points.subarray(0, 3000)).free();
 const package_seconds = times(() => delaunay(points).free()), instead_seconds = times(() => instead(rows));
 const report = () => JSON.parse(execFileSync(program, ['delaunay', file, '--threads', '1', '--json', '--quiet']));
-const desktop_seconds = median([report(), report(), report()].map((r) => r.seconds.order + r.seconds.insert)), same = delaunay(points).checksum(points) === report().checksum;
+const timed = () => +execFileSync('bash', ['-c', 'TIMEFORMAT=%U; { time "$0" delaunay "$1" --threads 1 --quiet >/dev/null 2>&1; } 2>&1', program, file], { encoding: 'utf8' });
+const desktop_seconds = median([timed(), timed(), timed()]), same = delaunay(points).checksum(points) === report().checksum;
 let cells;
 const their_seconds = times(() => { cells = theirs(rows); }, 1);
 rmSync(folder, { recursive: true });

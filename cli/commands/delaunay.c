@@ -161,7 +161,8 @@ static brio_status check_tiles(run *r, const arguments *a) {
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles goes with weights and -o, not with --plane, --verify, orders, "
                         "locations or records");
-    return cli_check_tiles(r, &a->weights, a->tiles);
+    FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
+    return cli_check_tile_files(r);
 }
 
 /* Refuses the files beside .node and .ele where these are not written. */

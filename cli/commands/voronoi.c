@@ -7,6 +7,7 @@
 #include "cli/run/run.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/periodic.h"
+#include "cli/steps/tiles.h"
 #include "cli/steps/weights.h"
 #include <math.h>
 #include <stdlib.h>
@@ -98,12 +99,14 @@ typedef struct arguments {
     weights_options weights;
     periodic_options periodic;
     const char *box, *faces;
+    uint64_t tiles; /* 0: not given */
 } arguments;
 
 #define FIELD(name) offsetof(arguments, name)
 static const option options[] = {
     WEIGHTS_ROWS(arguments, weights),
     PERIODIC_ROWS(arguments, periodic),
+    TILES_ROWS(arguments, tiles),
     {"box", 0, OPTION_TEXT, FIELD(box), "B", "clip the cells to x0,y0,z0,x1,y1,z1", 0},
     {"faces", 0, OPTION_OUTPUT, FIELD(faces), "FILE",
      "write a row for each face of each cell (.csv): site,neighbour,area,nx,ny,nz; walls are -1 to -6", 0},
@@ -245,6 +248,82 @@ done:
     return status;
 }
 
+/* --- in tiles --- */
+
+/* Where the cells of tiles go: NULL is nowhere. */
+typedef struct {
+    run *r;
+    brio_cells_table *cells, *faces;
+    brio_status status;
+} tables;
+
+static int take_cells(const brio_cells *cells, const uint64_t *site, void *user) {
+    tables *t = user;
+    if (t->cells) t->status = brio_cells_table_add(t->r->ctx, t->cells, cells, site);
+    if (t->faces && t->status == BRIO_OK) t->status = brio_cells_table_add(t->r->ctx, t->faces, cells, site);
+    if (t->status != BRIO_OK) cli_keep_failure(t->r, t->status);
+    return t->status != BRIO_OK;
+}
+
+static brio_status check_tiles(run *r, brio_cells_format format) {
+    const arguments *a = r->arguments;
+    if (a->periodic.cell) return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell: not with --tiles");
+    if (format == BRIO_CELLS_FORMAT_VTU)
+        return cli_fail_output(r, "%s: --tiles writes cells to .npy and .csv", r->common.output);
+    return cli_check_tiles(r, &a->weights, a->tiles);
+}
+
+static void report_tiles(run *r, const brio_tiles_stats *s, const brio_tiles_cells_stats *cells) {
+    facts *f = &r->facts;
+    cli_fact_bool(f, "weighted", s->weighted);
+    cli_fact_count(f, "points", s->points);
+    cli_fact_count(f, "duplicates", s->duplicates);
+    cli_fact_count(f, "hidden", s->hidden);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "cells", cells->cells);
+    cli_fact_count(f, "bounded", cells->bounded);
+    cli_fact_count(f, "faces", cells->faces);
+    cli_fact_real(f, "volume", cells->volume_sum);
+    if (isfinite(cells->region_volume)) {
+        double error = fabs(cells->volume_sum / cells->region_volume - 1);
+        if (cells->outside) cli_warn(r, WARNING_OUTSIDE, (size_t)cells->outside, (size_t)s->vertices, r->operands[0]);
+        cli_fact_real(f, "box_volume", cells->region_volume);
+        cli_fact_real(f, "box_error", is_held(cells->region_volume) ? error : NAN);
+    }
+    cli_fact_count(f, "tiles", s->tiles);
+    cli_fact_count(f, "resumed", s->resumed);
+    cli_fact_count(f, "largest_tile", s->most_points);
+    cli_fact_count(f, "scratch_bytes", s->scratch_bytes);
+}
+
+/* Writes the rows of all cells in the order of their sites, as without tiles. */
+static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_cells_format format) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    brio_tiles *t = NULL;
+    tables out = {.r = r};
+    TRY(cli_triangulate_tiles(r, &a->weights, a->tiles, true, &t));
+    uint64_t vertices = brio_tiles_facts(t)->vertices;
+    if (r->common.output) TRY(brio_cells_table_new(r->ctx, r->common.output, format, vertices, &out.cells));
+    if (a->faces) TRY(brio_cells_table_new(r->ctx, a->faces, BRIO_CELLS_FORMAT_FACES_CSV, vertices, &out.faces));
+    if (out.cells) cli_tell_idle(r, r->common.output, format != BRIO_CELLS_FORMAT_NPY, false);
+    if (out.faces) cli_tell_idle(r, a->faces, true, false);
+    brio_status ended = brio_tiles_cells(r->ctx, t, o, 1, take_cells, &out);
+    TRY(out.status); /* why the function ended it */
+    TRY(ended);
+    cli_lap(r, "cells");
+    report_tiles(r, brio_tiles_facts(t), brio_tiles_cells_facts(t));
+    TRY(cli_check_interrupt(r));
+    if (out.cells) TRY(brio_cells_table_finish(r->ctx, out.cells));
+    if (out.faces) TRY(brio_cells_table_finish(r->ctx, out.faces));
+    cli_lap(r, "write");
+done:
+    brio_cells_table_free(out.cells);
+    brio_cells_table_free(out.faces);
+    brio_tiles_free(t);
+    return status;
+}
+
 static brio_status voronoi(run *r) {
     const arguments *a = r->arguments;
     brio_cells_options o = {0};
@@ -260,6 +339,10 @@ static brio_status voronoi(run *r) {
     if (a->box) TRY(read_box(r, a->box, box));
     o.box = a->box ? box : NULL;
     o.vertices = format == BRIO_CELLS_FORMAT_VTU;
+    if (a->tiles) {
+        TRY(check_tiles(r, format));
+        return voronoi_in_tiles(r, &o, format);
+    }
     TRY(cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
     TRY(cli_weights(r, &a->weights, mesh, &weights));
@@ -288,7 +371,8 @@ const command cli_voronoi = {
     .summary = "Voronoi cells of points, power cells with weights",
     .examples = "brio voronoi atoms.xyz --box 0,0,0,1,1,1 -o cells.vtu\ncells clipped to a box, for ParaView\n"
                 "brio voronoi atoms.xyz -o cells.csv\nvolume, area and centroid of each cell\n"
-                "brio voronoi atoms.xyz --cell 20,20,20 -o cells.csv\natoms in a box that repeats\n",
+                "brio voronoi atoms.xyz --cell 20,20,20 -o cells.csv\natoms in a box that repeats\n"
+                "brio voronoi scan.las --tiles 8 --scratch /var/tmp -o cells.npy\nmore points than fit in memory\n",
     .has_output = true,
     .outputs = ".vtu .npy .csv",
     .group = GROUP_TRIANGULATIONS,

@@ -5,6 +5,7 @@
 #define BRIO_CLI_NEW_FILE_H
 
 #include "cli/run/run.h"
+#include "platform/file.h"
 #include "platform/target.h"
 
 typedef struct {
@@ -20,5 +21,29 @@ brio_status cli_new_file_publish(run *r, const char *path, new_file *f);
 
 /** Frees everything. A file that was not published disappears. */
 void cli_new_file_close(new_file *f);
+
+/* --- folders --- */
+
+/** The folder of an output that is an index and many files. It gets its name when all files are complete; the index,
+ *  which is published last, names it. So until then an older output of the same name is whole, index and files. */
+typedef struct {
+    char stem[BRIO_PATH_MOST - 64]; /* of the index, without its extension */
+    char path[BRIO_PATH_MOST];      /* where the folder is now; "" if there is none */
+    char old[BRIO_PATH_MOST];       /* of the older index; "" if there is none */
+    const char *extension;          /* of the files, with a dot */
+} new_folder;
+
+/** Makes the folder STEM.part, or empties what a killed run left of it.
+ *  index      path of the index.   extension  of the files: 0.EXT, 1.EXT and so on. */
+brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out);
+
+/** Gives the folder its name: STEM, or where that is taken STEM-1, STEM-2 up to 9. Call before the index is written. */
+brio_status cli_new_folder_name(run *r, new_folder *f);
+
+/** Ends it.   published  whether the index is: then the folder of the older one goes, else the new folder does. */
+void cli_new_folder_close(new_folder *f, bool published);
+
+/** Writes text as that of an attribute of XML. */
+void cli_write_attribute(FILE *file, const char *text);
 
 #endif

@@ -2,6 +2,7 @@
 #include "cli/files/read_write.h"
 #include "cli/files/files.h"
 #include "cli/run/interrupt.h"
+#include "platform/program.h"
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -37,21 +38,17 @@ brio_status cli_write_page(run *r, const char *path, const brio_page_layer *cons
     return BRIO_OK;
 }
 
-/* Returns the report so far as a text, to be freed; NULL without memory for it. */
-static char *report_of(run *r) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *memory = open_memstream(&text, &size);
-    if (!memory) return NULL;
-    cli_text_write(memory, &r->facts, r->command->name, false);
-    return fclose(memory) == 0 ? text : NULL;
+/* Writes the report so far. */
+static void write_report(FILE *stream, void *object) {
+    run *r = object;
+    cli_text_write(stream, &r->facts, r->command->name, false);
 }
 
 brio_status cli_show(run *r, const brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     char *report = NULL;
     if (!r->common.view) return BRIO_OK;
-    report = report_of(r);
+    report = brio_program_text(write_report, r);
     if (!report) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for the report on a page");
     const char *path = r->common.output ? r->common.output : r->operands[0];
     const brio_page_layer layer = {.mesh = mesh, .name = cli_page_name(path), .report = report};

@@ -4,14 +4,13 @@
 #include "cli/files/new_file.h"
 #include "cli/files/read_write.h"
 #include "platform/file.h"
-#include "platform/folder.h"
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_TILES = 1 << 16, NAME_BYTES = 4096 };
+enum { MOST_TILES = 1 << 16 };
 
 static const char EXTENSION[] = ".pvtu";
 
@@ -27,6 +26,10 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     if (weights->file)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles: not with --weights FILE; the points can have a property weight or radius");
+    return BRIO_OK;
+}
+
+brio_status cli_check_tile_files(run *r) {
     const char *output = r->common.output;
     if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
         return cli_fail_output(r, "%s: --tiles writes .pvtu, with a file for each tile beside it", output);
@@ -182,21 +185,6 @@ static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighte
     return status;
 }
 
-/* Writes the name of a folder as text of XML. */
-static void write_name(FILE *file, const char *name) {
-    for (; *name; name++) {
-        const char *escape = *name == '&'   ? "&amp;"
-                             : *name == '<' ? "&lt;"
-                             : *name == '>' ? "&gt;"
-                             : *name == '"' ? "&quot;"
-                                            : NULL;
-        if (escape)
-            fputs(escape, file);
-        else
-            fputc(*name, file);
-    }
-}
-
 brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
     new_file f = {0};
     brio_status status = BRIO_OK;
@@ -209,7 +197,7 @@ brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bo
     fprintf(f.file, "</PPointData>\n");
     for (uint32_t i = 0; i < tiles; i++) {
         fprintf(f.file, "<Piece Source=\"");
-        write_name(f.file, folder + brio_folder_length(folder));
+        cli_write_attribute(f.file, folder + brio_folder_length(folder));
         fprintf(f.file, "/%u.vtu\"/>\n", i);
     }
     fprintf(f.file, "</PUnstructuredGrid>\n</VTKFile>\n");
@@ -219,51 +207,49 @@ done:
     return status;
 }
 
-/* Writes a file for each tile, then the index. Without the index there is no output: on failure the tiles are removed.
- */
+/* Writes a file for each tile, then the index. Without the index there is no output: on failure the tiles are removed,
+ * and an older output stays as it was. */
 static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weighted) {
-    char folder[NAME_BYTES], path[NAME_BYTES + 32];
+    char path[BRIO_PATH_MOST + 32];
+    new_folder folder = {.path = ""};
     brio_status status = BRIO_OK;
-    uint32_t written = 0;
-    bool made;
-    size_t stem = strlen(r->common.output) - strlen(EXTENSION);
-    if (stem >= sizeof folder) return cli_fail_output(r, "%s: the name is too long", r->common.output);
-    snprintf(folder, sizeof folder, "%.*s", (int)stem, r->common.output);
-    if (!brio_make_folder(folder, false, &made))
-        return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", folder, strerror(errno));
-    for (; written < tiles; written++) {
-        snprintf(path, sizeof path, "%s/%u.vtu", folder, written);
-        TRY(write_tile(r, t, written, weighted, path));
+    TRY(cli_new_folder_open(r, r->common.output, ".vtu", &folder));
+    for (uint32_t i = 0; i < tiles; i++) {
+        snprintf(path, sizeof path, "%s/%u.vtu", folder.path, i);
+        TRY(write_tile(r, t, i, weighted, path));
     }
-    status = cli_write_tiles_index(r, folder, tiles, weighted);
+    TRY(cli_new_folder_name(r, &folder));
+    status = cli_write_tiles_index(r, folder.path, tiles, weighted);
 done:
-    for (uint32_t i = 0; status != BRIO_OK && i < written; i++) {
-        snprintf(path, sizeof path, "%s/%u.vtu", folder, i);
-        brio_remove_file(path);
-    }
-    if (status != BRIO_OK && made) brio_remove_folder(folder);
+    cli_new_folder_close(&folder, status == BRIO_OK);
     cli_lap(r, "write");
     return status;
 }
 
 /* --- the run --- */
 
-brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
-    brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles};
-    brio_tiles *t = NULL;
-    brio_status status = BRIO_OK;
+brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars,
+                                  brio_tiles **out) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles, .stars = stars};
     o.key = cli_tiles_key(r, weights, r->operands[0]);
-    TRY(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
-    TRY(brio_tiles_new(r->ctx, &o, &t));
-    if (!brio_tiles_has_points(t)) TRY(read_into(r, weights, t));
+    FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
+    FORWARD(brio_tiles_new(r->ctx, &o, out));
+    if (!brio_tiles_has_points(*out)) FORWARD(read_into(r, weights, *out));
     cli_lap(r, "read");
-    TRY(brio_tiles_run(r->ctx, t));
-    const brio_tiles_stats *s = brio_tiles_facts(t);
+    FORWARD(brio_tiles_run(r->ctx, *out));
+    const brio_tiles_stats *s = brio_tiles_facts(*out);
     cli_stage(r, "divide", s->divide_seconds);
     cli_stage(r, "insert", s->triangulate_seconds);
     r->lap = cli_clock();
+    return BRIO_OK;
+}
+
+brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
+    brio_tiles *t = NULL;
+    brio_status status = BRIO_OK;
+    TRY(cli_triangulate_tiles(r, weights, tiles, false, &t));
     TRY(report(r, t));
-    if (r->common.output) TRY(write_tiles(r, t, o.tiles, s->weighted));
+    if (r->common.output) TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
 done:
     brio_tiles_free(t);
     return status;

@@ -11,8 +11,14 @@
      "more points than fit in memory: N tiles, one after the other, in the folder of --scratch", 0}
 /* clang-format on */
 
-/** Refuses what --tiles does not go with: weights in a file, no scratch folder, an output that is not .pvtu. */
+/** Refuses what --tiles does not go with: weights in a file, no scratch folder. */
 brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t tiles);
+/** Refuses an output that is not .pvtu. */
+brio_status cli_check_tile_files(run *r);
+
+/** Reads the input block by block, and triangulates it in tiles.
+ *  stars  whether cells will be computed.   out  freed by the caller, also on an error. */
+brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars, brio_tiles **out);
 
 /** Triangulates the input in tiles, and reports as brio delaunay does. Writes -o: x.pvtu, and a file for each tile in
  *  the folder x beside it. */

@@ -66,7 +66,10 @@ typedef struct brio_cells {
  *  t  the result of brio_delaunay for these points and weights, or NULL to compute it.
  *  points, weights, num_points, and limits as brio_delaunay.   options  NULL for the defaults.
  *  out  owned by the caller, freed with brio_cells_free; NULL on error.
- *  The result has the same bits for every number of threads.
+ *  The result has the same bits for every number of threads. The numbers of a cell and of its faces, and the order of
+ *  its faces (by the neighbours' positions), have the same bits in whatever order the points are given; volumes
+ *  without areas, centroids and faces differ in their last bits then, and so do vertices that more than four points
+ *  make.
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
  *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes
  *  take one pass over the facets, about as long as brio_delaunay.
@@ -104,6 +107,28 @@ BRIO_API brio_cells_format brio_cells_format_of(const char *path);
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_cells_write(brio_context *ctx, const char *path, const brio_cells *cells,
                                       brio_cells_format format, const char *comment);
+
+/** A file of cells that is written part after part: as brio_cells_write writes all cells at once. */
+typedef struct brio_cells_table brio_cells_table;
+
+/** Begins a file. It appears when it is complete.
+ *  format     NPY, CSV or FACES_CSV.   num_cells  how many cells will come; only NPY needs it.
+ *  out        owned by the caller: brio_cells_table_free; NULL on error.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_cells_table_new(brio_context *ctx, const char *path, brio_cells_format format,
+                                          uint64_t num_cells, brio_cells_table **out);
+
+/** Appends the rows of cells, which have areas, centroids and faces.
+ *  site  the number of each cell's site, in place of cells->site; NULL: those.   Returns as brio_cells_table_new. */
+BRIO_API brio_status brio_cells_table_add(brio_context *ctx, brio_cells_table *table, const brio_cells *cells,
+                                          const uint64_t *site);
+
+/** Ends the file and gives it its name. Returns as brio_cells_table_new; BRIO_ERR_ARGUMENT where other numbers of cells
+ *  came than were announced. */
+BRIO_API brio_status brio_cells_table_finish(brio_context *ctx, brio_cells_table *table);
+
+/** Frees the table. A file that was not finished disappears. NULL is accepted. */
+BRIO_API void brio_cells_table_free(brio_cells_table *table);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,7 @@
 #define BRIO_PERIODIC_H
 
 #include "cells.h"
+#include "shapes.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -115,6 +116,60 @@ BRIO_API brio_status brio_periodic_check(brio_context *ctx, const brio_periodic 
  *  out  owned by the caller, freed with brio_cells_free; NULL on error. volume_sum is that of the cell up to 1e-13. */
 BRIO_API brio_status brio_periodic_cells(brio_context *ctx, const brio_periodic *t, const brio_cells_options *options,
                                          brio_cells **out);
+
+/** The alpha complex of a periodic triangulation: one simplex of each class of translates. It owns all arrays. */
+typedef struct brio_periodic_alpha {
+    size_t size; /* of the struct in the library that runs */
+    brio_context *context;
+    brio_alpha_complex *complex; /* simplices name images, ascending in each; without a triangulation */
+    size_t num_images;
+    brio_image *images; /* those of brio_periodic_images first */
+    double *positions;  /* #images by 3 */
+} brio_periodic_alpha;
+
+/** Finds the values of the simplices in the alpha filtration, as brio_alpha_values does. Of each class there is the
+ *  simplex whose lexicographically least vertex is an image i < #P; tetrahedra come in the order of
+ *  brio_periodic_tetrahedra. A face of a simplex is in the list, or a translate of it is. No value is greater than that
+ *  of a coface, and translates have the same bits. The Euler characteristic, counts[0] - counts[1] + counts[2] -
+ *  counts[3], is 0. brio_alpha_order and brio_write_filtration take the complex.
+ *  out  owned by the caller, freed with brio_periodic_alpha_free; NULL on error.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (there are no tetrahedra), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED.
+ *  Based on: [Edelsbrunner Muecke 1994], [Edelsbrunner 1995]. */
+BRIO_API brio_status brio_periodic_alpha_values(brio_context *ctx, const brio_periodic *t, brio_periodic_alpha **out);
+
+/** Frees an alpha complex; NULL is accepted. */
+BRIO_API void brio_periodic_alpha_free(brio_periodic_alpha *alpha);
+
+/** Answers queries of a periodic triangulation, which must outlive the locator. */
+typedef struct brio_periodic_locator brio_periodic_locator;
+
+/** Makes a locator.   out  owned by the caller, freed with brio_periodic_locator_free; NULL on error.
+ *  Cost: a sort of the vertices; about 60 bytes for each.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_periodic_locator_new(brio_context *ctx, const brio_periodic *t, brio_periodic_locator **out);
+/** Frees a locator; NULL is accepted. */
+BRIO_API void brio_periodic_locator_free(brio_periodic_locator *locator);
+
+/** Finds the tetrahedron that holds each query. Queries are put on the grid as points are, and may lie in any cell;
+ *  then all is exact. A query on a facet, on an edge or at a vertex belongs to one of the tetrahedra there.
+ *  queries  #Q by 3, finite.
+ *  tetrahedra  #Q: `point` is an index of brio_periodic_tetrahedra, and the translate of that tetrahedron by `shift`
+ *              holds the query. BRIO_INFINITE with a shift of 0 for a query strictly outside, where fewer than three
+ *              directions repeat, and for all queries if there are no tetrahedra.
+ *  Cost: the nearest vertex and a short walk, in threads.
+ *  Returns BRIO_OK, BRIO_ERR_NOT_FINITE, BRIO_ERR_ARGUMENT (a query is more than 2^26 cells away),
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Edelsbrunner 1990b], [Devillers Pion Teillaud 2002]. */
+BRIO_API brio_status brio_periodic_locator_tetrahedra(brio_context *ctx, const brio_periodic_locator *locator,
+                                                      const double *queries, size_t num_queries,
+                                                      brio_image *tetrahedra);
+
+/** Finds the vertex of least power distance from each query; without weights, the nearest. Among equals it is the
+ *  lexicographically first translate.   vertices  #Q: a point, and the translate of it that is the nearest.
+ *  Errors as above. */
+BRIO_API brio_status brio_periodic_locator_least_power(brio_context *ctx, const brio_periodic_locator *locator,
+                                                       const double *queries, size_t num_queries, brio_image *vertices);
 
 #ifdef __cplusplus
 }

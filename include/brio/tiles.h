@@ -16,6 +16,7 @@
 #ifndef BRIO_TILES_H
 #define BRIO_TILES_H
 
+#include "cells.h"
 #include "triangulation.h"
 
 #ifdef __cplusplus
@@ -28,8 +29,8 @@ typedef struct brio_tiles_options {
     size_t size;
     const char *scratch; /* a folder with room for about 190 bytes a point */
     uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
-    int reserved_int;
-    uint64_t key; /* 0: no run goes on with what a killed process left. Else a number that tells this input and
+    int stars;           /* 1: keeps what brio_tiles_cells needs: 16 bytes for each tetrahedron of two tiles */
+    uint64_t key;        /* 0: no run goes on with what a killed process left. Else a number that tells this input and
                             this way to read it from others. After a process was killed, the next run in the same
                             folder with the same key and number of tiles goes on with its files */
 } brio_tiles_options;
@@ -88,7 +89,8 @@ BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const doub
  *  points are refused.
  *  Memory: about 520 bytes a point of the largest tile, and at most one byte for each of all points. Points whose
  *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
- *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE,
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE (the
+ *  disk is full, or before the work, has less room than about 195 bytes a point),
  *  BRIO_ERR_OPEN (a scratch file was cut or removed), BRIO_ERR_NO_MEMORY (also where the memory limit of the context
  *  is too low for the largest tile; the sentence says how many tiles would do), BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t);
@@ -107,6 +109,37 @@ BRIO_API brio_status brio_tiles_checksum(brio_context *ctx, brio_tiles *t, uint6
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_tiles_part(brio_context *ctx, brio_tiles *t, uint32_t tile, brio_tile_part *out);
 BRIO_API void brio_tile_part_free(brio_context *ctx, brio_tile_part *part);
+
+/** Receives some cells. `site` has the index of each cell's point, in the order in which points were added; in place of
+ *  cells->site. Neighbours of faces are such indices, too. Both are valid during the call.
+ *  Returns 0, or another number to end the run. */
+typedef int (*brio_tile_cells_fn)(const brio_cells *cells, const uint64_t *site, void *user);
+
+/** Facts of all cells. */
+typedef struct brio_tiles_cells_stats {
+    size_t size;
+    uint64_t cells, bounded, faces; /* a face between two cells counts twice */
+    uint64_t outside;               /* sites that are not in the box */
+    double volume_sum;              /* of the bounded cells, in the order in which they come */
+    double region_volume;           /* infinite without a region */
+} brio_tiles_cells_stats;
+
+/** Computes the cells of all vertices, tile after tile, in parts of some thousands. The numbers of each cell and its
+ *  faces are those of brio_voronoi_cells of all points, bit for bit, where that is asked for more than volumes.
+ *  options  as there. `vertices` of a part are those of its cells; not with `ordered`.
+ *  ordered  1: cells come in ascending order of their sites, and volume_sum is that of brio_voronoi_cells. They are
+ *           sorted in the scratch folder: 56 bytes a cell and, with faces, 40 a face (about 620 a cell). 0: as they are
+ *           computed.
+ *  Memory: about 300 bytes a point of the largest tile, and 100 MB for cells at hand. With `ordered` and faces then
+ *  about 350 bytes a point of the largest tile.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no result, or without `stars`; a wrong region), BRIO_ERR_NO_ANSWER (points in a
+ *  plane; a region that the cells do not fill), BRIO_ERR_WRITE, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED (also where the function ended it). */
+BRIO_API brio_status brio_tiles_cells(brio_context *ctx, brio_tiles *t, const brio_cells_options *options, int ordered,
+                                      brio_tile_cells_fn take, void *user);
+
+/** Returns the facts of the last call of brio_tiles_cells that ended well. The view is valid until brio_tiles_free. */
+BRIO_API const brio_tiles_cells_stats *brio_tiles_cells_facts(const brio_tiles *t);
 
 /** Frees everything, and removes all files; NULL is accepted. */
 BRIO_API void brio_tiles_free(brio_tiles *t);

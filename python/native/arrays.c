@@ -1,9 +1,8 @@
 /* Arrays: views of what the library made, and arrays of the caller, both by the buffer protocol. */
-#define _GNU_SOURCE
 #include "native.h"
+#include "system.h"
 #include <stdint.h>
 #include <string.h>
-#include <sys/mman.h>
 
 /* --- views --- */
 
@@ -30,8 +29,10 @@ static Py_ssize_t size_of(char format) {
     }
 }
 
+/* Returns what the buffer protocol calls a format: for integers of 64 bits long, where that has so many, as numpy does. */
 static const char *format_of(char format) {
     static const char formats[][2] = {"d", "L", "l", "I", "i", "f", "h", "H", "b", "B", "?"};
+    if (sizeof(long) == 4 && (format == 'L' || format == 'l')) return format == 'L' ? "Q" : "q";
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++)
         if (formats[k][0] == format) return formats[k];
     return "B";
@@ -104,11 +105,16 @@ PyType_Spec array_spec = {"brio._native.Array", sizeof(array), 0,
 
 /* --- arrays of the caller --- */
 
-/* Whether two letters mean the same type here: numpy may say q for l, or Q for L. */
+/* Whether an array's format is that which is wanted: numpy may say q for l, or Q for L; and where long has 32 bits, l for
+ * i, and L for I. */
 static int same_type(const char *found, char wanted) {
-    if (!found || found[1]) return 0;
-    if (wanted == 'L') return strchr("LQ", *found) != NULL;
-    if (wanted == 'l') return strchr("lq", *found) != NULL;
+    static const char of_64[] = "LQ", signed_of_64[] = "lq", of_32[] = "IL", signed_of_32[] = "il";
+    const int wide = sizeof(long) == 8;
+    if (!found || found[1] || !*found) return 0;
+    if (wanted == 'L') return strchr(wide ? of_64 : "Q", *found) != NULL;
+    if (wanted == 'l') return strchr(wide ? signed_of_64 : "q", *found) != NULL;
+    if (wanted == 'I') return strchr(wide ? "I" : of_32, *found) != NULL;
+    if (wanted == 'i') return strchr(wide ? "i" : signed_of_32, *found) != NULL;
     if (wanted == 'B') return strchr("B?", *found) != NULL;
     return *found == wanted;
 }
@@ -132,26 +138,13 @@ static int open_view(input *in, PyObject *object, const char *name, char format,
     return -1;
 }
 
-/* Memory for a copy: of large ones in large pages, where the system has them, since clearing small ones costs more than
- * copying. */
-static void *copy_place(size_t bytes) {
-    const size_t page = (size_t)2 << 20;
-    void *place = NULL;
-    if (bytes < 2 * page) return malloc(bytes + 1);
-    if (posix_memalign(&place, page, bytes)) return NULL;
-#ifdef MADV_HUGEPAGE
-    madvise(place, bytes / page * page, MADV_HUGEPAGE);
-#endif
-    return place;
-}
-
 int input_borrow(input *in, PyObject *object, const char *name, char format, int columns) {
     return open_view(in, object, name, format, columns, 0);
 }
 
 int input_open(input *in, PyObject *object, const char *name, char format, int columns) {
     if (open_view(in, object, name, format, columns, 0)) return -1;
-    in->data = copy_place(in->bytes);
+    in->data = place_new(in->bytes);
     if (in->data) memcpy(in->data, in->view.buf, in->bytes);
     PyBuffer_Release(&in->view);
     in->held = 0;
@@ -193,6 +186,6 @@ void input_close(input *in) {
     if (in->held)
         PyBuffer_Release(&in->view);
     else
-        free(in->data);
+        place_free(in->data);
     *in = (input){.held = 0};
 }

@@ -7,16 +7,10 @@
  * The library calls back often. Every LOOK seconds the module takes the interpreter's lock, looks for signals, and calls
  * the user's function. */
 #include "native.h"
+#include "system.h"
 #include <string.h>
-#include <time.h>
 
 static const double LOOK = 0.02;
-
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 /* --- contexts --- */
 
@@ -92,7 +86,7 @@ static int call_user(call *c, const char *stage, double fraction) {
 /* What the library calls back: looks for signals now and then, and calls the user's function. Returns whether to stop. */
 static int look(const char *stage, double fraction, void *user) {
     call *c = user;
-    double now = seconds();
+    double now = seconds_now();
     if (now - c->looked < LOOK) return 0;
     c->looked = now;
     PyEval_RestoreThread(c->thread);
@@ -108,7 +102,7 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
     }
     if (threads < 0)
         return raise_argument(state, PyUnicode_FromFormat("threads: 0 or more are wanted, not %d", threads));
-    *c = (call){.state = state, .progress = progress, .looked = seconds()};
+    *c = (call){.state = state, .progress = progress, .looked = seconds_now()};
     if (!(c->context = context_take(state))) return -1;
     c->ctx = c->context->ctx;
     brio_context_set_threads(c->ctx, threads);

@@ -57,7 +57,7 @@ static PyObject *outliers(PyObject *module, PyObject *args) {
 
 /* Makes a mesh of the points, with their indices as the property that is carried. */
 static brio_status numbered_points(brio_context *ctx, const input *p, brio_mesh **out) {
-    void *data;
+    void *data = NULL;
     brio_status status = brio_mesh_new(ctx, out);
     if (status == BRIO_OK) status = brio_mesh_set_vertices(*out, p->data, p->rows);
     if (status == BRIO_OK) status = brio_mesh_add_property(*out, "index", BRIO_SCALAR_UINT32, &data);

@@ -1,11 +1,13 @@
 """Triangulations that live: after any changes, those of the points that are left."""
 
+import os
 import threading
 
 import numpy as np
 import pytest
 
 import brio
+from brio._arrays import as_rows
 
 GENERATOR = np.random.default_rng(5)
 
@@ -129,3 +131,49 @@ def test_flat_points_and_none_have_answers():
         tri.remove(tri.indices)
         assert len(tri) == 0 and tri.points.shape == (0, 3)
         assert tri.insert(np.zeros((0, 3))).tolist() == []
+
+
+def test_ten_thousand_steps_end_as_a_fresh_build():
+    """Every step inserts, removes and moves some points, and sometimes all of them."""
+    long = bool(os.environ.get("BRIO_LONG"))
+    steps, every = (10000, 250) if long else (240, 40)
+    points = GENERATOR.random((1500, 3))
+    tri = brio.DynamicDelaunay(points, threads=1)
+    for step in range(1, steps + 1):
+        tri.insert(GENERATOR.random((3, 3)))
+        tri.remove(GENERATOR.permutation(tri.indices)[:3])
+        some = GENERATOR.permutation(tri.indices)[:4]
+        tri.move(some, GENERATOR.random((4, 3)))
+        if step % 5 == 0:
+            now = tri.points
+            tri.move_all(now + 1e-5 * GENERATOR.standard_normal(now.shape))
+        if step % every == 0:
+            assert tri.snapshot().checksum == brio.Delaunay(tri.points).checksum
+    assert len(tri) == 1500 and tri.facts["indices"] == 1500 + 3 * steps
+
+
+class OnlyDlpack:
+    """What another library's array shows of itself."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **options):
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+def test_arrays_of_others_go_in_and_out_by_dlpack():
+    points = GENERATOR.random((200, 3))
+    assert np.shares_memory(as_rows(OnlyDlpack(points), "points"), points)  # no copy
+    tri = brio.DynamicDelaunay(OnlyDlpack(points), OnlyDlpack(np.zeros(200)))
+    new = tri.insert(OnlyDlpack(points[:5] + 0.01))
+    tri.remove(OnlyDlpack(np.array([3, 4])))
+    tri.move(OnlyDlpack(new), OnlyDlpack(points[10:15] + 0.02))
+    tri.move_all(OnlyDlpack(tri.points + 1e-4))
+    tri.reweight(OnlyDlpack(new), OnlyDlpack(np.full(5, 1e-3)))
+    assert is_as_built(tri)
+    for array in (tri.points, tri.indices, tri.weights, tri.snapshot().simplices, new):
+        assert np.shares_memory(np.from_dlpack(array), array)

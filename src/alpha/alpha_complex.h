@@ -18,6 +18,22 @@ static inline int brio_simplex_of(const brio_alpha_complex *c, uint32_t number, 
     return k;
 }
 
+/** Tetrahedra of which one of each class of translates counts. Points are numbered in lexicographic order, so that a
+ *  simplex begins with its least vertex. It counts if that vertex is own. All tetrahedra at own points are there, and
+ *  mates across facets that have an own point; other mates are the facet itself. */
+typedef struct brio_alpha_input {
+    brio_tetrahedron *tet; /* finite ones first; not changed */
+    size_t num_finite, count;
+    const double *points, *weights; /* weights: NULL without */
+    size_t num_points;
+    const uint8_t *own; /* #points */
+} brio_alpha_input;
+
+/** Finds the values of the simplices that count. Simplices that are translates have values of the same bits, if all
+ *  differences of coordinates are exact.   out  without a triangulation; freed with brio_alpha_complex_free.
+ *  Returns as brio_alpha_values. */
+brio_status brio_alpha_of_classes(brio_context *ctx, const brio_alpha_input *input, brio_alpha_complex *out);
+
 /** Refuses an alpha closer to 0 than the least normal double: squared radii have few bits or none there, and those that
  *  differ become equal. Accepts any alpha where a vertex has a value that is not so small: weights do that.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER. */

@@ -12,6 +12,7 @@
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994.
  *           Edelsbrunner. The union of balls and its dual shape. DCG 1995. */
+#include "alpha/alpha_complex.h"
 #include "alpha/simplex_values.h"
 #include "base/finite.h"
 #include "base/float_state.h"
@@ -22,6 +23,7 @@
 #include "triangulation/view.h"
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 enum {
     CHUNK = 1 << 11,
@@ -39,6 +41,7 @@ typedef struct {
     brio_context *ctx;
     brio_tetrahedra t; /* without records */
     size_t num_finite, num_points;
+    const uint8_t *own; /* #points, or NULL for all: brio_alpha_input */
     brio_records records;
     double *of_facet;       /* 4 #T: the value of each facet, at the handles of its finite tetrahedra */
     const uint32_t *facet;  /* #facets: one handle each */
@@ -49,6 +52,10 @@ typedef struct {
 static bool is_finite(const evaluation *e, uint32_t handle) {
     assert(brio_has_tet(&e->t, brio_tet_of(handle)));
     return brio_tet_of(handle) < e->num_finite;
+}
+
+static bool is_own(const evaluation *e, uint32_t point) {
+    return !e->own || e->own[point];
 }
 
 static double own_value(const evaluation *e, const uint32_t *vertex, int count) {
@@ -146,6 +153,13 @@ static void find_edges(void *user, size_t begin, size_t end, int thread) {
 
 /* --- which simplices there are --- */
 
+/* Returns whether a facet has a point whose tetrahedra are all there. */
+static bool has_own(const evaluation *e, uint32_t h) {
+    const uint32_t *v = e->t.tet[brio_tet_of(h)].vertex;
+    const uint8_t *slot = BRIO_FACET[brio_slot_of(h)];
+    return is_own(e, v[slot[0]]) || is_own(e, v[slot[1]]) || is_own(e, v[slot[2]]);
+}
+
 /* Lists one handle of each finite facet: the lower one, or the one in the finite tetrahedron. */
 static brio_status list_facets(const evaluation *e, uint32_t **out, size_t *count) {
     *count = 0;
@@ -153,7 +167,7 @@ static brio_status list_facets(const evaluation *e, uint32_t **out, size_t *coun
     if (status != BRIO_OK) return status;
     for (uint32_t h = 0; h < 4 * e->num_finite; h++) {
         uint32_t mate = *brio_mate(&e->t, h);
-        if (h < mate) (*out)[(*count)++] = h; /* finite tetrahedra come first */
+        if (h < mate && has_own(e, h)) (*out)[(*count)++] = h; /* finite tetrahedra come first */
         if (h % BRIO_LOOK_EVERY == 0) BRIO_TRY(brio_look(e->ctx, BRIO_LOOK_EVERY));
     }
 done:
@@ -170,18 +184,23 @@ static brio_status list_edges(const evaluation *e, edge_place **out, size_t *cou
         BRIO_FORWARD(BRIO_RESERVE(e->ctx, *out, capacity, *count + 6));
         for (uint8_t i = 0; i < 4; i++)
             for (uint8_t j = (uint8_t)(i + 1); j < 4; j++)
-                if (brio_ring_size(&e->t, tet, i, j) > 0) (*out)[(*count)++] = (edge_place){tet, i, j};
+                if ((is_own(e, e->t.tet[tet].vertex[i]) || is_own(e, e->t.tet[tet].vertex[j])) &&
+                    brio_ring_size(&e->t, tet, i, j) > 0)
+                    (*out)[(*count)++] = (edge_place){tet, i, j};
     }
     return BRIO_OK;
 }
 
-/* Numbers the vertices in ascending order.   place  #P, zeroed; receives the number of each vertex. */
+/* Numbers the vertices in ascending order.   place  #P, zeroed; receives the number of each vertex that is own. */
 static size_t number_vertices(const evaluation *e, uint32_t *place) {
     size_t count = 0;
     for (size_t t = 0; t < e->num_finite; t++)
         for (int i = 0; i < 4; i++) place[e->t.tet[t].vertex[i]] = 1;
     for (size_t p = 0; p < e->num_points; p++)
-        if (place[p]) place[p] = (uint32_t)count++;
+        if (!is_own(e, (uint32_t)p))
+            place[p] = BRIO_INFINITE;
+        else if (place[p])
+            place[p] = (uint32_t)count++;
     return count;
 }
 
@@ -215,8 +234,10 @@ static brio_status evaluate(evaluation *e, const uint32_t *place) {
     BRIO_FORWARD(find_all(e, find_tetrahedra, c->counts[3], 0.2, 0.4));
     BRIO_FORWARD(find_all(e, find_facets, c->counts[2], 0.4, 0.7));
     BRIO_FORWARD(find_all(e, find_edges, c->counts[1], 0.7, 1));
-    for (size_t n = 0; n < 2 * c->counts[1]; n++) /* every vertex has edges */
-        c->simplices[0][place[c->simplices[1][n]]] = c->simplices[1][n];
+    for (size_t n = 0; n < 2 * c->counts[1]; n++) { /* every vertex has edges */
+        uint32_t v = c->simplices[1][n];
+        if (place[v] != BRIO_INFINITE) c->simplices[0][place[v]] = v;
+    }
     return brio_find_vertex_values(e->ctx, c, &e->records, place);
 }
 
@@ -227,6 +248,7 @@ static brio_status find_values(evaluation *e, const double *points, const double
     size_t *counts = e->out->counts;
     BRIO_TRY(brio_records_take(e->ctx, points, 3, weights, e->num_points, &e->records));
     BRIO_TRY(BRIO_ALLOC(e->ctx, e->of_facet, 4 * e->num_finite));
+    for (size_t h = 0; h < 4 * e->num_finite && e->own; h++) e->of_facet[h] = INFINITY;
     BRIO_TRY(BRIO_ALLOC_ZERO(e->ctx, place, e->num_points));
     BRIO_TRY(list_facets(e, &facet, &counts[2]));
     BRIO_TRY(list_edges(e, &edge, &counts[1]));
@@ -234,7 +256,7 @@ static brio_status find_values(evaluation *e, const double *points, const double
     counts[0] = number_vertices(e, place);
     counts[3] = e->num_finite;
     e->facet = facet, e->edge = edge;
-    assert(counts[0] + counts[2] == counts[1] + counts[3] + 1); /* Euler: a ball */
+    assert(e->own || counts[0] + counts[2] == counts[1] + counts[3] + 1); /* Euler: a ball */
     BRIO_TRY(brio_alpha_room(e->ctx, e->out));
     BRIO_TRY(evaluate(e, place));
 done:
@@ -243,6 +265,42 @@ done:
     brio_release(e->ctx, place);
     brio_release(e->ctx, e->records.of);
     brio_release(e->ctx, e->of_facet);
+    return status;
+}
+
+/* Drops the simplices whose first vertex is not own. The arrays of all dimensions are one, and stay so. */
+static void keep_own(const evaluation *e) {
+    brio_alpha_complex *c = e->out;
+    size_t at = 0, corner = 0;
+    for (size_t k = 0; k < 4; k++) {
+        const uint32_t *from = c->simplices[k];
+        const double *values = c->values[k], *solid = c->solid[k];
+        const uint8_t *gabriel = c->gabriel[k];
+        size_t count = c->counts[k];
+        c->simplices[k] = c->simplices[0] + corner;
+        c->values[k] = c->values[0] + at, c->solid[k] = c->solid[0] + at, c->gabriel[k] = c->gabriel[0] + at;
+        c->counts[k] = 0;
+        for (size_t n = 0; n < count; n++) {
+            if (!is_own(e, from[n * (k + 1)])) continue;
+            size_t to = c->counts[k]++;
+            memmove(c->simplices[k] + to * (k + 1), from + n * (k + 1), (k + 1) * sizeof *from);
+            c->values[k][to] = values[n], c->solid[k][to] = solid[n], c->gabriel[k][to] = gabriel[n];
+        }
+        at += c->counts[k];
+        corner += c->counts[k] * (k + 1);
+    }
+    assert(c->counts[0] + c->counts[2] == c->counts[1] + c->counts[3]); /* Euler: space that repeats */
+}
+
+brio_status brio_alpha_of_classes(brio_context *ctx, const brio_alpha_input *in, brio_alpha_complex *out) {
+    brio_status status = BRIO_OK;
+    *out = (brio_alpha_complex){.size = sizeof *out, .context = ctx};
+    evaluation e = {.ctx = ctx, .num_finite = in->num_finite, .num_points = in->num_points, .own = in->own, .out = out};
+    e.t = (brio_tetrahedra){.tet = in->tet, .count = in->count, .infinite = BRIO_INFINITE};
+    BRIO_TRY(find_values(&e, in->points, in->weights));
+    keep_own(&e);
+done:
+    if (status != BRIO_OK) brio_alpha_complex_free(out);
     return status;
 }
 

@@ -204,7 +204,8 @@ brio_status brio_find_vertex_values(brio_context *ctx, brio_alpha_complex *c, co
         BRIO_FORWARD(brio_look(ctx, 2));
         for (int i = 0; i < 2; i++) {
             uint32_t own = c->simplices[1][2 * n + (size_t)i], other = c->simplices[1][2 * n + (size_t)!i];
-            assert(place[own] < c->counts[0] && place[other] < c->counts[0]);
+            if (place[own] == BRIO_INFINITE) continue; /* not own */
+            assert(place[own] < c->counts[0]);
             const double *a = records->of[own], *b = records->of[other];
             least[place[own]] = fmin(least[place[own]], c->values[1][n]);
             solid[place[own]] = fmin(solid[place[own]], c->solid[1][n]);

@@ -98,7 +98,7 @@ static brio_status record_side(const brio_cell_job *job, brio_cell_recorder *r, 
     unit_normal(job->d, r->star.site, (int64_t)s->site, normal);
     BRIO_FORWARD(begin_face(r, (int64_t)s->site, brio_cells_held(in_lengths(job->d, area_of(s), 2)), normal));
     if (job->vertices) BRIO_FORWARD(brio_star_cell_polygon(&r->star, s, &count));
-    for (size_t i = 0; i < count; i++) BRIO_FORWARD(add_corner(r, r->star.polygon[i]));
+    for (size_t i = 0; i < count; i++) BRIO_FORWARD(add_corner(r, brio_same_centre(job->d, r->star.polygon[i])));
     return BRIO_OK;
 }
 

@@ -145,6 +145,7 @@ typedef struct {
     double *rows, *row_weights;      /* a copy of the caller's points; or NULL */
     brio_completed_points all;       /* of flat points */
     double *scaled, *scaled_weights; /* or NULL */
+    brio_cell_frame frame;
     brio_diagram diagram;
     brio_region region;
 } cell_call;
@@ -165,11 +166,11 @@ static brio_status triangulate_flat(cell_call *c) {
 }
 
 /* Copies the caller's points: another thread of the caller may change them meanwhile, and the triangulation and the
- * cells must be those of the same points. */
+ * cells must be those of the same points. -0 becomes 0, as in triangulations: no number of a cell tells them apart. */
 static brio_status copy_points(cell_call *c) {
     size_t n = c->num_points;
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->rows, 3 * n));
-    if (n) memcpy(c->rows, c->points, 3 * n * sizeof *c->rows);
+    for (size_t i = 0; i < 3 * n; i++) c->rows[i] = c->points[i] + 0.0;
     c->points = c->rows;
     if (!c->weights) return BRIO_OK;
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->row_weights, n));
@@ -203,25 +204,33 @@ static brio_status triangulate(cell_call *c, const brio_triangulation *t) {
     return BRIO_OK;
 }
 
-/* Chooses the origin: 0, unless all points are far from 0 in a coordinate. A difference of two numbers of one sign of
- * which neither is more than twice the other is exact [Sterbenz 1974]. */
-static void choose_origin(const cell_call *c, double origin[3]) {
-    for (size_t k = 0; k < 3; k++) {
-        double low = INFINITY, high = -INFINITY;
-        for (size_t i = k; i < 3 * c->num_points; i += 3) {
-            low = c->points[i] < low ? c->points[i] : low;
-            high = c->points[i] > high ? c->points[i] : high;
-        }
-        bool far = (low > 0 && high * 0.5 <= low) || (high < 0 && low * 0.5 >= high);
-        origin[k] = far && c->num_points ? low + (high - low) * 0.5 : 0;
-    }
-}
-
 /* Returns the greatest absolute value of an array. */
 static double greatest(const double *x, size_t n) {
     double most = 0;
     for (size_t i = 0; x && i < n; i++) most = fabs(x[i]) > most ? fabs(x[i]) : most;
     return most;
+}
+
+static brio_cell_frame frame_of(const cell_call *c) {
+    brio_cell_frame f = {.weight = greatest(c->weights, c->num_points)};
+    for (size_t k = 0; k < 3 && c->num_points; k++) {
+        f.low[k] = f.high[k] = c->points[k];
+        for (size_t i = k; i < 3 * c->num_points; i += 3) {
+            f.low[k] = c->points[i] < f.low[k] ? c->points[i] : f.low[k];
+            f.high[k] = c->points[i] > f.high[k] ? c->points[i] : f.high[k];
+        }
+    }
+    return f;
+}
+
+/* Chooses the origin: 0, unless all points are far from 0 in a coordinate. A difference of two numbers of one sign of
+ * which neither is more than twice the other is exact [Sterbenz 1974]. */
+static void choose_origin(const brio_cell_frame *f, double origin[3]) {
+    for (size_t k = 0; k < 3; k++) {
+        double low = f->low[k], high = f->high[k];
+        bool far = (low > 0 && high * 0.5 <= low) || (high < 0 && low * 0.5 >= high);
+        origin[k] = far ? low + (high - low) * 0.5 : 0;
+    }
 }
 
 enum { MOST_EXPONENT = 1024 };
@@ -244,8 +253,8 @@ static void take_region(const cell_call *c, exponents *e) {
     const brio_cells_options *o = &c->options;
     double width = 0, way = 0;
     for (size_t i = 0; i < 6 && o->box; i++) {
-        double point = c->num_points ? c->points[i % 3] : 0;
-        way = fmax(way, fabs(o->box[i] * 0.5 - point * 0.5));
+        way = fmax(way, fabs(o->box[i] * 0.5 - c->frame.low[i % 3] * 0.5));
+        way = fmax(way, fabs(o->box[i] * 0.5 - c->frame.high[i % 3] * 0.5));
         width = fmax(width, fabs(o->box[i] * 0.5 - o->box[i % 3] * 0.5));
     }
     take_length(e, width, true);
@@ -260,10 +269,7 @@ static void take_region(const cell_call *c, exponents *e) {
 static exponents exponents_of(const cell_call *c) {
     exponents e = {INT_MAX, INT_MIN};
     double most = 0;
-    for (size_t i = 0; i < 3 * c->num_points; i++) {
-        double way = fabs(c->points[i] * 0.5 - c->points[i % 3] * 0.5);
-        most = way > most ? way : most;
-    }
+    for (size_t k = 0; k < 3; k++) most = fmax(most, c->frame.high[k] * 0.5 - c->frame.low[k] * 0.5);
     take_length(&e, most, true);
     take_region(c, &e);
     if (e.low > e.high) e.low = e.high;
@@ -277,7 +283,7 @@ static double choose_scale(const cell_call *c, exponents e) {
     int of_weights;
     if (e.high == INT_MIN) return 1;
     if (e.low > -ORDINARY && e.high < ORDINARY) return 1;
-    double weight = greatest(c->weights, c->num_points);
+    double weight = c->frame.weight;
     frexp(weight, &of_weights);
     int middle = (e.low + e.high) / 2, scale = middle < -MOST ? MOST : middle > MOST ? -MOST : -middle;
     int highest = weight == 0 ? MOST : of_weights < MOST ? (MOST - of_weights) / 2 : 0;
@@ -290,6 +296,7 @@ static double choose_scale(const cell_call *c, exponents e) {
 static brio_status scale_points(cell_call *c) {
     enum { FARTHEST = 600 };
     brio_diagram *d = &c->diagram;
+    c->frame = c->complex && c->complex->frame ? *c->complex->frame : frame_of(c);
     const exponents e = exponents_of(c);
     size_t rows = c->num_points + (d->flat ? BRIO_MOST_ADDED : 0);
     d->points = d->at = c->points;
@@ -297,7 +304,7 @@ static brio_status scale_points(cell_call *c) {
     BRIO_EXPECT(c->ctx, e.high == INT_MIN || e.high - e.low <= FARTHEST, BRIO_ERR_ARGUMENT,
                 "the region is too large or too small beside the points for doubles");
     d->scale = choose_scale(c, e);
-    choose_origin(c, d->origin);
+    choose_origin(&c->frame, d->origin);
     bool moved = d->origin[0] != 0 || d->origin[1] != 0 || d->origin[2] != 0;
     if (d->scale == 1 && !moved) return BRIO_OK;
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->scaled, 3 * rows));

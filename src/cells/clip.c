@@ -33,14 +33,15 @@ static brio_status cut_from_region(const brio_star_cell *c, const brio_region *r
     return BRIO_OK;
 }
 
-/* Finds the vertex of the polyhedron with a name, or adds it. The hash table of the star cell now holds names: its
- * sides are complete. */
-static brio_status vertex_of(brio_star_cell *c, brio_polyhedron *p, uint32_t name, uint32_t *vertex) {
+/* Finds the vertex of the polyhedron at the centre of a tetrahedron, or adds it, where the centre of the tetrahedron
+ * that is met first is. The hash table of the star cell now holds names: its sides are complete. */
+static brio_status vertex_of(brio_star_cell *c, brio_polyhedron *p, uint32_t tet, uint32_t *vertex) {
+    uint32_t name = brio_same_centre(c->d, tet);
     size_t mask = c->num_slots - 1, at = (name * UINT32_C(0x9E3779B1) >> 7) & mask;
     while (c->slot[at][1] && c->slot[at][0] != name) at = (at + 1) & mask;
     assert(name < c->d->num_finite); /* a Voronoi vertex */
     if (c->slot[at][1]) return *vertex = c->slot[at][1] - 1, BRIO_OK;
-    const double *x = c->d->centre[name], *site = c->d->at + 3 * (size_t)c->site;
+    const double *x = c->d->centre[tet], *site = c->d->at + 3 * (size_t)c->site;
     double from[3] = {x[0] - site[0], x[1] - site[1], x[2] - site[2]};
     *vertex = (uint32_t)p->num_vertices;
     c->slot[at][0] = name;

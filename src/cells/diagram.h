@@ -4,8 +4,8 @@
  * I1  Row t of `centre` is the centre of tetrahedron t and its place, a brio_place. It is NaN for infinite tetrahedra
  *     and for centres that doubles cannot hold, and then the place is BRIO_PLACE_FAR.
  * I2  Where `same` is not NULL, same[t] is the least of the tetrahedra that share the centre of t and are joined with t
- *     across facets. Rows of such tetrahedra are equal. For infinite tetrahedra the outward normal of the hull facet
- *     takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
+ *     across facets. Rows of such tetrahedra are equal up to rounding. For infinite tetrahedra the outward normal of
+ *     the hull facet takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
  * I3  The tetrahedra of a vertex ascend.
  * I4  Row r of `ranked` is the point order[r], and rank[order[r]] = r. The order follows the array of tetrahedra: what
  *     is near in space is near in memory.
@@ -90,7 +90,7 @@ brio_status brio_diagram_order_vertices(brio_diagram *d);
 /** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. Marks vertices and
  *  lists tetrahedra: I5. */
 brio_status brio_diagram_find_centres(brio_diagram *d, const brio_region *region);
-/** Finds the tetrahedra that share a centre, and makes their rows equal. */
+/** Finds the tetrahedra that share a centre. */
 brio_status brio_diagram_unite_ties(brio_diagram *d);
 /** Replaces the fourth number of each row by its place. */
 brio_status brio_diagram_find_places(brio_diagram *d, const brio_region *region);
@@ -114,6 +114,13 @@ static inline uint32_t brio_same_centre(const brio_diagram *d, uint32_t t) {
 
 /* --- cells of a complex that is no triangulation of all its points: of a space that repeats --- */
 
+/** What all points are together. The origin and the scale come from it, so that cells of some points are computed
+ *  as those of all. */
+typedef struct brio_cell_frame {
+    double low[3], high[3]; /* 0 without points */
+    double weight;          /* the greatest absolute one */
+} brio_cell_frame;
+
 /** All tetrahedra that have a site for a vertex, finite ones first. Mates across facets that have one are right; the
  *  others are the facet itself. */
 typedef struct brio_cell_complex {
@@ -122,6 +129,7 @@ typedef struct brio_cell_complex {
     size_t num_finite, count;
     const double *points, *weights; /* #P by 3; #P, or NULL */
     size_t num_points, num_sites;   /* the first points are the sites */
+    const brio_cell_frame *frame;   /* of more points than these, or NULL */
 } brio_cell_complex;
 
 /** Computes the cells of the sites, as brio_voronoi_cells does. Neighbours are indices of points.

@@ -3,7 +3,10 @@
  * Two mates share their centre if and only if the fifth point is on the sphere of the other four: the in-sphere
  * determinant is 0. Computed centres that are farther apart than their error bounds are different, which settles nearly
  * all mates of points in general position; the exact predicate settles the others. Two infinite tetrahedra that are
- * mates share their normal if and only if the four vertices of their hull facets are coplanar. */
+ * mates share their normal if and only if the four vertices of their hull facets are coplanar.
+ *
+ * Rows of tetrahedra that share a centre stay as they are, and may differ in their last bits: a row depends on the four
+ * vertices alone, so that a part of the tetrahedra has the same rows as all. */
 #include "base/memory.h"
 #include "base/team.h"
 #include "base/union_find.h"
@@ -61,16 +64,6 @@ static void look_at_some(void *user, size_t from, size_t to, int thread) {
     __atomic_add_fetch(&s->candidates, candidates, __ATOMIC_RELAXED);
 }
 
-/* Makes the rows of tetrahedra with one centre equal. */
-static void settle_some(void *user, size_t from, size_t to, int thread) {
-    brio_diagram *d = ((tie_search *)user)->d;
-    (void)thread;
-    for (size_t t = from; t < to; t++) {
-        uint32_t root = brio_find(d->same, (uint32_t)t);
-        if (root != t) memcpy(d->centre[t], d->centre[root], sizeof *d->centre);
-    }
-}
-
 static void fill_records(tie_search *s, size_t num_points) {
     const brio_diagram *d = s->d;
     for (size_t p = 0; p < num_points; p++) {
@@ -92,7 +85,6 @@ brio_status brio_diagram_unite_ties(brio_diagram *d) {
     brio_filter_for(&s.filter, (const brio_record *)s.record, rows, d->weights != NULL);
     s.search = true;
     BRIO_TRY(brio_for_chunks(d->ctx, s.threads, d->num_listed, CHUNK, look_at_some, &s));
-    BRIO_TRY(brio_for(d->ctx, s.threads, d->t.count, settle_some, &s));
     for (size_t t = 0; t < d->t.count; t++) {
         d->same[t] = brio_find(d->same, (uint32_t)t);
         assert(d->same[t] <= t); /* I2: the least of them */

@@ -47,6 +47,7 @@ static uint32_t add(brio_dynamic *d, const brio_live_points *list, size_t i) {
 /* Takes the tetrahedra of a result, whose vertices become rows. */
 static brio_status take_tetrahedra(brio_dynamic *d, brio_triangulation *t, const brio_live_points *list,
                                    uint32_t *row) {
+    enum { AHEAD = 8 };
     size_t count = t->stats.tetrahedra + t->stats.hull_facets;
     BRIO_FORWARD(BRIO_ALLOC_ZERO(d->ctx, d->state, count));
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->hidden, count));
@@ -57,18 +58,21 @@ static brio_status take_tetrahedra(brio_dynamic *d, brio_triangulation *t, const
     d->t.count = d->capacity = d->unused_capacity = count;
     brio_slack_end_all(d);
     t->tet = NULL;
-    for (uint32_t slot = 0; slot < count; slot++)
-        for (int k = 0; k < 4; k++) {
-            uint32_t *v = &d->t.tet[slot].vertex[k];
-            if (*v == BRIO_INFINITE) {
-                *v = 0;
-                continue;
-            }
-            if (row[*v] == BRIO_NONE) row[*v] = add(d, list, *v);
-            *v = row[*v];
-            d->home[*v] = slot;
-            d->kind[*v] = ROW_VERTEX;
+    for (uint32_t slot = 0; slot < count; slot++) {
+        uint32_t *v = d->t.tet[slot].vertex;
+        if (slot + AHEAD < count)
+            for (int k = 0; k < 3; k++) __builtin_prefetch(&row[d->t.tet[slot + AHEAD].vertex[k]]);
+        bool infinite = v[3] == BRIO_INFINITE;
+        for (int k = 0; k < 4 - infinite; k++) {
+            uint32_t r = row[v[k]];
+            bool fresh = r == BRIO_NONE;
+            if (fresh) r = row[v[k]] = add(d, list, v[k]);
+            if (fresh) d->kind[r] = ROW_VERTEX;
+            if (fresh || infinite) d->home[r] = slot; /* vertices of the hull are at home outside */
+            v[k] = r;
         }
+        if (infinite) v[3] = 0;
+    }
     d->counts.vertices = t->stats.vertices;
     d->counts.finite = t->stats.tetrahedra;
     d->counts.infinite = t->stats.hull_facets;

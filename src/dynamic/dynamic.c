@@ -7,6 +7,7 @@
 #include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/sort.h"
 #include "base/versioned.h"
 #include "dynamic/live.h"
 #include "order/order.h"
@@ -51,6 +52,21 @@ static bool anew_is_faster(const brio_dynamic *d, size_t count, double cost, siz
     return d->dimension < 3 || left < 8 || count > most_changes(d, cost, left);
 }
 
+enum { SORTED = 8 }; /* changes in a call that are worth an order */
+
+/* Lists points by their rows, so that near ones follow each other: the places in `indices` are the low halves. NULL for
+ * few. */
+static brio_status order_by_row(brio_dynamic *d, const uint32_t *indices, size_t n, uint64_t **order) {
+    if (n < SORTED || !indices) return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, *order, n));
+    for (size_t i = 0; i < n; i++) (*order)[i] = (uint64_t)d->row_of[indices[i]] << 32 | i;
+    return brio_sort_many_keys(d->ctx, *order, n);
+}
+
+static size_t at_place(const uint64_t *order, size_t i) {
+    return order ? (size_t)(order[i] & UINT32_MAX) : i;
+}
+
 /* --- insert --- */
 
 static brio_status check_points(brio_dynamic *d, const double *points, const double *weights, size_t n) {
@@ -83,7 +99,6 @@ static brio_status insert_anew(brio_dynamic *d, const double *points, const doub
 
 /* Inserts in the order of the curve. */
 static brio_status insert_each(brio_dynamic *d, const double *points, const double *weights, size_t n) {
-    enum { SORTED = 8 };
     brio_status status = BRIO_OK;
     uint32_t *order = NULL, first = (uint32_t)d->num_names;
     BRIO_TRY(brio_live_reserve_rows(d, n));
@@ -175,13 +190,18 @@ done:
 }
 
 static brio_status remove_each(brio_dynamic *d, const uint32_t *indices, size_t n) {
+    brio_status status = BRIO_OK;
+    uint64_t *order = NULL;
+    BRIO_TRY(order_by_row(d, indices, n, &order));
     for (size_t i = 0; i < n; i++) {
-        uint32_t row = d->row_of[indices[i]];
-        BRIO_FORWARD(brio_live_take(d, &row));
-        BRIO_FORWARD(brio_live_drop_row(d, row));
-        BRIO_FORWARD(brio_look(d->ctx, 4));
+        uint32_t row = d->row_of[indices[at_place(order, i)]];
+        BRIO_TRY(brio_live_take(d, &row));
+        BRIO_TRY(brio_live_drop_row(d, row));
+        BRIO_TRY(brio_look(d->ctx, 4));
     }
-    return BRIO_OK;
+done:
+    brio_release(d->ctx, order);
+    return status;
 }
 
 brio_status brio_dynamic_remove(brio_dynamic *d, const uint32_t *indices, size_t num_indices) {
@@ -221,22 +241,28 @@ done:
 
 /* Moves one by one. Asks for building anew where that is faster than to take out all that have to be. */
 static brio_status move_each(brio_dynamic *d, const brio_moves *m) {
-    uint64_t before = d->replaced;
+    uint64_t before = d->replaced, *order = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(order_by_row(d, m->indices, m->count, &order));
     for (size_t i = 0, name = 0; i < m->count; i++, name++) {
+        size_t at = at_place(order, i);
         double record[4];
         if (m->indices)
-            name = m->indices[i];
+            name = m->indices[at];
         else
             while (d->row_of[name] == BRIO_NONE) name++;
-        BRIO_FORWARD(brio_new_record(d, m, i, (uint32_t)name, record));
-        BRIO_FORWARD(brio_live_move(d, (uint32_t)name, record));
-        BRIO_FORWARD(brio_look(d->ctx, 4));
+        BRIO_TRY(brio_new_record(d, m, at, (uint32_t)name, record));
+        BRIO_TRY(brio_live_move(d, (uint32_t)name, record));
+        BRIO_TRY(brio_look(d->ctx, 4));
         if (i % 256 != 255) continue;
         if (!anew_is_faster(d, (size_t)(d->replaced - before), REPLACE_COST, d->counts.alive)) continue;
         d->needs_anew = true;
-        return BRIO_ERR_INTERNAL; /* the caller takes the change back and builds anew */
+        status = BRIO_ERR_INTERNAL; /* the caller takes the change back and builds anew */
+        goto done;
     }
-    return BRIO_OK;
+done:
+    brio_release(d->ctx, order);
+    return status;
 }
 
 /* Returns whether the tetrahedra are to be tested together after all moves, not star by star: then all points are

@@ -140,6 +140,14 @@ static bool insert(brio_dynamic *d, const brio_tetrahedra *t, uint32_t vertex) {
     return true;
 }
 
+/* Returns whether each of the vertices 1 to n, at most 63, is one of a tetrahedron. A heavy one may hide another. */
+static bool has_all(const brio_link *l, uint32_t n) {
+    uint64_t seen = 0;
+    for (uint32_t t = 0; t < l->count; t++)
+        for (int k = 0; k < 4 && l->alive[t / 8] >> t % 8 & 1; k++) seen |= UINT64_C(1) << l->tet[t].vertex[k];
+    return seen >> 1 == (UINT64_C(1) << n) - 1;
+}
+
 bool brio_link_few(brio_dynamic *d, brio_tetrahedron **tet, size_t *count, bool *flat) {
     brio_link *l = d->link;
     const brio_hole *h = &d->hole;
@@ -156,6 +164,7 @@ bool brio_link_few(brio_dynamic *d, brio_tetrahedron **tet, size_t *count, bool 
         if (!insert(d, &t, i)) return false;
         t.count = l->count;
     }
+    if (d->weighted && !has_all(l, n)) return false;
     for (size_t i = 0; i < l->num_unused; i++) l->tet[l->unused[i]].vertex[0] = BRIO_NONE;
     *tet = l->tet;
     *count = l->count;

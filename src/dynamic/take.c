@@ -224,7 +224,8 @@ static brio_status fill(brio_dynamic *d, filling *f) {
     n = h->num_vertices - 1;
     BRIO_FORWARD(brio_edges_ready(d, h->num_vertices, 6 * h->num_border));
     if (n <= BRIO_LINK_MOST) {
-        brio_link_few(d, &f->tet, &f->count, &flat);
+        bool all = brio_link_few(d, &f->tet, &f->count, &flat);
+        BRIO_EXPECT(d->ctx, all, BRIO_ERR_INTERNAL, "a vertex of a link of %zu hides another", n);
         f->slot = brio_link_slots(d);
     } else {
         BRIO_FORWARD(link_many(d, f, &flat));

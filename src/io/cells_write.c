@@ -2,6 +2,7 @@
  *
  * Based on: NumPy enhancement proposal 1, the .npy format. */
 #include "base/float_state.h"
+#include "base/memory.h"
 #include "io/formats.h"
 #include "io/scalar.h"
 #include <stdio.h>
@@ -19,10 +20,14 @@ brio_cells_format brio_cells_format_of(const char *path) {
 
 /* --- CSV --- */
 
-static brio_status cells_csv_write(brio_output *out, const brio_cells *cells) {
-    BRIO_FORWARD(brio_output_string(out, "site,volume,area,faces,bounded,cx,cy,cz\n"));
+/* Returns the site of a cell.   site  NULL, or what stands in place of the cells' own. */
+static int64_t site_of(const brio_cells *cells, const uint64_t *site, size_t c) {
+    return site ? (int64_t)site[c] : cells->site[c];
+}
+
+static brio_status write_csv_rows(brio_output *out, const brio_cells *cells, const uint64_t *site) {
     for (size_t c = 0; c < cells->num_cells; c++) {
-        BRIO_FORWARD(brio_output_integer(out, 0, cells->site[c]));
+        BRIO_FORWARD(brio_output_integer(out, 0, site_of(cells, site, c)));
         BRIO_FORWARD(brio_output_double(out, ',', cells->volume[c]));
         BRIO_FORWARD(brio_output_double(out, ',', cells->area[c]));
         BRIO_FORWARD(brio_output_integer(out, ',', (int64_t)brio_cells_num_faces(cells, c)));
@@ -33,12 +38,10 @@ static brio_status cells_csv_write(brio_output *out, const brio_cells *cells) {
     return BRIO_OK;
 }
 
-static brio_status cells_faces_write(brio_output *out, const brio_cells *cells) {
-    BRIO_FORWARD(brio_output_string(out, "site,neighbour,area,nx,ny,nz"));
-    BRIO_FORWARD(brio_output_string(out, cells->face_shifts ? ",shift_a,shift_b,shift_c\n" : "\n"));
+static brio_status write_face_rows(brio_output *out, const brio_cells *cells, const uint64_t *site) {
     for (size_t c = 0; c < cells->num_cells; c++)
         for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
-            BRIO_FORWARD(brio_output_integer(out, 0, cells->site[c]));
+            BRIO_FORWARD(brio_output_integer(out, 0, site_of(cells, site, c)));
             BRIO_FORWARD(brio_output_integer(out, ',', cells->face_neighbours[f]));
             BRIO_FORWARD(brio_output_double(out, ',', cells->face_areas[f]));
             for (size_t k = 0; k < 3; k++) BRIO_FORWARD(brio_output_double(out, ',', cells->face_normals[3 * f + k]));
@@ -53,14 +56,14 @@ static brio_status cells_faces_write(brio_output *out, const brio_cells *cells) 
 
 /* Writes the header: magic, version 1.0, the length of the description in 2 bytes, the description, blanks up to a
  * multiple of 64 bytes, and a line end. */
-static brio_status write_npy_header(brio_output *out, size_t rows) {
+static brio_status write_npy_header(brio_output *out, uint64_t rows) {
     enum { BEFORE = 10, UNIT = 64 };
     char text[512], order = brio_host_is_little() ? '<' : '>';
     int used = snprintf(text, sizeof text,
                         "{'descr': [('site', '%ci8'), ('volume', '%cf8'), ('area', '%cf8'), ('faces', '%ci8'), "
                         "('bounded', '|b1'), ('cx', '%cf8'), ('cy', '%cf8'), ('cz', '%cf8')], "
-                        "'fortran_order': False, 'shape': (%zu,), }",
-                        order, order, order, order, order, order, order, rows);
+                        "'fortran_order': False, 'shape': (%llu,), }",
+                        order, order, order, order, order, order, order, (unsigned long long)rows);
     size_t length = (size_t)used, whole = (BEFORE + length + 1 + UNIT - 1) / UNIT * UNIT - BEFORE;
     const unsigned char before[BEFORE] = {0x93, 'N', 'U', 'M',         'P',
                                           'Y',  1,   0,   whole & 255, (unsigned char)(whole >> 8)};
@@ -70,10 +73,9 @@ static brio_status write_npy_header(brio_output *out, size_t rows) {
     return status == BRIO_OK ? brio_output_bytes(out, text, whole) : status;
 }
 
-static brio_status cells_npy_write(brio_output *out, const brio_cells *cells) {
-    BRIO_FORWARD(write_npy_header(out, cells->num_cells));
+static brio_status write_npy_rows(brio_output *out, const brio_cells *cells, const uint64_t *sites) {
     for (size_t c = 0; c < cells->num_cells; c++) {
-        int64_t site = cells->site[c], faces = (int64_t)brio_cells_num_faces(cells, c);
+        int64_t site = site_of(cells, sites, c), faces = (int64_t)brio_cells_num_faces(cells, c);
         BRIO_FORWARD(brio_output_bytes(out, &site, sizeof site));
         BRIO_FORWARD(brio_output_bytes(out, &cells->volume[c], sizeof(double)));
         BRIO_FORWARD(brio_output_bytes(out, &cells->area[c], sizeof(double)));
@@ -106,22 +108,19 @@ static uint64_t expected_bytes(const brio_cells *cells, brio_cells_format format
     return 3 * sizeof(double) * (uint64_t)cells->num_vertices + CORNER * cells->corner_offsets[faces] + FACE * faces;
 }
 
-static brio_status write_format(brio_output *out, const brio_cells *cells, brio_cells_format format,
-                                const char *comment) {
-    switch (format) {
-    case BRIO_CELLS_FORMAT_VTU:
-        return brio_cells_vtu_write(out, cells, comment);
-    case BRIO_CELLS_FORMAT_NPY:
-        return cells_npy_write(out, cells);
-    case BRIO_CELLS_FORMAT_CSV:
-        return cells_csv_write(out, cells);
-    case BRIO_CELLS_FORMAT_FACES_CSV:
-        return cells_faces_write(out, cells);
-    case BRIO_CELLS_FORMAT_AUTO:
-    case BRIO_CELLS_FORMAT_END:
-        break;
-    }
-    return brio_fail(out->ctx, BRIO_ERR_ARGUMENT, "%s: no such format: %d", out->name, (int)format);
+/* Writes what stands before the rows of a table. */
+static brio_status write_head(brio_output *out, brio_cells_format format, uint64_t rows, bool shifts) {
+    if (format == BRIO_CELLS_FORMAT_NPY) return write_npy_header(out, rows);
+    if (format == BRIO_CELLS_FORMAT_CSV) return brio_output_string(out, "site,volume,area,faces,bounded,cx,cy,cz\n");
+    BRIO_FORWARD(brio_output_string(out, "site,neighbour,area,nx,ny,nz"));
+    return brio_output_string(out, shifts ? ",shift_a,shift_b,shift_c\n" : "\n");
+}
+
+static brio_status write_rows(brio_output *out, brio_cells_format format, const brio_cells *cells,
+                              const uint64_t *site) {
+    if (format == BRIO_CELLS_FORMAT_NPY) return write_npy_rows(out, cells, site);
+    if (format == BRIO_CELLS_FORMAT_CSV) return write_csv_rows(out, cells, site);
+    return write_face_rows(out, cells, site);
 }
 
 brio_status brio_cells_write(brio_context *ctx, const char *path, const brio_cells *cells, brio_cells_format format,
@@ -132,10 +131,76 @@ brio_status brio_cells_write(brio_context *ctx, const char *path, const brio_cel
     if (format == BRIO_CELLS_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_cells_format_of(path);
     BRIO_TRY(check(ctx, path, cells, format));
     BRIO_TRY(brio_output_open(&out, ctx, path, expected_bytes(cells, format)));
-    BRIO_TRY(write_format(&out, cells, format, comment));
+    if (format == BRIO_CELLS_FORMAT_VTU) {
+        BRIO_TRY(brio_cells_vtu_write(&out, cells, comment));
+    } else {
+        BRIO_TRY(write_head(&out, format, cells->num_cells, cells->face_shifts != NULL));
+        BRIO_TRY(write_rows(&out, format, cells, NULL));
+    }
     BRIO_TRY(brio_output_finish(&out));
     BRIO_TRY(brio_output_publish(&out));
 done:
     brio_output_close(&out);
     return status;
+}
+
+/* --- part after part --- */
+
+struct brio_cells_table {
+    brio_output out;
+    char *path;
+    brio_cells_format format;
+    uint64_t rows, written; /* of cells */
+};
+
+void brio_cells_table_free(brio_cells_table *table) {
+    if (!table) return;
+    brio_context *ctx = table->out.ctx;
+    brio_output_close(&table->out);
+    brio_release(ctx, table->path);
+    brio_release(ctx, table);
+}
+
+brio_status brio_cells_table_new(brio_context *ctx, const char *path, brio_cells_format format, uint64_t num_cells,
+                                 brio_cells_table **out) {
+    BRIO_DOOR;
+    brio_cells_table *table = NULL;
+    brio_status status = BRIO_OK;
+    size_t size = strlen(path) + 1;
+    *out = NULL;
+    if (format == BRIO_CELLS_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_cells_format_of(path);
+    BRIO_REQUIRE(ctx, format > BRIO_CELLS_FORMAT_VTU && format < BRIO_CELLS_FORMAT_END, BRIO_ERR_ARGUMENT,
+                 "%s: cells are written part after part to .npy and .csv", path);
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, table, 1));
+    table->out = (brio_output){.ctx = ctx, .target.folder = -1, .file = -1};
+    table->format = format;
+    table->rows = num_cells;
+    BRIO_TRY(BRIO_ALLOC(ctx, table->path, size));
+    memcpy(table->path, path, size);
+    BRIO_TRY(brio_output_open(&table->out, ctx, table->path, BRIO_NO_PROGRESS));
+    BRIO_TRY(write_head(&table->out, format, num_cells, false));
+    *out = table;
+    table = NULL;
+done:
+    brio_cells_table_free(table);
+    return status;
+}
+
+brio_status brio_cells_table_add(brio_context *ctx, brio_cells_table *table, const brio_cells *cells,
+                                 const uint64_t *site) {
+    BRIO_DOOR;
+    BRIO_FORWARD(check(ctx, table->path, cells, table->format));
+    BRIO_EXPECT(ctx, !cells->face_shifts, BRIO_ERR_ARGUMENT, "%s: cells of space that repeats are written at once",
+                table->path);
+    table->written += cells->num_cells;
+    return write_rows(&table->out, table->format, cells, site);
+}
+
+brio_status brio_cells_table_finish(brio_context *ctx, brio_cells_table *table) {
+    BRIO_DOOR;
+    BRIO_EXPECT(ctx, table->format != BRIO_CELLS_FORMAT_NPY || table->written == table->rows, BRIO_ERR_ARGUMENT,
+                "%s: %llu cells were announced, and %llu came", table->path, (unsigned long long)table->rows,
+                (unsigned long long)table->written);
+    BRIO_FORWARD(brio_output_finish(&table->out));
+    return brio_output_publish(&table->out);
 }

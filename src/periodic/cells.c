@@ -25,16 +25,6 @@ typedef struct {
 
 /* --- the call for cells in the domain --- */
 
-static brio_status copy_images(periodic_call *c) {
-    const brio_images *from = &c->t->images;
-    brio_images *to = &c->images;
-    BRIO_FORWARD(
-        brio_images_new(c->ctx, &c->t->lattice, (const double(*)[3])from->x, from->weight, from->num_points, to));
-    for (size_t i = from->num_points; i < from->count; i++)
-        BRIO_FORWARD(brio_images_add(to, from->list[i].point, from->list[i].shift));
-    return BRIO_OK;
-}
-
 /* Appends all translates within the lattice's range: for points of a plane or a line, which are few or thin. */
 static brio_status add_all(periodic_call *c) {
     brio_images *m = &c->images;
@@ -170,7 +160,7 @@ done:
 static brio_status compute(periodic_call *c, const brio_cells_options *options, brio_cells **out) {
     brio_cells_options o = *options;
     bool flat = c->t->stats.dimension < 3;
-    BRIO_FORWARD(copy_images(c));
+    BRIO_FORWARD(brio_images_copy(c->ctx, &c->t->images, &c->t->lattice, &c->images));
     if (flat)
         BRIO_FORWARD(add_all(c));
     else

@@ -89,3 +89,10 @@ brio_status brio_images_find(brio_images *m, uint32_t point, const int32_t shift
     *index = m->slot[at] - 1;
     return BRIO_OK;
 }
+
+brio_status brio_images_copy(brio_context *ctx, const brio_images *from, const brio_lattice *lattice, brio_images *to) {
+    BRIO_FORWARD(brio_images_new(ctx, lattice, (const double(*)[3])from->x, from->weight, from->num_points, to));
+    for (size_t i = from->num_points; i < from->count; i++)
+        BRIO_FORWARD(brio_images_add(to, from->list[i].point, from->list[i].shift));
+    return BRIO_OK;
+}

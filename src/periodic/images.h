@@ -24,6 +24,9 @@ brio_status brio_images_new(brio_context *ctx, const brio_lattice *lattice, cons
                             const double *weights, size_t num_points, brio_images *images);
 void brio_images_free(brio_images *images);
 
+/** Makes a copy, to which images can be added.   lattice  of the copy.   Errors as above; freed as above. */
+brio_status brio_images_copy(brio_context *ctx, const brio_images *from, const brio_lattice *lattice, brio_images *to);
+
 /** Appends an image that is not in the list.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
 brio_status brio_images_add(brio_images *images, uint32_t point, const int32_t shift[3]);
 

@@ -86,16 +86,22 @@ static brio_status drop_images(brio_periodic *t, size_t num_tets) {
     return BRIO_OK;
 }
 
-/* Returns an image as the caller sees it: relative to the points and the vectors that were given. */
-static brio_image show(const brio_periodic *t, const brio_image *image, const int32_t *from) {
+brio_image brio_periodic_show(const brio_periodic *t, const brio_image *image, const int32_t *home,
+                              const int64_t *from) {
     const brio_lattice *l = &t->lattice;
     brio_image out = {.point = image->point};
     for (int j = 0; j < l->rank; j++) {
-        int64_t shift = t->home[image->point][j] - (int64_t)from[j];
+        int64_t shift = (home ? home[j] : 0) - from[j];
         for (int i = 0; i < l->rank; i++) shift += image->shift[i] * l->change[i][j];
         out.shift[l->axis[j]] = (int32_t)shift;
     }
     return out;
+}
+
+/* Returns an image as the caller sees it: relative to the points and the vectors that were given. */
+static brio_image show(const brio_periodic *t, const brio_image *image, const int32_t *from) {
+    const int64_t wide[3] = {from[0], from[1], from[2]};
+    return brio_periodic_show(t, image, t->home[image->point], wide);
 }
 
 static brio_status show_images(brio_periodic *t) {

@@ -62,6 +62,11 @@ brio_status brio_periodic_fold(brio_context *ctx, brio_stars *stars, brio_tetrah
 /** Returns the shift by which the mate behind facet i of tetrahedron t has to be moved to meet it there. */
 void brio_periodic_across(const brio_images *images, const brio_tetrahedron *tet, size_t t, int i, int32_t shift[3]);
 
+/** Returns a translate as the caller sees it: in the vectors that were given.   image  its shift is in the basis.
+ *  home  #rank: from what the caller gave to the domain; NULL for none.   from  #rank: shift 0 of the result. */
+brio_image brio_periodic_show(const brio_periodic *t, const brio_image *image, const int32_t *home,
+                              const int64_t *from);
+
 /** All tetrahedra with a vertex in the domain, and the mates across facets that have such a vertex. Other mates are the
  *  facet itself. */
 typedef struct brio_unfolded {

@@ -4,6 +4,7 @@
 #define BRIO_PLATFORM_FOLDER_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 /** Makes a folder that only its owner may read (`ours`) or one with the usual rights. A folder that is there already is
  *  no failure, except that `ours` refuses a link and the folder of another user: who may write into a folder for all,
@@ -28,5 +29,8 @@ bool brio_rename_file(const char *from, const char *to);
 bool brio_remove_file(const char *path);
 void brio_empty_folder(const char *path, const char *kept);
 bool brio_remove_folder(const char *path);
+
+/** Finds how many bytes may still be written into a folder's file system. Returns false if that is not known. */
+bool brio_free_bytes(const char *path, uint64_t *bytes);
 
 #endif

@@ -10,9 +10,15 @@
 #include <unistd.h>
 #ifndef __wasi__
 #include <sys/file.h>
+#include <sys/statvfs.h>
 #endif
 
 #ifdef __wasi__ /* which has one user and one process */
+
+bool brio_free_bytes(const char *path, uint64_t *bytes) {
+    (void)path, (void)bytes;
+    return false;
+}
 
 static bool is_ours(const char *path) {
     (void)path;
@@ -29,6 +35,13 @@ void brio_unlock_file(int file, const char *path) {
 }
 
 #else
+
+bool brio_free_bytes(const char *path, uint64_t *bytes) {
+    struct statvfs facts;
+    if (statvfs(path, &facts) != 0) return false;
+    *bytes = (uint64_t)facts.f_bavail * facts.f_frsize;
+    return true;
+}
 
 /* Returns whether a path is a folder of this user, and no link. */
 static bool is_ours(const char *path) {

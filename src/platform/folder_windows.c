@@ -87,3 +87,11 @@ bool brio_remove_folder(const char *path) {
     brio_windows_error();
     return false;
 }
+
+bool brio_free_bytes(const char *path, uint64_t *bytes) {
+    brio_wide_path wide;
+    ULARGE_INTEGER available;
+    if (!brio_wide_path_of(path, &wide) || !GetDiskFreeSpaceExW(wide.text, &available, NULL, NULL)) return false;
+    *bytes = available.QuadPart;
+    return true;
+}

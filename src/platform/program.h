@@ -30,6 +30,10 @@ bool brio_program_say(int file, const char *text);
 /** Ends the process at once. */
 void brio_program_end(int code);
 
+/** Returns what `write` writes to a stream, as a text to be freed; NULL without memory or room for it.
+ *  object  handed on to `write`. */
+char *brio_program_text(void (*write)(FILE *stream, void *object), void *object);
+
 /** Returns whether a descriptor is a terminal. */
 bool brio_is_terminal(int file);
 

@@ -28,6 +28,18 @@ void brio_program_end(int code) {
     _exit(code);
 }
 
+char *brio_program_text(void (*write)(FILE *stream, void *object), void *object) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *memory = open_memstream(&text, &size);
+    if (!memory) return NULL;
+    write(memory, object);
+    bool whole = !ferror(memory);
+    if (fclose(memory) == 0 && whole) return text;
+    free(text);
+    return NULL;
+}
+
 bool brio_is_terminal(int file) {
     return isatty(file);
 }

@@ -63,6 +63,24 @@ void brio_program_end(int code) {
     _exit(code);
 }
 
+/* Streams into memory there are none: a temporary file, which is removed when it is closed. */
+char *brio_program_text(void (*write)(FILE *stream, void *object), void *object) {
+    char *text = NULL;
+    FILE *file = tmpfile();
+    if (!file) return NULL;
+    write(file, object);
+    long size = ftell(file);
+    if (!ferror(file) && size >= 0) text = malloc((size_t)size + 1);
+    rewind(file);
+    if (text && fread(text, 1, (size_t)size, file) != (size_t)size) {
+        free(text);
+        text = NULL;
+    }
+    if (text) text[size] = 0;
+    fclose(file);
+    return text;
+}
+
 bool brio_is_terminal(int file) {
     DWORD mode;
     return GetConsoleMode((HANDLE)_get_osfhandle(file), &mode);

@@ -165,9 +165,19 @@ bool brio_target_may_write(const brio_target *target) {
 
 /* --- the new file --- */
 
+/* Fills a number with bits that nobody can guess. Returns false if the system has none. The C library of an older Linux
+ * lacks the function for it. */
+static bool take_entropy(uint64_t *seed) {
+#ifdef __linux__
+    return syscall(SYS_getrandom, seed, sizeof *seed, 0) == (long)sizeof *seed;
+#else
+    return getentropy(seed, sizeof *seed) == 0;
+#endif
+}
+
 uint64_t brio_unguessable(void) {
     uint64_t seed;
-    if (getentropy(&seed, sizeof seed) == 0) return seed;
+    if (take_entropy(&seed)) return seed;
     return (uint64_t)brio_process_number() << 32 ^ (uint64_t)(brio_seconds() * 1e9);
 }
 

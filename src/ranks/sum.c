@@ -61,7 +61,7 @@ static brio_status put_vertices(brio_ranks *r, uint32_t tile) {
     brio_set_point *points = NULL;
     brio_status status = BRIO_OK;
     if (!facts->points) return BRIO_OK;
-    BRIO_TRY(brio_tile_result_read(r->t, tile, &result));
+    BRIO_TRY(brio_tile_result_read(r->t, tile, false, &result));
     BRIO_TRY(BRIO_ALLOC(r->ctx, points, facts->points + 1));
     BRIO_TRY(brio_tile_points(r->t, facts->place, facts->points, points));
     for (uint32_t i = 0; i < facts->points; i++) {
@@ -150,7 +150,7 @@ static brio_status add_hashes(brio_ranks *r, uint32_t tile, uint64_t *sum) {
     brio_tile_result result = {0};
     uint64_t *halo = NULL, rank[4];
     brio_status status = BRIO_OK;
-    if (facts->points) BRIO_TRY(brio_tile_result_read(r->t, tile, &result));
+    if (facts->points) BRIO_TRY(brio_tile_result_read(r->t, tile, true, &result));
     BRIO_TRY(BRIO_ALLOC(r->ctx, halo, facts->halo + 1));
     BRIO_TRY(brio_ranks_rows(r, result.halo, facts->halo, answer_rank, sizeof *halo, halo));
     for (size_t i = 0; i < facts->tetrahedra; i++) {

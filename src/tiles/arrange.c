@@ -82,9 +82,14 @@ done:
 
 /* --- extreme points, and points that span space --- */
 
+/* Returns the sign of a direction along an axis: 26 of the 27 triples, for (0, 0, 0) is none. */
+static int sign_along(int direction, int axis) {
+    static const int POWER[3] = {1, 3, 9};
+    return (direction < 13 ? direction : direction + 1) / POWER[axis] % 3 - 1;
+}
+
 static double along(int direction, const double *x) {
-    int d = direction < 13 ? direction : direction + 1; /* 13 is no direction */
-    return (d % 3 - 1) * x[0] + (d / 3 % 3 - 1) * x[1] + (d / 9 - 1) * x[2];
+    return sign_along(direction, 0) * x[0] + sign_along(direction, 1) * x[1] + sign_along(direction, 2) * x[2];
 }
 
 static bool spans_more(const brio_tiles *t, brio_filter *f, const double *p) {
@@ -110,13 +115,37 @@ void brio_tiles_note(brio_tiles *t, brio_filter *f, const brio_set_point *p) {
     if (spans_more(t, f, p->record)) t->basis[t->num_basis++] = *p;
 }
 
+/* Notes the extreme ones of the points of a block. In most directions its box tells that it has none: the sums are
+ * monotone, also as they are rounded. The point at the first place of this process is compared with none. */
+static void note_extremes(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++) {
+            double x = points[i].record[k];
+            low[k] = x < low[k] ? x : low[k];
+            high[k] = x > high[k] ? x : high[k];
+        }
+    for (int d = 0; d < TILE_DIRECTIONS; d++) {
+        double corner[3];
+        for (int k = 0; k < 3; k++) corner[k] = sign_along(d, k) < 0 ? low[k] : high[k];
+        if (place > t->first_place && !(along(d, corner) > along(d, t->extreme[d].record))) continue;
+        for (size_t i = 0; i < n; i++)
+            if (place + i == t->first_place || along(d, points[i].record) > along(d, t->extreme[d].record)) {
+                t->extreme[d] = points[i];
+                t->extreme[d].name = place + i;
+            }
+    }
+}
+
 static void note_points(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
     brio_filter f;
     brio_tiles_filter(t, &f);
-    for (size_t i = 0; i < n; i++) {
-        brio_set_point p = points[i];
-        p.name = place + i;
-        brio_tiles_note(t, &f, &p);
+    for (size_t i = 0; i < n; i += TILE_BLOCK)
+        note_extremes(t, points + i, n - i < TILE_BLOCK ? n - i : TILE_BLOCK, place + i);
+    for (size_t i = 0; i < n && t->num_basis < 4; i++) {
+        if (!spans_more(t, &f, points[i].record)) continue;
+        t->basis[t->num_basis] = points[i];
+        t->basis[t->num_basis++].name = place + i;
     }
 }
 

@@ -21,7 +21,9 @@ typedef struct {
 
 _Static_assert(sizeof(tile_head) % 8 == 0, "whole words");
 
-static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '2'};
+static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '3'};
+
+enum { BUFFER = 1 << 13 }; /* tetrahedra of the border */
 
 struct brio_tile_work {
     brio_tiles *t;
@@ -30,8 +32,10 @@ struct brio_tile_work {
     brio_ball_box seen; /* all points in it are known from the beginning */
     brio_tile_source *source;
     brio_completion *completion;
-    size_t num_known; /* from the beginning */
-    brio_store_file out;
+    size_t num_known;            /* from the beginning */
+    brio_store_file out, border; /* the border is copied to the end of `out` */
+    uint32_t (*buffer)[4];       /* what the border has not yet */
+    size_t num_buffer;
     uint64_t *halo;
 };
 
@@ -48,6 +52,70 @@ static brio_status take(void *user, const brio_set_point *known, const uint32_t 
         w->facts->hull_facets += end < count;
         w->facts->tetrahedra += end - i;
         BRIO_FORWARD(brio_store_append(&w->out, vertex + i, (end - i) * sizeof *vertex));
+    }
+    return BRIO_OK;
+}
+
+static bool belongs_here(const writing *w, const brio_set_point *known, const uint32_t *v, int count) {
+    int least = 0;
+    for (int i = 1; i < count; i++)
+        if (brio_lexicographic(known[v[i]].record, known[v[least]].record) < 0) least = i;
+    return v[least] < w->facts->points;
+}
+
+static void name_border(const writing *w, char name[32]) {
+    snprintf(name, 32, "border-%u", w->tile);
+}
+
+static brio_status begin_border(writing *w) {
+    char name[32];
+    name_border(w, name);
+    BRIO_FORWARD(brio_store_create(&w->t->folder, name, &w->border));
+    return BRIO_ALLOC(w->t->ctx, w->buffer, BUFFER);
+}
+
+static void end_border(writing *w) {
+    char name[32];
+    name_border(w, name);
+    brio_store_close(&w->border);
+    brio_store_remove(&w->t->folder, name);
+}
+
+static brio_status flush_border(writing *w) {
+    brio_status status = brio_store_append(&w->border, w->buffer, w->num_buffer * sizeof *w->buffer);
+    w->num_buffer = 0;
+    return status;
+}
+
+/* Takes final tetrahedra of all stars, as a brio_final_fn. */
+static brio_status take_stars(void *user, const brio_set_point *known, const uint32_t (*vertex)[4], size_t count) {
+    writing *w = user;
+    for (size_t i = 0, end; i < count; i = end + 1) { /* up to one of the border */
+        bool here = true, finite = true;
+        for (end = i; end < count; end++) {
+            finite = vertex[end][3] != BRIO_INFINITE;
+            here = belongs_here(w, known, vertex[end], finite ? 4 : 3);
+            if (!finite || !here) break;
+        }
+        w->facts->tetrahedra += end - i;
+        BRIO_FORWARD(brio_store_append(&w->out, vertex + i, (end - i) * sizeof *vertex));
+        if (end == count) break;
+        w->facts->hull_facets += here && !finite;
+        w->facts->border++;
+        memcpy(w->buffer[w->num_buffer++], vertex[end], sizeof *vertex);
+        if (w->num_buffer == BUFFER) BRIO_FORWARD(flush_border(w));
+    }
+    return BRIO_OK;
+}
+
+/* Appends the border to the tile's file. */
+static brio_status copy_border(writing *w) {
+    BRIO_FORWARD(flush_border(w));
+    for (uint64_t done = 0; done < w->facts->border; done += BUFFER) {
+        size_t some = w->facts->border - done < BUFFER ? (size_t)(w->facts->border - done) : BUFFER;
+        size_t size = some * sizeof *w->buffer;
+        BRIO_FORWARD(brio_store_read(&w->border, done * sizeof *w->buffer, w->buffer, size));
+        BRIO_FORWARD(brio_store_append(&w->out, w->buffer, size));
     }
     return BRIO_OK;
 }
@@ -81,7 +149,7 @@ static brio_status list_known(const writing *w, const brio_found *more, brio_fou
 }
 
 static void note_facts(brio_tile *facts, const brio_completion_stats *s, const brio_tile_source *source,
-                       size_t num_known) {
+                       size_t num_known, bool stars) {
     facts->vertices = s->vertices;
     facts->asked = s->asked;
     facts->found = s->found;
@@ -92,6 +160,7 @@ static void note_facts(brio_tile *facts, const brio_completion_stats *s, const b
     facts->most_tetrahedra = s->most_tetrahedra;
     facts->rounds = (uint32_t)s->rounds;
     facts->finished = 1;
+    facts->stars = stars;
 }
 
 static brio_status write_rest(writing *w, const uint8_t *is_vertex) {
@@ -103,7 +172,8 @@ static brio_status write_rest(writing *w, const uint8_t *is_vertex) {
     memcpy(head.magic, MAGIC, sizeof head.magic);
     snprintf(name, sizeof name, "tile-%u", w->tile);
     BRIO_FORWARD(brio_store_append(f, w->halo, w->facts->halo * sizeof *w->halo));
-    BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points));
+    if (w->t->stars) BRIO_FORWARD(copy_border(w));
+    BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points)); /* last: all else is whole words */
     head.hash = f->hash;
     head.own = brio_tiles_hash(head.key, &head, sizeof head);
     BRIO_FORWARD(brio_store_write(f, 0, &head, sizeof head));
@@ -132,7 +202,9 @@ static brio_status check_finished(brio_tiles *t, uint32_t tile, const brio_store
         head->key != t->key || head->tile != tile || head->points != t->tile[tile].points)
         return BRIO_OK;
     const brio_tile *facts = &head->facts;
-    uint64_t size = facts->tetrahedra * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t) + head->points;
+    uint64_t size =
+        (facts->tetrahedra + facts->border) * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t) + head->points;
+    if (facts->stars < t->stars) return BRIO_OK;
     return f->size == sizeof *head + size ? brio_store_check(f, sizeof *head, head->hash, is_good) : BRIO_OK;
 }
 
@@ -161,6 +233,7 @@ static brio_status begin(brio_tile_work *w, const brio_found *more) {
     BRIO_TRY(brio_store_create(&t->folder, name, &w->out));
     BRIO_TRY(brio_store_append(&w->out, &none, sizeof none));
     w->out.hashes = t->key != 0;
+    if (t->stars) BRIO_TRY(begin_border(w));
     BRIO_TRY(brio_tile_source_new(t, w->tile, (uint32_t)t->num_nodes - 1, &w->source));
     BRIO_TRY(list_known(w, more, &list));
     w->num_known = list.count;
@@ -170,9 +243,9 @@ static brio_status begin(brio_tile_work *w, const brio_found *more) {
                                  .weighted = t->weighted,
                                  .all = t->all,
                                  .home = &w->seen,
-                                 .final = take,
+                                 .final = t->stars ? take_stars : take,
                                  .final_user = w,
-                                 .least_only = true};
+                                 .least_only = !t->stars};
     status = brio_completion_new(t->ctx, &task, &w->completion);
 done:
     brio_release(t->ctx, list.point);
@@ -191,7 +264,7 @@ brio_status brio_tile_begin(brio_tiles *t, uint32_t tile, const brio_found *more
     t->stats.resumed += found;
     if (found) goto done;
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, w, 1));
-    w->t = t, w->tile = tile, w->facts = facts, w->before = *facts, w->out.file = -1;
+    w->t = t, w->tile = tile, w->facts = facts, w->before = *facts, w->out.file = w->border.file = -1;
     if (seen)
         w->seen = *seen;
     else
@@ -211,6 +284,8 @@ void brio_tile_end(brio_tile_work *w) {
     brio_completion_delete(w->completion);
     brio_tile_source_free(w->source);
     brio_store_close(&w->out);
+    if (w->border.file >= 0) end_border(w);
+    brio_release(ctx, w->buffer);
     brio_release(ctx, w->halo);
     brio_release(ctx, w);
 }
@@ -229,7 +304,7 @@ brio_status brio_tile_finish(brio_tile_work *w) {
     BRIO_TRY(BRIO_ALLOC_ZERO(w->t->ctx, is_vertex, w->facts->points + 1));
     brio_completion_vertices(w->completion, is_vertex);
     BRIO_TRY(list_halo(w));
-    note_facts(w->facts, brio_completion_facts(w->completion), w->source, w->num_known);
+    note_facts(w->facts, brio_completion_facts(w->completion), w->source, w->num_known, w->t->stars);
     status = write_rest(w, is_vertex);
 done:
     if (status != BRIO_OK) w->facts->finished = 0;
@@ -296,26 +371,41 @@ void brio_tile_result_free(brio_tiles *t, brio_tile_result *r) {
     *r = (brio_tile_result){0};
 }
 
-brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, brio_tile_result *out) {
+brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, brio_tile_result *out) {
     const brio_tile *facts = &t->tile[tile];
     brio_store_file f = {.file = -1};
     brio_status status = BRIO_OK;
     char name[32];
-    uint64_t at = sizeof(tile_head);
+    uint64_t tetrahedra = facts->tetrahedra * sizeof *out->tetrahedra, halo = facts->halo * sizeof *out->halo;
+    uint64_t border = facts->border * 4 * sizeof(uint32_t);
     *out = (brio_tile_result){0};
     snprintf(name, sizeof name, "tile-%u", tile);
-    BRIO_TRY(BRIO_ALLOC(t->ctx, out->tetrahedra, facts->tetrahedra + 1));
-    BRIO_TRY(BRIO_ALLOC(t->ctx, out->halo, facts->halo + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, out->is_vertex, facts->points + 1));
+    if (wants_all) BRIO_TRY(BRIO_ALLOC(t->ctx, out->tetrahedra, facts->tetrahedra + 1));
+    if (wants_all) BRIO_TRY(BRIO_ALLOC(t->ctx, out->halo, facts->halo + 1));
     if (!facts->points) goto done;
     BRIO_TRY(brio_store_open(&t->folder, name, &f));
-    BRIO_TRY(brio_store_read(&f, at, out->tetrahedra, facts->tetrahedra * sizeof *out->tetrahedra));
-    at += facts->tetrahedra * sizeof *out->tetrahedra;
-    BRIO_TRY(brio_store_read(&f, at, out->halo, facts->halo * sizeof *out->halo));
-    at += facts->halo * sizeof *out->halo;
-    BRIO_TRY(brio_store_read(&f, at, out->is_vertex, facts->points));
+    BRIO_TRY(brio_store_read(&f, sizeof(tile_head) + tetrahedra + halo + border, out->is_vertex, facts->points));
+    if (!wants_all) goto done;
+    BRIO_TRY(brio_store_read(&f, sizeof(tile_head), out->tetrahedra, tetrahedra));
+    BRIO_TRY(brio_store_read(&f, sizeof(tile_head) + tetrahedra, out->halo, halo));
 done:
     brio_store_close(&f);
     if (status != BRIO_OK) brio_tile_result_free(t, out);
+    return status;
+}
+
+brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]) {
+    const brio_tile *facts = &t->tile[tile];
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    char name[32];
+    uint64_t at = sizeof(tile_head) + facts->tetrahedra * 4 * sizeof(uint32_t) + facts->halo * sizeof(uint64_t);
+    if (!facts->border) return BRIO_OK;
+    snprintf(name, sizeof name, "tile-%u", tile);
+    BRIO_TRY(brio_store_open(&t->folder, name, &f));
+    BRIO_TRY(brio_store_read(&f, at, border, facts->border * sizeof *border));
+done:
+    brio_store_close(&f);
     return status;
 }

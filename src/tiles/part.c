@@ -36,6 +36,12 @@ done:
     return status;
 }
 
+brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *halo, brio_set_point *points) {
+    const brio_tile *facts = &t->tile[tile];
+    BRIO_FORWARD(brio_tile_points(t, facts->place, facts->points, points));
+    return read_halo(t, halo, facts->halo, points + facts->points);
+}
+
 /* Gives the vertices of the tetrahedra consecutive numbers, in the order of the points. Returns how many there are. */
 static size_t number_vertices(brio_tile_result *r, size_t num_tetrahedra, size_t n, uint32_t *number) {
     size_t used = 0;
@@ -71,7 +77,7 @@ brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_
     brio_status status = BRIO_OK;
     size_t n = facts->points + facts->halo;
     if (!facts->tetrahedra) return BRIO_OK;
-    BRIO_TRY(brio_tile_result_read(t, tile, &result));
+    BRIO_TRY(brio_tile_result_read(t, tile, true, &result));
     for (size_t i = 0; i < facts->tetrahedra; i++)
         for (int k = 0; k < 4; k++)
             BRIO_REQUIRE(t->ctx, result.tetrahedra[i][k] < n, BRIO_ERR_OPEN, "%s/tile-%u was changed from outside",

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "tiles/work.h"
 #include "triangulation/triangulation.h"
 #include <assert.h>
@@ -15,6 +16,7 @@
 #include <string.h>
 
 enum { AT_ONCE = 1 << 11, LEAST_AT_ONCE = 1 << 5, ALL_AT_ONCE = 1 << 20 }; /* vertices. Chosen */
+enum { HASHES_A_THREAD = 1 << 14 };
 
 /* A vertex of a run. */
 typedef struct {
@@ -63,7 +65,7 @@ static brio_status write_run(brio_tiles *t, uint32_t tile) {
     char name[32];
     snprintf(name, sizeof name, "run-%u", tile);
     BRIO_TRY(brio_store_create(&t->folder, name, &f));
-    BRIO_TRY(brio_tile_result_read(t, tile, &result));
+    BRIO_TRY(brio_tile_result_read(t, tile, false, &result));
     BRIO_TRY(BRIO_ALLOC(t->ctx, points, facts->points + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, row, facts->points + 1));
     BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
@@ -263,25 +265,47 @@ done:
     return status;
 }
 
+typedef struct {
+    const brio_tile_result *result;
+    const uint64_t *rank;
+    size_t num_ranks;
+    uint64_t sum;  /* atomic */
+    int is_broken; /* atomic */
+} hashing;
+
+static void hash_some(void *user, size_t begin, size_t end, int thread) {
+    hashing *h = user;
+    uint64_t sum = 0;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const uint32_t *v = h->result->tetrahedra[i];
+        uint64_t r[4];
+        for (int k = 0; k < 4; k++) {
+            if (v[k] >= h->num_ranks) {
+                __atomic_store_n(&h->is_broken, 1, __ATOMIC_RELAXED);
+                return;
+            }
+            r[k] = h->rank[v[k]];
+        }
+        sum += brio_tetrahedron_hash(r);
+    }
+    __atomic_add_fetch(&h->sum, sum, __ATOMIC_RELAXED);
+}
+
 static brio_status add_hashes(brio_tiles *t, uint32_t tile, uint64_t *sum) {
     const brio_tile *facts = &t->tile[tile];
     brio_tile_result result = {0};
     uint64_t *rank = NULL;
     brio_status status = BRIO_OK;
     size_t n = facts->points + facts->halo;
-    BRIO_TRY(brio_tile_result_read(t, tile, &result));
+    BRIO_TRY(brio_tile_result_read(t, tile, true, &result));
     BRIO_TRY(BRIO_ALLOC(t->ctx, rank, n + 1));
     BRIO_TRY(read_ranks(t, tile, &result, rank));
-    for (size_t i = 0; i < facts->tetrahedra; i++) {
-        uint64_t r[4];
-        for (int k = 0; k < 4; k++) {
-            BRIO_REQUIRE(t->ctx, result.tetrahedra[i][k] < n, BRIO_ERR_OPEN, "%s/tile-%u was changed from outside",
-                         t->folder.path, tile);
-            r[k] = rank[result.tetrahedra[i][k]];
-        }
-        *sum += brio_tetrahedron_hash(r);
-        BRIO_TRY(brio_look(t->ctx, 1));
-    }
+    hashing h = {.result = &result, .rank = rank, .num_ranks = n};
+    int threads = brio_threads(t->ctx, facts->tetrahedra, HASHES_A_THREAD);
+    BRIO_TRY(brio_for(t->ctx, threads, facts->tetrahedra, hash_some, &h));
+    BRIO_REQUIRE(t->ctx, !h.is_broken, BRIO_ERR_OPEN, "%s/tile-%u was changed from outside", t->folder.path, tile);
+    *sum += h.sum;
 done:
     brio_tile_result_free(t, &result);
     brio_release(t->ctx, rank);

@@ -21,6 +21,8 @@ enum {
     ENOUGH = 12,         /* points in conflict that end a search. Chosen: tiles.md */
     ENOUGH_OF_BLOCK = 4, /* of one block */
     PATIENCE = 2,
+    MOST_TIES = 4096, /* of a thread's comparisons with samples */
+    MOST_TIES_A_HIT = 16,
     BALLS_A_THREAD = 64
 };
 
@@ -41,6 +43,7 @@ typedef struct {
 typedef struct {
     brio_filter filter;
     brio_found found;
+    uint64_t ties, hits;  /* of samples compared: those that are not in conflict by a hair, those that are */
     uint32_t *now, *next; /* nodes */
     brio_tile_asked *asked;
     size_t num_asked, asked_capacity;
@@ -55,7 +58,11 @@ struct brio_tile_source {
     uint64_t num_read;
     uint32_t *read; /* nodes whose blocks are in memory */
     size_t read_capacity;
-    brio_mutex lock; /* of what is above */
+    uint32_t round;
+    uint32_t *parent; /* of each node; TILE_NONE of the root */
+    uint32_t *left;   /* of each node: blocks below that are BLOCK_NEW; atomic */
+    uint32_t *last;   /* of each node: the last round in which a block below became BLOCK_ADDED; atomic */
+    brio_mutex lock;  /* of what is above */
     search *search;
     int threads;
     brio_status status; /* of the threads; atomic */
@@ -68,6 +75,27 @@ void brio_tiles_filter(const brio_tiles *t, brio_filter *f) {
     double extent[3], heaviest = fabs(t->all.weight), lightest = isfinite(t->lightest) ? t->lightest : 0;
     for (int k = 0; k < 3; k++) extent[k] = t->all.high[k] - t->all.low[k];
     brio_filter_set(f, extent, t->weighted ? heaviest + fabs(lightest) : 0, t->weighted);
+}
+
+/* Sets the parents of a node and of those below, and how many blocks of other tiles each has. Roots of tiles have copies
+ * that are in no tree, or in that of another root. A node of another process counts as a block that is never read: what
+ * is above it is never gone past. */
+static uint32_t count_below(brio_tile_source *s, uint32_t at, uint32_t parent) {
+    const brio_tile_node *node = &s->t->node[at];
+    uint32_t left = node->children == 0;
+    s->parent[at] = parent;
+    if (node->tile == s->tile) return 0;
+    for (uint32_t c = node->first; c < node->first + node->children; c++) left += count_below(s, c, at);
+    return s->left[at] = left;
+}
+
+static brio_status count_blocks(brio_tile_source *s) {
+    const brio_tiles *t = s->t;
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, s->parent, t->num_nodes + 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, s->left, t->num_nodes + 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, s->last, t->num_nodes + 1));
+    count_below(s, s->root, TILE_NONE);
+    return BRIO_OK;
 }
 
 brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, brio_tile_source **out) {
@@ -83,6 +111,7 @@ brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, br
     s->threads = brio_threads(t->ctx, 1 << 20, BALLS_A_THREAD);
     BRIO_TRY(brio_store_open(&t->folder, "points", &s->points));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->cache, t->num_nodes + 1));
+    BRIO_TRY(count_blocks(s));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->search, s->threads));
     for (int i = 0; i < s->threads; i++) {
         brio_tiles_filter(t, &s->search[i].filter);
@@ -111,6 +140,9 @@ void brio_tile_source_free(brio_tile_source *s) {
     brio_release(ctx, s->read);
     brio_release(ctx, s->asked);
     brio_release(ctx, s->cache);
+    brio_release(ctx, s->parent);
+    brio_release(ctx, s->left);
+    brio_release(ctx, s->last);
     brio_release(ctx, s);
 }
 
@@ -159,6 +191,13 @@ static brio_set_point point_of(const block *b, uint32_t i) {
     return (brio_set_point){{b->x[i], b->y[i], b->z[i], b->w[i]}, b->place + i};
 }
 
+/* Returns whether a ball with a square may take a point. */
+static bool is_near(const brio_ball *ball, const double *record) {
+    double limit = ball->square + fabs(ball->square) * SLACK, square = 0;
+    for (int k = 0; k < 3; k++) square += (record[k] - ball->centre[k]) * (record[k] - ball->centre[k]);
+    return !(square * (1 - SLACK) > limit + record[3] + fabs(record[3]) * SLACK);
+}
+
 /* Lists the points that a ball may take. Returns their number. */
 static uint32_t list_near(const brio_ball *ball, const block *b, uint32_t list[TILE_BLOCK]) {
     double limit = ball->square + fabs(ball->square) * SLACK;
@@ -176,10 +215,15 @@ static uint32_t list_near(const brio_ball *ball, const block *b, uint32_t list[T
     return n;
 }
 
-static brio_status add_whole(search *se, block *b) {
+/* Adds all points of a block. Nodes all of whose blocks were added are not gone down to any more. */
+static brio_status add_whole(brio_tile_source *s, search *se, block *b, uint32_t node) {
     int expected = BLOCK_NEW;
     if (!__atomic_compare_exchange_n(&b->state, &expected, BLOCK_ADDED, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
         return BRIO_OK;
+    for (uint32_t n = node; n != TILE_NONE; n = s->parent[n]) {
+        __atomic_store_n(&s->last[n], s->round, __ATOMIC_RELAXED);
+        __atomic_sub_fetch(&s->left[n], 1, __ATOMIC_RELEASE);
+    }
     for (uint32_t i = 0; i < b->points; i++) {
         brio_set_point p = point_of(b, i);
         BRIO_FORWARD(brio_found_add(&se->found, &p));
@@ -195,7 +239,10 @@ static bool is_vertex(const brio_ball *ball, const double *record) {
 
 /* Adds points of a block.   *hits  grows by those in conflict.   *unsure  becomes true if the block has points that
  * were added in this round and not compared: they end no search, for none need be in conflict. */
-static brio_status search_block(search *se, const brio_ball *ball, block *b, int *hits, bool *unsure) {
+static brio_status search_block(brio_tile_source *s, search *se, const brio_ball *ball, uint32_t node, int *hits,
+                                bool *unsure) {
+    block *b;
+    BRIO_FORWARD(find_block(s, node, &b));
     uint32_t list[TILE_BLOCK], wasted = 0;
     int state = __atomic_load_n(&b->state, __ATOMIC_RELAXED), before = *hits;
     *unsure |= state == BLOCK_ADDED;
@@ -212,22 +259,40 @@ static brio_status search_block(search *se, const brio_ball *ball, block *b, int
     }
     if (!wasted || __atomic_add_fetch(&b->wasted, wasted, __ATOMIC_RELAXED) <= PATIENCE * b->points) return BRIO_OK;
     *unsure = true;
-    return add_whole(se, b);
+    return add_whole(s, se, b, node);
 }
 
 /* --- one ball --- */
 
+/* Tests a node's sample. Where points lie nearly on the balls, all comparisons are exact and in vain: after many of
+ * them, samples are not tested any more. */
+static brio_status try_sample(search *se, const brio_ball *ball, const brio_set_point *sample, int *hits) {
+    bool sure = ball->infinite || !(ball->square < INFINITY);
+    if (se->ties > MOST_TIES && se->ties > MOST_TIES_A_HIT * se->hits) return BRIO_OK;
+    if (!sure && !is_near(ball, sample->record)) return BRIO_OK;
+    if (!brio_ball_takes(&se->filter, ball, sample->record)) {
+        se->ties += !sure;
+        return BRIO_OK;
+    }
+    ++*hits;
+    se->hits++;
+    return brio_found_add(&se->found, sample);
+}
+
 /* Goes from a node that the ball meets to its children. */
 static brio_status descend(brio_tile_source *s, search *se, const brio_ball *ball, const brio_tile_node *node,
-                           int *hits) {
+                           int *hits, bool *unsure) {
     for (uint32_t c = node->first; c < node->first + node->children; c++) {
         const brio_tile_node *child = &s->t->node[c];
-        if (child->tile == s->tile || !brio_ball_meets(&se->filter, ball, &child->box)) continue;
+        if (child->tile == s->tile) continue;
+        bool is_whole = !__atomic_load_n(&s->left[c], __ATOMIC_ACQUIRE);
+        if (is_whole && __atomic_load_n(&s->last[c], __ATOMIC_RELAXED) < s->round) continue;
+        if (!brio_ball_meets(&se->filter, ball, &child->box)) continue;
+        *unsure |= is_whole;
+        if (is_whole) continue;
         BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->next, se->next_capacity, se->num_next + 1));
         se->next[se->num_next++] = c;
-        if (*hits >= ENOUGH || !brio_ball_takes(&se->filter, ball, child->sample.record)) continue;
-        ++*hits;
-        BRIO_FORWARD(brio_found_add(&se->found, &child->sample));
+        if (*hits < ENOUGH) BRIO_FORWARD(try_sample(se, ball, &child->sample, hits));
     }
     return BRIO_OK;
 }
@@ -247,7 +312,8 @@ static brio_status search_ball(brio_tile_source *s, search *se, uint32_t number)
     int hits = 0;
     bool unsure = false;
     se->num_next = 0;
-    BRIO_FORWARD(descend(s, se, ball, &(brio_tile_node){.first = s->root, .children = 1}, &hits));
+    const brio_tile_node above = {.first = s->root, .children = 1};
+    BRIO_FORWARD(descend(s, se, ball, &above, &hits, &unsure));
     while (se->num_next > 0 && hits < ENOUGH) {
         uint32_t *swap = se->now;
         size_t capacity = se->now_capacity;
@@ -255,15 +321,12 @@ static brio_status search_ball(brio_tile_source *s, search *se, uint32_t number)
         se->next = swap, se->next_capacity = capacity, se->num_next = 0;
         for (size_t i = 0; i < se->num_now && hits < ENOUGH; i++) {
             const brio_tile_node *node = &s->t->node[se->now[i]];
-            block *b;
-            if (node->children) {
-                BRIO_FORWARD(descend(s, se, ball, node, &hits));
-            } else if (node->tile == TILE_FAR) {
+            if (node->children)
+                BRIO_FORWARD(descend(s, se, ball, node, &hits, &unsure));
+            else if (node->tile == TILE_FAR)
                 BRIO_FORWARD(note_far(s, se, number, node->first, num_asked));
-            } else {
-                BRIO_FORWARD(find_block(s, se->now[i], &b));
-                BRIO_FORWARD(search_block(se, ball, b, &hits, &unsure));
-            }
+            else
+                BRIO_FORWARD(search_block(s, se, ball, se->now[i], &hits, &unsure));
         }
     }
     if (hits >= ENOUGH) se->num_asked = num_asked;
@@ -287,6 +350,7 @@ static brio_status collect_asked(brio_tile_source *s, search *se) {
 }
 
 void brio_tile_source_round(brio_tile_source *s) {
+    s->round++;
     for (uint64_t i = 0; i < s->num_read; i++) {
         block *b = s->cache[s->read[i]];
         if (b->state == BLOCK_ADDED) b->state = BLOCK_KNOWN;

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/versioned.h"
+#include "platform/folder.h"
 #include "platform/thread.h"
 #include "tiles/work.h"
 #include <inttypes.h>
@@ -14,6 +15,8 @@ enum { TILES = 8, MOST_TILES = 1 << 16 };
 
 /* Bytes of memory for each point of the largest tile: its triangulation with a halo. Measured: tiles.md. */
 static const double BYTES_A_POINT = 520;
+/* Bytes of the disk for each point, when the ranks are made: points, tetrahedra, runs. Measured: tiles.md. */
+static const double DISK_A_POINT = 195;
 
 /* --- life --- */
 
@@ -41,8 +44,10 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     t->raw.file = -1;
     t->folder.lock = -1;
     t->num_tiles = o.tiles ? o.tiles : TILES;
+    t->stars = o.stars != 0;
     t->key = o.key ? brio_hash(o.key, t->num_tiles) : 0;
     t->stats.size = sizeof t->stats;
+    t->cells.size = sizeof t->cells;
     t->stats.dimension = -1;
     BRIO_TRY(begin_folder(t, o.scratch));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->tile, t->num_tiles));
@@ -266,6 +271,17 @@ brio_status brio_tiles_require_memory(brio_tiles *t, int at_once) {
     return BRIO_OK;
 }
 
+/* Refuses points for which the disk has no room: before the work, not hours after. */
+static brio_status require_disk(brio_tiles *t) {
+    uint64_t room;
+    double n = (double)t->stats.points, need = n * (DISK_A_POINT - sizeof(brio_set_point));
+    if (!brio_free_bytes(t->folder.path, &room)) return BRIO_OK;
+    BRIO_EXPECT(t->ctx, need <= (double)room, BRIO_ERR_WRITE,
+                "%s: %.0f points need about %.0f MB more on this disk, which has room for %.0f MB", t->folder.path, n,
+                need / 1e6, (double)room / 1e6);
+    return BRIO_OK;
+}
+
 void brio_tiles_add_facts(brio_tiles *t) {
     brio_tiles_stats *s = &t->stats;
     uint64_t positions = 0;
@@ -311,6 +327,7 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     BRIO_REQUIRE(ctx, !t->has_result, BRIO_ERR_ARGUMENT, "the tiles are triangulated already");
     BRIO_REQUIRE(ctx, !t->torn, BRIO_ERR_ARGUMENT, "an earlier run ended while it divided the points: add them anew");
     if (!t->has_points) {
+        BRIO_TRY(require_disk(t));
         t->torn = true;
         brio_progress_part(ctx, bar, 0, 0.05);
         BRIO_TRY(brio_tiles_divide(t));

@@ -47,13 +47,16 @@ typedef struct {
         halo; /* of the finished tile; halo: points of other tiles that it knew */
     uint64_t asked, found, sampled, read, triangulated, most_points, most_tetrahedra;
     uint32_t rounds, finished; /* finished: 1 */
+    uint64_t border;           /* tetrahedra of its stars that belong to others, and infinite ones; 0 without stars */
+    uint64_t stars;            /* 1: the border is in its file */
 } brio_tile;
 
 struct brio_tiles {
     brio_context *ctx;
     brio_store_folder folder;
     brio_tiles_stats stats;
-    bool weighted, has_points, has_result, has_ranks;
+    brio_tiles_cells_stats cells;
+    bool weighted, has_points, has_result, has_ranks, stars;
     bool torn; /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
     uint64_t points_hash; /* of the file of points */
@@ -202,17 +205,24 @@ void brio_tile_end(brio_tile_work *w);
 
 /** --- results --- */
 
-/** The file of a finished tile: its tetrahedra, the places of the points of other tiles that it knew, and a byte for
- *  each of its points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or with the
- *  tile's number of points subtracted, rows of the halo. */
+/** The file of a finished tile: its tetrahedra, the places of the points of other tiles that it knew, the border, and a
+ *  byte for each of its points that says whether it is a vertex. A tetrahedron's vertices are points of the tile, or
+ *  with the tile's number of points subtracted, rows of the halo. Infinite tetrahedra, which only the border has, have
+ *  BRIO_INFINITE last. */
 typedef struct {
     uint32_t (*tetrahedra)[4];
     uint64_t *halo;
     uint8_t *is_vertex;
 } brio_tile_result;
 
-brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, brio_tile_result *out);
+/** Reads it.   wants_all  false: only which points are vertices. */
+brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, brio_tile_result *out);
 void brio_tile_result_free(brio_tiles *t, brio_tile_result *r);
+/** Reads the border of a tile.   border  as many rows as the tile's facts say. */
+brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]);
+/** Reads the points of a tile, and behind them those of its halo. Names become indices.
+ *  points  as many as the tile's facts say, both. */
+brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *halo, brio_set_point *points);
 
 /** A function that reads the points of a halo, in its order. */
 typedef brio_status (*brio_halo_fn)(void *user, const uint64_t *halo, size_t n, brio_set_point *points);

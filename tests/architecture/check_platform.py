@@ -16,7 +16,7 @@ HEADERS = re.compile(r"^\s*#\s*include\s*<((?:sys/|linux/|mach/)[^>]*|(?:aio|all
                      r"|malloc|poll|process|pthread|pwd|sched|semaphore|signal|spawn|termios|threads|time|ucontext|unistd|windows|xlocale)\.h)>", re.M)
 CALLS = re.compile(r"(?<![\w.>])(open|openat|close|read|write|pread|pwrite|lseek|fstat|stat|lstat|access|unlink|rename|fsync|ftruncate|poll|ioctl"
                    r"|isatty|fileno|fdopen|fopen|mmap|munmap|mremap|madvise|sysconf|getpid|fork|nanosleep|usleep|clock_gettime|signal|sigaction"
-                   r"|memmem|stpcpy|strcasestr|strsep|asprintf|getline|secure_getenv|newlocale|setlocale|uselocale)\s*\(")
+                   r"|open_memstream|fmemopen|feenableexcept|memmem|stpcpy|strcasestr|strsep|asprintf|getline|secure_getenv|newlocale|setlocale|uselocale)\s*\(")
 OWN = {"cli/pages/pages.c"}  # runs where brio is built, and writes what the builder names
 COMMENT_OR_TEXT = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', re.S)
 DEFINED = re.compile(r"^static [^;{}()]*?\b(\w+)\(", re.M)

@@ -75,6 +75,28 @@ class Periodic(CliTest):
         other = self.facts("delaunay", self.xyz("b.xyz", moved), "--cell", "1,0,0,7,1,0,-3,5,1")
         self.assertEqual([first[k] for k in ("checksum", "tetrahedra")], [other[k] for k in ("checksum", "tetrahedra")])
 
+    def test_places_in_any_cell(self):
+        """The nearest vertex against all translates; places of one class have one tetrahedron, and shifts that differ as they do."""
+        points, places = self.points(40), [(x - 1.5, 3 * y, z + 4) for x, y, z in self.points(50, seed=3)]
+        moved = [(x + 2, y - 3, z + 1) for x, y, z in places]
+        out, at = self.path("out.csv"), self.xyz("at.xyz", places + moved)
+        facts = self.facts("locate", self.xyz("a.xyz", points), "--at", at, "--cell", "1,1,1", "-o", out)
+        self.assertEqual((facts["inside"], facts["outside"]), (100, 0))
+        found = rows(out)
+        for first, other, place in zip(found[:50], found[50:], places):
+            self.assertEqual(first["tetrahedron"], other["tetrahedron"])
+            shifts = [tuple(row[name + k] for k in "abc") for row in (first, other) for name in ("shift_", "vertex_shift_")]
+            for i in range(2):
+                self.assertEqual(tuple(b - a for a, b in zip(shifts[i], shifts[2 + i])), (2, -3, 1))
+            distance = lambda p, s: sum((x + d - q) ** 2 for x, d, q in zip(p, s, place))
+            least = min(sum(min((x - q + d) % 1, (q - x - d) % 1) ** 2 for x, d, q in zip(p, (0, 0, 0), place)) for p in points)
+            self.assertAlmostEqual(distance(points[int(first["vertex"])], shifts[1]), least, 12)
+        slab = self.facts("locate", self.path("a.xyz"), "--at", at, "--cell", "1,1,1", "--periodic", "xy", "-o", out)
+        self.assertEqual((slab["inside"], slab["outside"]), (0, 100))
+        self.assertEqual({row["tetrahedron"] for row in rows(out)}, {-1})
+        self.usage("--plane: not in space that repeats", "locate", self.path("a.xyz"), "--at", at, "--cell", "1,1,1", "--plane", "xy",
+                   "-o", out)
+
     def test_output_names_points_and_translates(self):
         points, out = self.xyz("a.xyz", self.points(20)), self.path("out.vtu")
         facts = self.facts("delaunay", points, "--cell", "1,1,1", "-o", out)

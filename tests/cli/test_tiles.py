@@ -1,8 +1,9 @@
-"""brio delaunay --tiles: the same report as without, files for each tile, runs that are killed and resumed."""
+"""--tiles: the same report as without, and the same cells; files for each tile, runs that are killed and resumed."""
 
 import os
 import random
 import re
+import resource
 import signal
 import subprocess
 import time
@@ -23,6 +24,10 @@ class Tiles(CliTest):
                 f.write(",".join(map(str, row)) + "\n")
         return self.path(name)
 
+    def bytes_of(self, name):
+        with open(self.path(name), "rb") as f:
+            return f.read()
+
     def scratch(self):
         os.makedirs(self.path("scratch"), exist_ok=True)
         return self.path("scratch")
@@ -42,6 +47,46 @@ class Tiles(CliTest):
         self.same(self.path("w.csv"), "--unweighted")
         self.same(self.path("a.csv"), "--weights-mod", "-9")
 
+    def cells(self, *arguments, tiles=3):
+        """Compares tables of cells and of faces, and the report."""
+        reports = {}
+        for name, more in (("whole", ()), ("tiled", ("--tiles", str(tiles), "--scratch", self.scratch()))):
+            for kind in ("csv", "npy"):
+                reports[name] = self.facts("voronoi", *arguments, *more, "-o", self.path("%s.%s" % (name, kind)),
+                                           "--faces", self.path(name + "-faces.csv"))
+        for end in (".csv", ".npy", "-faces.csv"):
+            with open(self.path("whole" + end), "rb") as a, open(self.path("tiled" + end), "rb") as b:
+                self.assertEqual(a.read(), b.read(), end)
+        for key in reports["whole"]:
+            if key not in ("output", "seconds", "peak_bytes", "warnings"):  # with tiles, duplicates are not outside
+                self.assertEqual(reports["whole"][key], reports["tiled"][key], key)
+        self.assertEqual(reports["tiled"]["tiles"], tiles)
+        self.assertEqual(os.listdir(self.scratch()), [])
+        return reports["tiled"]
+
+    def test_cells_are_those_without_tiles(self):
+        cloud = self.rows("a.csv", 2000)
+        self.assertEqual(self.cells(cloud)["cells"], 2000)
+        box = self.cells(cloud, "--box", "-1,-1,-1,1,1.5,2", "--weights-mod", "-9", tiles=7)
+        self.assertLess(box["box_error"], 1e-12)
+        self.assertTrue(box["warnings"])
+        self.assertGreater(self.cells(self.rows("w.csv", 2000, weight=True))["hidden"], 0)
+        with open(self.path("grid.xyz"), "w", encoding="ascii") as f:  # ties everywhere, and duplicates
+            f.writelines("%d %d %d\n" % (x, y, z % 6) for x in range(7) for y in range(7) for z in range(7))
+        self.assertEqual(self.cells(self.path("grid.xyz"), tiles=4)["duplicates"], 49)
+
+    def test_what_cells_in_tiles_have_not_is_refused(self):
+        cloud, folder = self.rows("a.csv", 20), self.scratch()
+        self.usage("writes cells to .npy and .csv", "voronoi", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path("x.vtu"))
+        self.usage("--cell: not with --tiles", "voronoi", cloud, "--cell", "9,9,9", "--tiles", "2", "--scratch", folder, "-o", self.path("x.csv"))
+        self.usage("--tiles needs --scratch", "voronoi", cloud, "--tiles", "2", "-o", self.path("x.csv"))
+        with open(self.path("flat.xyz"), "w", encoding="ascii") as f:
+            f.writelines("%d %d 0\n" % (i, i * i) for i in range(9))
+        run = self.expect(3, "voronoi", self.path("flat.xyz"), "--tiles", "2", "--scratch", folder, "-o", self.path("x.csv"))
+        self.assertIn("without tiles only", run.err)
+        self.assertFalse(os.path.exists(self.path("x.csv")))
+        self.assertEqual(os.listdir(folder), [])
+
     def test_standard_input(self):
         with open(self.rows("a.csv", 500), "rb") as f:
             data = f.read()
@@ -58,6 +103,37 @@ class Tiles(CliTest):
         self.assertEqual(pieces, ["out/%d.vtu" % i for i in range(3)])
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.vtu", "1.vtu", "2.vtu"])
         self.assertEqual(sum(self.facts("info", self.path(piece))["tetrahedra"] for piece in pieces), facts["tetrahedra"])
+
+    def test_an_older_output_was_lost_when_a_run_failed(self):
+        cloud, index = self.rows("a.csv", 800), self.path("a&b.pvtu")
+        command = ("delaunay", cloud, "--threads", "1", "--tiles", "3", "--scratch", self.scratch(), "-o", index)
+
+        def pieces():
+            names = [piece.get("Source") for piece in xml.etree.ElementTree.parse(index).iter("Piece")]
+            return {name: self.bytes_of(name) for name in names}
+
+        self.facts(*command)
+        before = pieces()
+        self.assertEqual(list(before), ["a&b/%d.vtu" % i for i in range(3)])
+        os.mkdir(self.path("a&b.part"))
+        with open(self.path("a&b.part/0.vtu"), "w", encoding="ascii") as f:
+            f.write("left by a run that was killed")
+        size = max(map(len, before.values()))
+        self.assertLess(len(before["a&b/0.vtu"]), size)
+        run = subprocess.run([BRIO, *command, "--quiet"], stderr=subprocess.PIPE, check=False, preexec_fn=lambda: (
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN), resource.setrlimit(resource.RLIMIT_FSIZE, (size - 1,) * 2)))
+        self.assertEqual(run.returncode, 6, run.stderr)
+        self.assertEqual(pieces(), before)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["a&b", "a&b.pvtu", "a.csv", "scratch"])
+        for name in "a&b-1", "a&b":
+            self.facts(*command)
+            self.assertEqual(list(pieces().values()), list(before.values()))
+            self.assertEqual(sorted(os.listdir(self.folder)), sorted([name, "a&b.pvtu", "a.csv", "scratch"]))
+        os.mkdir(self.path("b"))
+        with open(self.path("b/0.vtu"), "w", encoding="ascii") as f:
+            f.write("no output of this index")
+        self.facts(*command[:-1], self.path("b.pvtu"))
+        self.assertEqual(os.listdir(self.path("b")), ["0.vtu"])
 
     def test_the_index_was_no_xml(self):
         cloud = self.rows("a.csv", 300)
@@ -129,6 +205,44 @@ class Tiles(CliTest):
         if process.wait() != -signal.SIGKILL:
             self.skipTest("the run was over before it could be killed")
         return command
+
+    def test_runs_killed_at_random_moments_go_on(self):
+        cloud = self.rows("a.csv", 5000)
+        command = ("delaunay", cloud, "--tiles", "3", "--scratch", self.scratch(), "-o", self.path("x.pvtu"))
+        begin = time.monotonic()
+        plain = self.facts(*command)["checksum"]
+        seconds = time.monotonic() - begin
+        rng = random.Random(3)
+        for _ in range(50 if os.environ.get("BRIO_LONG") else 3):
+            process = subprocess.Popen([BRIO, *command, "--quiet"], stdout=subprocess.DEVNULL)
+            time.sleep(rng.random() * seconds)
+            process.kill()
+            process.wait()
+            pieces = xml.etree.ElementTree.parse(self.path("x.pvtu")).iter("Piece")
+            self.assertTrue(all(os.path.exists(self.path(piece.get("Source"))) for piece in pieces))
+            self.assertEqual(self.facts(*command)["checksum"], plain)
+            self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_a_full_disk_is_said(self):
+        cloud = self.rows("a.csv", 5000)
+        for size in (1000, 150000, 240000):  # in the points, in a tile
+            with self.subTest(size):
+                run = subprocess.run([BRIO, "delaunay", cloud, "--tiles", "2", "--scratch", self.scratch(), "--quiet"],
+                                     stderr=subprocess.PIPE, check=False, preexec_fn=lambda most=size: (
+                                         signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                         resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))))
+                self.assertEqual(run.returncode, 6, run.stderr)
+                self.assertRegex(run.stderr.decode(), r"brio-tiles-\w+/[\w.-]+: cannot write: File too large")
+                self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_too_small_a_disk_is_said_before_the_work(self):
+        cloud, disk = self.rows("a.csv", 20000), self.scratch()
+        line = 'mount -t tmpfs -o size=2m none "$1" && exec "$0" delaunay "$2" --tiles 2 --scratch "$1" --quiet'
+        run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, cloud], stderr=subprocess.PIPE, check=False)
+        if run.returncode in (1, 32, 126, 127):
+            self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
+        self.assertEqual(run.returncode, 6, run.stderr)
+        self.assertRegex(run.stderr.decode(), r"20000 points need about 3 MB more on this disk, which has room for \d MB")
 
     def test_an_interrupted_run_leaves_nothing(self):
         cloud = self.rows("a.csv", 20000)

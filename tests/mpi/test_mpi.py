@@ -113,12 +113,25 @@ class Mpi(unittest.TestCase):
         index = out.read_text(encoding="utf-8")
         self.assertEqual(index.count("<Piece"), 12)
         self.assertEqual(sorted(os.listdir(self.folder / "out")), sorted("%d.vtu" % i for i in range(12)))
-        self.assertFalse((self.folder / "out.new").exists())
+        self.assertEqual(sorted(path.name for path in self.folder.glob("out*")), ["out", "out.pvtu"])
         tetrahedra = 0
         for i in range(12):
             line = [BRIO, "info", str(self.folder / "out" / ("%d.vtu" % i)), "--json"]
             tetrahedra += json.loads(subprocess.run(line, capture_output=True, text=True, check=True).stdout)["tetrahedra"]
         self.assertEqual(tetrahedra, facts["tetrahedra"])
+
+    def test_an_older_output_is_whole_until_the_new_one_is(self):
+        out, small = self.folder / "out.pvtu", self.generate("cube", 500, "small.ply")
+        self.mpi(2, small, "-o", out)
+        before = {path.name: path.read_bytes() for path in [out, *(self.folder / "out").iterdir()]}
+        (self.folder / "out.part").write_text("no folder", encoding="ascii")
+        self.fails(6, "Not a directory", self.generate("cube", 900), "-o", out)
+        self.assertEqual(before, {path.name: path.read_bytes() for path in [out, *(self.folder / "out").iterdir()]})
+        os.remove(self.folder / "out.part")
+        self.mpi(3, self.folder / "a.ply", "-o", out)
+        self.assertIn("Source=\"out-1/11.vtu\"", out.read_text(encoding="utf-8"))
+        self.assertEqual(sorted(path.name for path in self.folder.glob("out*")), ["out-1", "out.pvtu"])
+        self.fails(1, "--tiles writes .pvtu", small, "-o", self.folder / "out.ply")
 
     # --- failures ---
 
@@ -141,7 +154,7 @@ class Mpi(unittest.TestCase):
         path = self.generate("cube", 30000)
         out = self.folder / "out.pvtu"
         self.fails(4, "rank ", path, "--max-memory", "6M", "-o", out)
-        self.assertFalse(out.exists() or (self.folder / "out").exists() or (self.folder / "out.new").exists())
+        self.assertFalse(out.exists() or (self.folder / "out").exists() or (self.folder / "out.part").exists())
         shutil.rmtree(self.scratch)
         self.scratch.mkdir()
         self.assertEqual(self.same(3, path)["resumed"], 0)

@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""targets.py ROOT OUT PYTHON [--only NAME,...] [--no-units]: brio for every system that it is for, from one machine.
+"""targets.py ROOT OUT [--only NAME,...] [--no-units]: tries brio on every system that it is for, from one machine.
 
-Builds the program and the unit tests for each target of TARGETS with the C cross compiler of the Python package ziglang, which
-PYTHON has (scripts/setup.sh targets installs it), without optional libraries. What can run here runs: in emulation where it must. It runs
+Builds the program and the unit tests for each target of scripts/cross.py. What can run here runs: in emulation where it must. It runs
 
     units       the suites of tests/unit that the target's C library has the headers for
     contract    files of tests/cli, with the target's program
     checksums   OPERATIONS on the points of KINDS, compared with the program of this machine's compiler, bit by bit
 
-and writes OUT/TABLE.tsv: target, built, ran, passed, failed, checksums. A target that cannot run here says why; of one for macOS the
-symbols that the program asks its system for are listed and checked. The exit status is 1 where something fails or differs."""
+and writes OUT/TABLE.tsv: target, built, ran, passed, failed, checksums; the row of a target is there as soon as it was tried. In
+emulation suites run in so much time as is allowed: a suite that needs more is stopped and named in OUT/TARGET/left-out. Of what cannot run
+the libraries and symbols that the program asks its system for are checked; so are the versions of symbols of glibc. The exit status is
+1 where something fails or differs."""
 import argparse
-import collections
 import contextlib
 import hashlib
 import json
@@ -21,22 +21,22 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 
-Target = collections.namedtuple('Target', 'name triple system processor runner contract')
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'scripts'))
+import cross  # noqa: E402
 
-LINUX_CONTRACT = ['delaunay', 'hull', 'check', 'wrong_uses', 'output', 'pipes', 'info', 'salvage']
-ANY_CONTRACT = ['delaunay', 'hull', 'check', 'info']  # the others ask for files of POSIX: /dev/stdout, modes, links
-TARGETS = [
-    Target('linux-x86_64-glibc2.17', 'x86_64-linux-gnu.2.17', 'Linux', 'x86_64', '', LINUX_CONTRACT),
-    Target('linux-aarch64-glibc2.17', 'aarch64-linux-gnu.2.17', 'Linux', 'aarch64', 'qemu-aarch64', LINUX_CONTRACT),
-    Target('linux-x86_64-musl', 'x86_64-linux-musl', 'Linux', 'x86_64', '', LINUX_CONTRACT),
-    Target('linux-aarch64-musl', 'aarch64-linux-musl', 'Linux', 'aarch64', 'qemu-aarch64', LINUX_CONTRACT),
-    Target('windows-x86_64', 'x86_64-windows-gnu', 'Windows', 'x86_64', 'wine', ANY_CONTRACT),
-    Target('windows-aarch64', 'aarch64-windows-gnu', 'Windows', 'aarch64', None, []),
-    Target('macos-x86_64', 'x86_64-macos', 'Darwin', 'x86_64', None, []),
-    Target('macos-aarch64', 'aarch64-macos', 'Darwin', 'aarch64', None, []),
-    Target('wasm32-wasi', 'wasm32-wasi', 'WASI', 'wasm32', 'node', ANY_CONTRACT),
-]
+# What runs the programs of a target here, and the files of tests/cli that it must pass. Others ask for files of POSIX.
+LINUX_CONTRACT = ['delaunay', 'hull', 'check', 'wrong_uses', 'output', 'pipes', 'info', 'salvage', 'tiles']
+ANY_CONTRACT = ['delaunay', 'hull', 'check', 'info']
+RUNS = {
+    'linux-x86_64-glibc2.17': ('', LINUX_CONTRACT),
+    'linux-aarch64-glibc2.17': ('qemu-aarch64', LINUX_CONTRACT),
+    'linux-x86_64-musl': ('', LINUX_CONTRACT),
+    'linux-aarch64-musl': ('qemu-aarch64', LINUX_CONTRACT),
+    'windows-x86_64': ('wine', ANY_CONTRACT + ['tiles']),
+    'wasm32-wasi': ('node', ANY_CONTRACT),
+}
 
 KINDS = {'cube': 3000, 'grid': 1000, 'sphere': 1500, 'clusters': 1500, 'depth': 1500, 'torus': 1200}
 OPERATIONS = {  # name: arguments; a name that ends with an extension compares the file, any other the report's checksum
@@ -50,57 +50,23 @@ OPERATIONS = {  # name: arguments; a name that ends with an extension compares t
 MACOS_LIBRARIES = {'/usr/lib/libSystem.B.dylib'}
 
 
-def write_script(path, text):
-    path.write_text('#!/bin/sh\n' + text + '\n')
-    path.chmod(0o755)
-    return path
-
-
-def options_of(root, out, python, target):
-    """What CMake is told: wrappers of the compiler, which is one program with a word for each tool."""
-    tools = out / 'tools'
-    tools.mkdir(parents=True, exist_ok=True)
-    zig = run([python, '-c', 'import ziglang, os; print(os.path.dirname(ziglang.__file__))'], check=True).stdout.decode().strip() + '/zig'
-    compiler = write_script(tools / ('cc-' + target.triple), 'exec %s cc -target %s "$@"' % (zig, target.triple))
-    options = {'CMAKE_SYSTEM_NAME': target.system, 'CMAKE_SYSTEM_PROCESSOR': target.processor, 'CMAKE_C_COMPILER': compiler,
-               'CMAKE_AR': write_script(tools / 'ar', 'exec %s ar "$@"' % zig),
-               'CMAKE_RANLIB': write_script(tools / 'ranlib', 'exec %s ranlib "$@"' % zig),
-               'CMAKE_BUILD_TYPE': 'Release', 'CMAKE_C_FLAGS_RELEASE': '-O2 -DNDEBUG',
-               'BRIO_USE_ZLIB': 'OFF', 'BRIO_USE_ZSTD': 'OFF', 'BRIO_USE_EXPAT': 'OFF', 'BRIO_USE_CJSON': 'OFF'}
-    if shutil.which('ccache'):
-        options['CMAKE_C_COMPILER_LAUNCHER'] = 'ccache'
-    return options
-
-
-def build(root, out, python, target, units):
-    """Returns the folder of the target's programs; a RuntimeError names the log."""
-    folder = out / target.name
-    folder.mkdir(parents=True, exist_ok=True)
-    options = options_of(root, out, python, target)
-    goals = ['brio-cli'] + ['unit_tests'] * units
-    with open(folder / 'log', 'w') as log:
-        for command in (['cmake', '-S', root, '-B', folder] + ['-D%s=%s' % pair for pair in options.items()],
-                        ['cmake', '--build', folder, '-j', str(os.cpu_count()), '--target', *goals]):
-            if subprocess.run(command, stdout=log, stderr=log).returncode:
-                raise RuntimeError('does not build, see %s' % log.name)
-    return folder
-
-
 def runner_of(root, folder, target, name):
     """A script that runs a program of the target here, or None and why not."""
     program = next((folder / (name + end) for end in ('', '.exe', '.wasm') if (folder / (name + end)).is_file()), None)
     if program is None:
         return None, 'no %s' % name
-    if target.runner is None:
+    if target.name not in RUNS:
         return None, 'nothing runs it here'
-    if target.runner and not shutil.which(target.runner):
-        return None, '%s is missing' % target.runner
-    words = {'node': 'node --no-warnings %s/tests/targets/wasi.mjs' % root}
-    return write_script(folder / ('run-' + name), 'exec %s %s "$@"' % (words.get(target.runner, target.runner), program)), ''
+    runner = RUNS[target.name][0]
+    if runner and not shutil.which(runner):
+        return None, '%s is missing' % runner
+    # with its parallel collector of garbage Node 20 crashed after some programs had ended
+    words = {'node': 'node --no-warnings --single-threaded-gc %s/tests/targets/wasi.mjs' % root}
+    return cross.write_script(folder / ('run-' + name), 'exec %s %s "$@"' % (words.get(runner, runner), program)), ''
 
 
 def run(words, **more):
-    return subprocess.run([str(w) for w in words], capture_output=True, stdin=subprocess.DEVNULL, timeout=1800, **more)
+    return subprocess.run([str(w) for w in words], capture_output=True, stdin=subprocess.DEVNULL, **{'timeout': 1800, **more})
 
 
 @contextlib.contextmanager
@@ -120,22 +86,32 @@ def wine(out):
         subprocess.run([server, '-k'], **quiet)
 
 
-def run_units(script):
-    """Suites that pass, and the names of those that fail."""
-    passed, failed = 0, []
+def run_units(script, most_seconds, emulated):
+    """Suites that pass, the names of those that fail, and of those that were left out, with the reason. One that skips itself passes
+    nothing. All have most_seconds together; in emulation one has a tenth of them at most."""
+    passed, failed, left_out, begin = 0, [], [], time.monotonic()
     for suite in run([script]).stdout.decode().split():
-        code = run([script, suite]).returncode
+        left = most_seconds - (time.monotonic() - begin)
+        try:
+            if left <= 0:
+                raise subprocess.TimeoutExpired(suite, 0)
+            code = run([script, suite], timeout=min(left, most_seconds / 10) if emulated else 900).returncode
+        except subprocess.TimeoutExpired:
+            left_out.append('%s: %s' % (suite, 'needs over %d s' % (most_seconds / 10) if left > 0 else 'no time was left'))
+            continue
         passed += code == 0
-        if code not in (0, 77):
+        if code == 77:
+            left_out.append('%s: skips itself' % suite)
+        elif code:
             failed.append(suite)
-    return passed, failed
+    return passed, failed, left_out
 
 
-def run_contract(root, script, subjects):
+def run_contract(root, script, subjects, emulated):
     """Tests of the command line that pass, and the names of those that fail."""
     passed, failed = 0, []
     for subject in subjects:
-        done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env={**os.environ, 'BRIO': str(script)})
+        done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env={**os.environ, 'BRIO': str(script), 'BRIO_EMULATED': '1' * emulated})
         text = done.stderr.decode()
         found = re.search(r'^Ran (\d+) tests?', text, re.M)
         wrong = re.findall(r'^(?:FAIL|ERROR): (\w+)', text, re.M)
@@ -164,73 +140,98 @@ def checksums(script, points, folder):
     return found
 
 
-def check_macos(program, log):
-    """What is wrong with the symbols of a macOS program: libraries besides the system's, by its load commands."""
-    data = program.read_bytes()
-    libraries = {m.decode() for m in re.findall(rb'(?:/usr/lib|/System)/[\w./+-]+\.dylib', data)}
-    log.write_text('\n'.join(sorted(libraries)) + '\n')
+def check_macos(program):
+    """What a macOS program asks its system for besides the C library: libraries, by its load commands."""
+    libraries = {m.decode() for m in re.findall(rb'(?:/usr/lib|/System)/[\w./+-]+\.dylib', program.read_bytes())}
     return sorted(libraries - MACOS_LIBRARIES)
 
 
-def try_target(root, out, python, target, units, native, points):
-    """The row of a target and whether something is wrong with it."""
-    row = dict(target=target.name, built='no', ran='no', passed='', failed='', checksums='')
-    try:
-        folder = build(root, out, python, target, units)
-    except RuntimeError as error:
-        return {**row, 'failed': str(error)}, True
-    row['built'] = 'yes'
+def check_glibc(program):
+    """The versions of glibc's symbols that a program asks for and that came after 2.17."""
+    versions = set(re.findall(rb'GLIBC_(2\.\d+)', program.read_bytes()))
+    return sorted('GLIBC_' + v.decode() for v in versions if int(v[2:]) > 17)
+
+
+def check_windows(program):
+    """The libraries of a Windows program that do not come with Windows 10."""
+    found = {m.decode().lower() for m in re.findall(rb'[\w-]+\.dll', program.read_bytes(), re.I)}
+    return sorted(n for n in found if not n.startswith(('api-ms-win-', 'kernel32', 'shell32', 'advapi32', 'ntdll', 'ucrtbase')))
+
+
+def needs_of(folder, target):
+    """What the target's program needs and no system of that kind has."""
     if target.system == 'Darwin':
-        more = check_macos(folder / 'brio', folder / 'libraries')
-        return {**row, 'ran': 'no: nothing runs it here', 'failed': 'needs ' + ' '.join(more) if more else ''}, bool(more)
-    script, why = runner_of(root, folder, target, 'brio')
-    if script is None:
-        return {**row, 'ran': 'no: ' + why}, False
-    row['ran'] = 'yes'
-    tests, failed = run_contract(root, script, target.contract)
-    unit_script, why = runner_of(root, folder, target, 'unit_tests')
+        return check_macos(folder / 'brio')
+    if target.system == 'Windows':
+        return check_windows(folder / 'brio.exe')
+    return check_glibc(folder / 'brio') if 'glibc' in target.name else []
+
+
+def run_target(root, folder, target, script, native, points, most_seconds):
+    """The row's facts of a target that runs here, and whether something is wrong with it."""
+    runner, contract = RUNS[target.name]
+    passed, failed = run_contract(root, script, contract, bool(runner))
+    unit_script, _ = runner_of(root, folder, target, 'unit_tests')
     if unit_script:
-        suites, wrong = run_units(unit_script)
-        tests, failed = tests + suites, failed + wrong
+        suites, wrong, left_out = run_units(unit_script, most_seconds, bool(runner))
+        passed, failed = passed + suites, failed + wrong
+        (folder / 'left-out').write_text(''.join(line + '\n' for line in left_out))
     found = checksums(script, points, folder)
     different = ['%s of %s' % (name, kind) for (kind, name), value in native.items() if found[kind, name] != value]
     (folder / 'checksums.json').write_text(json.dumps({' '.join(k): v for k, v in found.items()}, indent=1))
-    row.update(passed=tests, failed=', '.join(failed) or 0, checksums='different: ' + ', '.join(different) if different else '%d equal' % len(found))
-    return row, bool(failed or different)
+    facts = dict(ran='yes', passed=passed, failed=', '.join(failed) or 0,
+                 checksums='different: ' + ', '.join(different) if different else '%d equal' % len(found))
+    return facts, bool(failed or different)
+
+
+def try_target(root, out, target, units, native, points, most_seconds):
+    """The row of a target and whether something is wrong with it."""
+    row = dict(target=target.name, built='no', ran='no', passed='', failed='', checksums='')
+    folder = out / target.name
+    try:
+        cross.configure_and_build(root, folder, cross.options_of(root, target),
+                                  ['brio-cli'] + ['unit_tests'] * (units and target.name in RUNS))
+    except RuntimeError as error:
+        return {**row, 'failed': str(error)}, True
+    needs = needs_of(folder, target)
+    if needs:
+        return {**row, 'built': 'yes', 'failed': 'needs ' + ' '.join(needs)}, True
+    script, why = runner_of(root, folder, target, 'brio')
+    if script is None:
+        return {**row, 'built': 'yes', 'ran': 'no: ' + why}, False
+    facts, wrong = run_target(root, folder, target, script, native, points, most_seconds)
+    return {**row, 'built': 'yes', **facts}, wrong
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument('root', type=pathlib.Path)
     parser.add_argument('out', type=pathlib.Path)
-    parser.add_argument('python', type=pathlib.Path)
     parser.add_argument('--only', default='', help='names of targets, with commas')
     parser.add_argument('--no-units', action='store_true', help='no unit tests, whose build takes most of the time')
     parser.add_argument('--native', type=pathlib.Path, help='the program of this machine; built where it is not given')
+    parser.add_argument('--minutes', type=float, default=10, help='for the unit tests of a target in emulation')
     a = parser.parse_args()
     root, out = a.root.resolve(), a.out.resolve()
-    wanted = [t for t in TARGETS if not a.only or t.name in a.only.split(',')]
+    wanted = [t for t in cross.TARGETS if not a.only or t.name in a.only.split(',')]
     native = a.native.resolve() if a.native else out / 'native/brio'
     if not a.native:
-        subprocess.run(['cmake', '-S', root, '-B', out / 'native', '-DBRIO_TESTS=OFF', '-DCMAKE_BUILD_TYPE=Release'], check=True, stdout=subprocess.DEVNULL)
-        subprocess.run(['cmake', '--build', out / 'native', '-j', str(os.cpu_count()), '--target', 'brio-cli'], check=True, stdout=subprocess.DEVNULL)
+        cross.configure_and_build(root, out / 'native', {'BRIO_TESTS': 'OFF', 'CMAKE_BUILD_TYPE': 'Release'}, ['brio-cli'])
     points = out / 'points'
     points.mkdir(parents=True, exist_ok=True)
     for kind, count in KINDS.items():
         run([native, 'generate', kind, '-n', count, '-o', points / (kind + '.ply')], check=True)
     expected = checksums(native, points, points)
     columns, wrong = ['target', 'built', 'ran', 'passed', 'failed', 'checksums'], False
-    rows = {}
     table = out / 'TABLE.tsv'
-    if table.exists():  # rows of targets that are not tried now stay
-        rows = {line.split('\t')[0]: line for line in table.read_text().splitlines()[1:]}
     for target in wanted:
-        with wine(out) if target.runner == 'wine' else contextlib.nullcontext():
-            row, bad = try_target(root, out, a.python, target, not a.no_units, expected, points)
+        with wine(out) if RUNS.get(target.name, ('',))[0] == 'wine' else contextlib.nullcontext():
+            row, bad = try_target(root, out, target, not a.no_units, expected, points, 60 * a.minutes)
         wrong |= bad
+        rows = {line.split('\t')[0]: line for line in table.read_text().splitlines()[1:]} if table.exists() else {}
         rows[target.name] = '\t'.join(str(row[c]) for c in columns)
         print(rows[target.name], flush=True)
-        table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in TARGETS if t.name in rows)]) + '\n')
+        table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in cross.TARGETS if t.name in rows)]) + '\n')
     return wrong
 
 

@@ -422,6 +422,70 @@ static void threads_give_the_same_bits(void) {
     brio_context_free(ctx);
 }
 
+/* Returns the cell of `cells` whose site is at x. */
+static size_t cell_at(const brio_cells *cells, const double *points, const double *x) {
+    for (size_t c = 0; c < cells->num_cells; c++)
+        if (!memcmp(points + 3 * (size_t)cells->site[c], x, 3 * sizeof *x)) return c;
+    return SIZE_MAX;
+}
+
+static bool are_the_same_cell(const brio_cells *a, size_t i, const double *x, const brio_cells *b, size_t j,
+                              const double *y) {
+    uint64_t f = a->face_offsets[i], g = b->face_offsets[j], n = a->face_offsets[i + 1] - f;
+    if (memcmp(&a->volume[i], &b->volume[j], sizeof(double)) || memcmp(&a->area[i], &b->area[j], sizeof(double)) ||
+        memcmp(&a->centroid[3 * i], &b->centroid[3 * j], 3 * sizeof(double)) || a->bounded[i] != b->bounded[j] ||
+        b->face_offsets[j + 1] - g != n)
+        return false;
+    if (memcmp(&a->face_areas[f], &b->face_areas[g], n * sizeof(double)) ||
+        memcmp(&a->face_normals[3 * f], &b->face_normals[3 * g], 3 * n * sizeof(double)))
+        return false;
+    for (uint64_t k = 0; k < n; k++) {
+        int64_t p = a->face_neighbours[f + k], q = b->face_neighbours[g + k];
+        if (p < 0 || q < 0 ? p != q : memcmp(x + 3 * p, y + 3 * q, 3 * sizeof *x) != 0) return false;
+    }
+    return true;
+}
+
+/* Sums within a cell are in an order that its star tells: whatever the order of the points, where many are on one
+ * sphere, too. */
+static void cells_do_not_depend_on_the_order_of_the_points(void) {
+    enum { N = 700 };
+    static double points[3 * N], turned[3 * N], weights[N], turned_weights[N];
+    static const double BOX[6] = {-0.5, 1, 0.25, 6.5, 7, 6.75};
+    for (int kind = 0; kind < 6; kind++) {
+        brio_context *ctx = new_context();
+        brio_rng rng = brio_rng_new(70 + (uint64_t)kind);
+        bool weighted = kind % 2;
+        if (kind / 2 == 0) uniform_points(3, N, points);
+        if (kind / 2 == 1) integer_points(3, N, 9, points);
+        if (kind / 2 == 2) sphere_points(3, N, points);
+        integer_weights(5, N, kind / 2 == 1 ? 5 : 1, weights);
+        memcpy(turned, points, sizeof points), memcpy(turned_weights, weights, sizeof weights);
+        for (size_t i = N - 1; i > 0; i--) {
+            size_t j = brio_rng_below(&rng, (uint32_t)i + 1);
+            for (int k = 0; k < 3; k++) {
+                double x = turned[3 * i + (size_t)k];
+                turned[3 * i + (size_t)k] = turned[3 * j + (size_t)k], turned[3 * j + (size_t)k] = x;
+            }
+            double w = turned_weights[i];
+            turned_weights[i] = turned_weights[j], turned_weights[j] = w;
+        }
+        const double *box = kind / 2 == 1 ? BOX : NULL;
+        brio_cells *a = cells_of(ctx, points, weighted ? weights : NULL, N, box, 0);
+        brio_cells *b = cells_of(ctx, turned, weighted ? turned_weights : NULL, N, box, 0);
+        EXPECT(a->num_cells == b->num_cells);
+        size_t differ = 0;
+        for (size_t c = 0; c < a->num_cells; c++) {
+            size_t other = cell_at(b, turned, points + 3 * (size_t)a->site[c]);
+            differ += other == SIZE_MAX || !are_the_same_cell(a, c, points, b, other, turned);
+        }
+        EXPECT(differ == 0, "kind %d: %zu of %zu cells differ", kind, differ, a->num_cells);
+        brio_cells_free(a);
+        brio_cells_free(b);
+        brio_context_free(ctx);
+    }
+}
+
 static void powers_of_two_scale_the_cells(void) {
     enum { N = 200 };
     static const int EXPONENT[] = {-990, -800, -320, -150, 3, 150, 320};
@@ -701,6 +765,7 @@ SUITE(test_cells) {
     RUN(volumes_alone_have_the_same_bits_with_threads);
     RUN(an_offset_moves_the_cells);
     RUN(threads_give_the_same_bits);
+    RUN(cells_do_not_depend_on_the_order_of_the_points);
     RUN(powers_of_two_scale_the_cells);
     RUN(wrong_regions_are_refused);
     RUN(messages_say_what_is_wrong_with_a_region);

@@ -2,12 +2,13 @@
  * points that are left, equal in every byte. */
 #include "harness.h"
 
+#include "dynamic/live.h"
 #include "failing_allocator.h"
 #include <math.h>
 #include <string.h>
 
-typedef enum { UNIFORM, GRID, SPHERE, CLUSTERS, MIXED, NUM_SHAPES } shape;
-static const char *const SHAPE[] = {"uniform", "grid", "sphere", "clusters", "mixed"};
+typedef enum { UNIFORM, GRID, SPHERE, CLUSTERS, SCAN, MIXED, NUM_SHAPES } shape;
+static const char *const SHAPE[] = {"uniform", "grid", "sphere", "clusters", "scan", "mixed"};
 
 static uint64_t state = 1;
 
@@ -27,6 +28,10 @@ static void draw_point(shape s, double p[3]) {
     for (int c = 0; c < 3; c++) p[c] = draw();
     if (s == GRID)
         for (int c = 0; c < 3; c++) p[c] = floor(p[c] * 6) / 8;
+    if (s == SCAN) { /* lines of a scanner over a surface, with a little noise */
+        p[1] = floor(40 * p[1]) / 40;
+        p[2] = 0.3 * p[0] * p[0] - 0.2 * p[1] * p[0] + 1e-4 * p[2];
+    }
     if (s == CLUSTERS) {
         double corner = floor(draw() * 4);
         for (int c = 0; c < 3; c++) p[c] = corner / 4 + p[c] * p[c] * p[c] * 1e-3;
@@ -278,7 +283,7 @@ static void steps_of_all_points_end_as_built(void) {
         insert_many(&w, n);
         double *p = calloc(3 * 40000, sizeof *p);
         brio_context_set_threads(w.ctx, s < 2 ? 1 : 3);
-        for (int step = 0; step < (BRIEF_TESTS ? 12 : 40); step++) {
+        for (int step = 0; step < (BRIEF_TESTS ? 12 : 24); step++) {
             brio_dynamic_points(w.d, NULL, p, NULL);
             for (size_t i = 0; i < 3 * w.num_points; i++) p[i] += STEP[(step / 5) % 3] * spacing * (draw() - 0.5);
             for (size_t i = 0; i < 2 && step % 3 == 0; i++) p[3 * draw_below(w.num_points)] += spacing;
@@ -394,6 +399,71 @@ static void centres_of_spheres_go(void) {
     world_free(&w);
 }
 
+/* --- holes that moved points have folded --- */
+
+/* Whether mates are mates of each other and have the same three vertices. */
+static int mates_agree(const brio_dynamic *d) {
+    for (uint32_t slot = 0; slot < d->t.count; slot++) {
+        if (d->state[slot] & SLOT_UNUSED) continue;
+        for (int k = 0; k < 4; k++) {
+            uint32_t mate = d->t.tet[slot].mate[k], other = brio_tet_of(mate);
+            if (d->state[other] & SLOT_UNUSED || *brio_mate(&d->t, mate) != brio_facet_of(slot, k)) return 0;
+            for (int i = 0; i < 4; i++) {
+                uint32_t v = d->t.tet[slot].vertex[i];
+                if (i != k && brio_slot_of_vertex(d->t.tet[other].vertex, v) > 3) return 0;
+                if (i != k && brio_slot_of_vertex(d->t.tet[other].vertex, v) == brio_slot_of(mate)) return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+/* Makes a hole of some tetrahedra that hang together. */
+static void dig_anywhere(brio_dynamic *d, size_t most) {
+    brio_hole *h = &d->hole;
+    uint32_t first = (uint32_t)draw_below(d->t.count);
+    while (d->state[first] & SLOT_UNUSED) first = (uint32_t)draw_below(d->t.count);
+    h->tet[0] = first, h->num_tets = 1, h->num_border = 0;
+    d->state[first] |= SLOT_HOLE;
+    for (size_t tries = 0; tries < 4 * most && h->num_tets < most; tries++) {
+        uint32_t next = brio_tet_of(d->t.tet[h->tet[draw_below(h->num_tets)]].mate[draw_below(4)]);
+        if (brio_in_hole(d, next)) continue;
+        d->state[next] |= SLOT_HOLE;
+        h->tet[h->num_tets++] = next;
+    }
+    for (size_t i = 0; i < h->num_tets; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t mate = d->t.tet[h->tet[i]].mate[k];
+            if (!brio_in_hole(d, brio_tet_of(mate))) h->border[h->num_border++] = mate;
+        }
+}
+
+/* Whatever a hole has become when points moved, it is filled with mates that agree, or it stays. */
+static void a_folded_hole_is_filled_well_or_not_at_all(void) {
+    size_t mended = 0, kept = 0;
+    for (int trial = 0; trial < (BRIEF_TESTS ? 200 : 800); trial++) {
+        world w = world_new(UNIFORM, 0, 64);
+        EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+        insert_some(&w, 8 + draw_below(10));
+        bool filled = false;
+        brio_live_begin(w.d);
+        for (size_t moved = 0; moved < (size_t)(trial % 8); moved++) {
+            double *r = w.d->record[1 + draw_below(w.d->num_rows - 1)];
+            for (int c = 0; c < 3; c++) r[c] = draw();
+        }
+        EXPECT(brio_hole_reserve(w.d, 64) == BRIO_OK);
+        dig_anywhere(w.d, 2 + draw_below(12));
+        EXPECT(brio_hole_reserve_fresh(w.d, w.d->hole.num_border) == BRIO_OK);
+        EXPECT(brio_hole_mend(w.d, &filled) == BRIO_OK);
+        EXPECT(mates_agree(w.d), "trial %d", trial);
+        mended += filled, kept += !filled;
+        EXPECT(brio_live_end(w.d, BRIO_ERR_INTERNAL) == BRIO_ERR_INTERNAL);
+        EXPECT(mates_agree(w.d));
+        world_free(&w);
+    }
+    EXPECT(mended > 20 && kept > 20, "%zu and %zu", mended, kept);
+}
+
 /* --- what fails leaves all as it was --- */
 
 /* A world of about 70 points, some of them coincident or hidden. */
@@ -481,6 +551,35 @@ static void cancelled_changes_leave_all(void) {
     world_free(&w);
 }
 
+/* A call that was told to stop has failed, wherever it was: one that was about to build anew did so, and succeeded. */
+static void cancelled_moves_of_all_leave_all(void) {
+    static const double SHARE[] = {0.01, 0.03, 0.06};
+    size_t n = 1200, cancelled = 0;
+    double *p = calloc(3 * n, sizeof *p);
+    for (int s = 0; s < 3; s++) {
+        world w = world_new(UNIFORM, 0, n + 1);
+        size_t left = 0;
+        brio_status status = BRIO_ERR_CANCELLED;
+        EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+        insert_many(&w, n);
+        brio_context_set_progress(w.ctx, stop_at, &left);
+        for (size_t k = 1; k < 400 && status != BRIO_OK; k += BRIEF_TESTS ? 5 : 1) {
+            for (size_t i = 0; i < 3 * n; i++) p[i] = w.point[i] + SHARE[s] / cbrt((double)n) * (2 * draw() - 1);
+            left = k;
+            status = brio_dynamic_move(w.d, NULL, p, NULL, n);
+            EXPECT((status == BRIO_OK) == (left > 0) && (status == BRIO_OK || status == BRIO_ERR_CANCELLED),
+                   "%s, %zu are left", brio_message(w.ctx), left);
+            left = 0;
+            cancelled += status != BRIO_OK;
+            if (status == BRIO_OK) memcpy(w.point, p, 3 * n * sizeof *p);
+            EXPECT(is_as_built(&w), "share %g, stopped at %zu", SHARE[s], k);
+        }
+        world_free(&w);
+    }
+    EXPECT(cancelled > 3, "%zu", cancelled);
+    free(p);
+}
+
 static void wrong_arguments_are_refused(void) {
     world w = world_new(UNIFORM, 0, 200);
     double p[9] = {0.1, 0.2, 0.3, NAN, 0, 0, 1, 1, 1}, weight[3] = {1, 1, 1};
@@ -557,8 +656,10 @@ SUITE(test_dynamic) {
     RUN(weights_of_all_may_hide_some);
     RUN(coordinates_may_be_huge_or_tiny);
     RUN(centres_of_spheres_go);
+    RUN(a_folded_hole_is_filled_well_or_not_at_all);
     RUN(failing_memory_leaves_all);
     RUN(cancelled_changes_leave_all);
+    RUN(cancelled_moves_of_all_leave_all);
     RUN(wrong_arguments_are_refused);
     RUN(questions_are_answered_between_changes);
     return harness_end();

@@ -72,7 +72,7 @@ static size_t make_points(uint64_t seed, size_t n, int kind) {
 }
 
 static brio_tiles *tiles_of(brio_context *ctx, uint32_t tiles, size_t n, bool weighted, uint64_t key) {
-    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = tiles, .key = key};
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = tiles, .key = key, .stars = 1};
     brio_tiles *t;
     EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
     for (size_t i = 0; !brio_tiles_has_points(t) && i < n; i += 777) {
@@ -220,6 +220,107 @@ static void parts_are_the_whole(void) {
     EXPECT(count == e.stats.tetrahedra && sum == 0, "%zu tetrahedra", count);
     brio_triangulation_free(whole);
     brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
+/* --- cells --- */
+
+/* Cells of all points, which those of tiles are compared with. */
+typedef struct {
+    const brio_cells *whole;
+    bool ordered;
+    uint64_t seen, differ;
+} cell_comparison;
+
+static bool same_cell(const brio_cells *a, size_t i, const brio_cells *b, size_t j) {
+    uint64_t f = a->face_offsets[i], g = b->face_offsets[j], n = a->face_offsets[i + 1] - f;
+    return !memcmp(&a->volume[i], &b->volume[j], sizeof(double)) && !memcmp(&a->area[i], &b->area[j], sizeof(double)) &&
+           !memcmp(&a->centroid[3 * i], &b->centroid[3 * j], 3 * sizeof(double)) && a->bounded[i] == b->bounded[j] &&
+           b->face_offsets[j + 1] - g == n &&
+           !memcmp(&a->face_neighbours[f], &b->face_neighbours[g], n * sizeof(int64_t)) &&
+           !memcmp(&a->face_areas[f], &b->face_areas[g], n * sizeof(double)) &&
+           !memcmp(&a->face_normals[3 * f], &b->face_normals[3 * g], 3 * n * sizeof(double));
+}
+
+static int compare_cells(const brio_cells *cells, const uint64_t *site, void *user) {
+    cell_comparison *c = user;
+    for (size_t i = 0; c->whole && i < cells->num_cells; i++) {
+        size_t at = 0, end = c->whole->num_cells;
+        while (at + 1 < end) { /* sites ascend */
+            size_t middle = (at + end) / 2;
+            if (c->whole->site[middle] <= site[i])
+                at = middle;
+            else
+                end = middle;
+        }
+        bool right = c->whole->num_cells && c->whole->site[at] == site[i] && same_cell(c->whole, at, cells, i);
+        c->differ += !right || (c->ordered && at != c->seen);
+        c->seen++;
+    }
+    return 0;
+}
+
+static void compare_all_cells(uint64_t seed, size_t n, int kind, bool weighted, uint32_t tiles, bool ordered) {
+    static const double BOX[6] = {-0.3, -0.25, -0.5, 0.75, 4, 3.5};
+    brio_context *ctx = new_context();
+    n = make_points(seed, n, kind);
+    if (weighted) integer_weights(seed, n, kind == 3 || kind == 4 ? 5 : 2, weights);
+    brio_cells_options o = {.size = sizeof o, .box = seed % 2 ? BOX : NULL};
+    brio_cells *whole = NULL;
+    brio_status status = brio_voronoi_cells(ctx, NULL, points, weighted ? weights : NULL, n, &o, &whole);
+    brio_tiles *t = tiles_of(ctx, tiles, n, weighted, 0);
+    if (brio_tiles_run(ctx, t) == BRIO_OK && brio_tiles_facts(t)->dimension == 3) {
+        cell_comparison c = {.whole = whole, .ordered = ordered};
+        brio_status tiled = brio_tiles_cells(ctx, t, &o, ordered, compare_cells, &c);
+        EXPECT(tiled == status, "kind %d, %u tiles: %s", kind, tiles, brio_message(ctx));
+        if (status == BRIO_OK) {
+            EXPECT(c.seen == whole->num_cells && c.differ == 0,
+                   "kind %d, weighted %d, %u tiles, %zu points: %llu of %zu cells, %llu differ", kind, weighted, tiles,
+                   n, (unsigned long long)c.seen, whole->num_cells, (unsigned long long)c.differ);
+            const brio_tiles_cells_stats s = *brio_tiles_cells_facts(t);
+            EXPECT(s.faces == whole->face_offsets[whole->num_cells] && s.region_volume == whole->region_volume);
+            EXPECT(!ordered || !memcmp(&s.volume_sum, &whole->volume_sum, sizeof(double)));
+        }
+    }
+    brio_cells_free(whole);
+    brio_tiles_free(t);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+static void cells_are_those_of_the_whole(void) {
+    static const uint32_t tiles[] = {1, 2, 3, 7};
+    brio_rng rng = brio_rng_new(11);
+    for (int i = 0; i < (BRIEF_TESTS ? 24 : SHORT_TESTS ? 60 : 800); i++)
+        compare_all_cells(brio_rng_next(&rng), 1 + brio_rng_below(&rng, i % 5 ? 250 : 1200), i % KINDS, i / KINDS % 2,
+                          tiles[(i + i / 4) % 4], i % 3 > 0);
+}
+
+static int count_calls(const brio_cells *cells, const uint64_t *site, void *user) {
+    (void)cells, (void)site;
+    return ++*(int *)user > 0;
+}
+
+static void wrong_calls_for_cells_are_refused(void) {
+    brio_context *ctx = new_context();
+    brio_cells_options o = {.size = sizeof o, .vertices = 1};
+    int calls = 0;
+    size_t n = make_points(6, 500, 0);
+    brio_tiles *t = tiles_of(ctx, 2, n, false, 0);
+    EXPECT(brio_tiles_cells(ctx, t, NULL, 0, count_calls, &calls) == BRIO_ERR_ARGUMENT &&
+           strstr(brio_message(ctx), "not triangulated"));
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK);
+    EXPECT(brio_tiles_cells(ctx, t, &o, 1, count_calls, &calls) == BRIO_ERR_ARGUMENT && calls == 0);
+    EXPECT(brio_tiles_cells(ctx, t, &o, 0, count_calls, &calls) == BRIO_ERR_CANCELLED && calls == 1);
+    EXPECT(brio_tiles_cells(ctx, t, NULL, 1, count_calls, &calls) == BRIO_ERR_CANCELLED && calls == 2);
+    brio_tiles_free(t);
+    brio_tiles_options without = {.size = sizeof without, .scratch = folder, .tiles = 2};
+    EXPECT(brio_tiles_new(ctx, &without, &t) == BRIO_OK && brio_tiles_add(ctx, t, points, NULL, n) == BRIO_OK &&
+           brio_tiles_run(ctx, t) == BRIO_OK);
+    EXPECT(brio_tiles_cells(ctx, t, NULL, 0, count_calls, &calls) == BRIO_ERR_ARGUMENT &&
+           strstr(brio_message(ctx), "no stars"));
+    brio_tiles_free(t);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
     brio_context_free(ctx);
 }
 
@@ -375,6 +476,8 @@ SUITE(test_tiles) {
     RUN(points_nearly_on_a_sphere);
     RUN(a_run_is_resumed);
     RUN(parts_are_the_whole);
+    RUN(cells_are_those_of_the_whole);
+    RUN(wrong_calls_for_cells_are_refused);
     RUN(wrong_calls_are_refused);
     RUN(flat_points);
     RUN(cancelled_runs_leave_nothing);

@@ -211,6 +211,7 @@ ENDS_WITH(brio_page_options, reserved_int);
 ENDS_WITH(brio_page_stats, reserved_int);
 ENDS_WITH(brio_planar_crust_stats, crust_seconds);
 ENDS_WITH(brio_spanning_tree_stats, tree_seconds);
+ENDS_WITH(brio_tiles_cells_stats, region_volume);
 ENDS_WITH(brio_tiles_options, key);
 ENDS_WITH(brio_tiles_stats, rank_seconds);
 ENDS_WITH(brio_ranks_options, key);

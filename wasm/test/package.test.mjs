@@ -190,6 +190,17 @@ test('memory is used again, and views and room need no copies', () => {
   throws(() => t.records, /freed/);
 });
 
+test('a result lives as long as its views', { skip: globalThis.gc ? false : 'run by node --expose-gc' }, async () => {
+  const gone = [], watch = new FinalizationRegistry((what) => gone.push(what));
+  const viewed = (what) => { const made = hull(cube(400)); watch.register(made, what); return made.vertices; };
+  const seen = viewed('held');
+  (() => viewed('dropped'))();
+  for (let i = 0; i < 100 && !gone.includes('dropped'); i++) { globalThis.gc(); await new Promise((done) => setTimeout(done, 10)); }
+  for (let i = 0; i < 5; i++) { globalThis.gc(); await new Promise((done) => setTimeout(done, 10)); }
+  deepStrictEqual(gone, ['dropped']);
+  ok(seen.length >= 0);
+});
+
 test('a call can be stopped, and says how far it is', () => {
   const stages = new Set(), points = cube(50000);
   throws(() => delaunay(points, { progress: (stage) => { stages.add(stage); return true; } }), (e) => isCancelled(e) && /cancelled/.test(e.message));

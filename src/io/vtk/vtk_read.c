@@ -19,8 +19,8 @@
 /* The cells of a VTU or VTP file as polygons, tetrahedra and edges.
  *
  * A strip of n corners is n - 2 triangles, of which every second one is turned round; a line of n corners is n - 1
- * edges. Of quadratic cells the corners are kept. A polyhedron is its faces, so that a wall between two polyhedra is there
- * twice. Other cells are passed over. */
+ * edges. Of quadratic cells the corners are kept. A polyhedron is its faces, so that a wall between two polyhedra is
+ * there twice. Other cells are passed over. */
 
 /* Types of cells of VTK. */
 enum {
@@ -125,8 +125,8 @@ static brio_status faces_count(const cell *c, uint64_t *at, uint64_t end, uint64
     return BRIO_OK;
 }
 
-/* The array `faces` has for each polyhedron the number of its faces, and for each of these that of its corners, then
- * them; `faceoffsets` has where it ends. */
+/* Adds the faces of a polyhedron. The array `faces` has for each polyhedron the number of its faces, and for each of
+ * these that of its corners, then them; `faceoffsets` has where it ends. */
 static brio_status add_polyhedron(cell *c) {
     const brio_vtk_cells *cells = c->cells;
     if (!cells->faces.bytes || !cells->face_offsets.bytes)

@@ -1,0 +1,33 @@
+#!/bin/sh
+# release.sh: gathers in build/release what a release has, of what is committed: the sources, the Python packages (make wheels), the
+# Debian packages (make deb), the programs of build/targets that were built (make targets), the extension of Blender, and SHA256SUMS of
+# them all. It signs nothing and uploads nothing: docs/release.md says what is left to do.
+set -eu
+
+cd "$(dirname "$0")/.."
+version=$(sed -n 's/^__version__ = "\(.*\)"/\1/p' python/src/brio/_version.py)
+release=build/release
+rm -rf "$release"
+mkdir -p "$release"
+
+if [ -n "$(git status --porcelain --untracked-files=no)" ]; then
+    echo "release: what is changed is not committed" >&2
+    exit 1
+fi
+git archive --prefix="brio-$version/" HEAD | gzip -9n >"$release/brio-$version.tar.gz"
+cp build/wheels/brio_geometry-"$version"*.whl build/wheels/brio_geometry-"$version".tar.gz "$release/"
+cp out/deb/*.deb "$release/" 2>/dev/null || echo "release: no Debian packages; make deb makes them" >&2
+for folder in build/targets/*/; do
+    target=$(basename "$folder")
+    for program in brio brio.exe brio.wasm; do
+        [ -f "$folder$program" ] && [ "$target" != native ] || continue
+        archive=brio-$version-$target
+        mkdir -p "build/release-parts/$archive"
+        cp "$folder$program" LICENSE README.md "build/release-parts/$archive/"
+        tar -C build/release-parts --sort=name --owner=0 --group=0 --numeric-owner --mtime=@0 -cf - "$archive" | gzip -9n >"$release/$archive.tar.gz"
+    done
+done
+rm -rf build/release-parts
+python3 integrations/blender/pack.py build/wheels "$release/brio-blender-$version.zip"
+(cd "$release" && sha256sum -- * >SHA256SUMS)
+cat "$release/SHA256SUMS"

@@ -1,0 +1,136 @@
+/* Alpha complexes of periodic triangulations: one simplex of each class of translates, and the shape's facets.
+ *
+ * The tetrahedra with a vertex in the domain are unfolded (unfold.c). Images are numbered by their positions, so that a
+ * simplex begins with its lexicographically least vertex, which is in the domain for one simplex of each class. All
+ * its cofaces are unfolded. Positions are on the grid, where differences are exact: translates of a simplex have values
+ * of the same bits, and no value is greater than that of a coface.
+ *
+ * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
+#include "alpha/alpha_complex.h"
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/sort.h"
+#include "periodic/periodic.h"
+#include "triangulation/tetrahedra.h"
+#include <string.h>
+
+typedef struct {
+    brio_context *ctx;
+    const brio_periodic *t;
+    brio_images images;
+    brio_unfolded unfolded;
+    uint32_t *order, *rank; /* #images: by position */
+    double *x, *weight;     /* #images, in that order; weight: NULL without */
+    uint8_t *own;
+} alpha_call;
+
+static int by_position(uint32_t a, uint32_t b, const void *user) {
+    return brio_images_compare(user, a, b);
+}
+
+/* Sorts the images, and names the vertices of the unfolded tetrahedra by their places. */
+static brio_status number_images(alpha_call *c) {
+    const brio_images *m = &c->images;
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->order, m->count + 1));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->rank, m->count + 1));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->x, 3 * m->count + 1));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->own, m->count + 1));
+    if (m->weight) BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->weight, m->count + 1));
+    for (size_t i = 0; i < m->count; i++) c->order[i] = (uint32_t)i;
+    BRIO_FORWARD(brio_sort_rows(c->ctx, &(brio_row_order){m->x[0], 3, by_position, m}, c->order, m->count));
+    for (size_t n = 0; n < m->count; n++) {
+        uint32_t i = c->order[n];
+        c->rank[i] = (uint32_t)n;
+        memcpy(c->x + 3 * n, m->x[i], sizeof *m->x);
+        if (m->weight) c->weight[n] = m->weight[i];
+        c->own[n] = i < m->num_points;
+    }
+    for (size_t t = 0; t < c->unfolded.count; t++)
+        for (int i = 0; i < 4; i++) {
+            uint32_t *v = &c->unfolded.tet[t].vertex[i];
+            if (*v != BRIO_INFINITE) *v = c->rank[*v];
+        }
+    return BRIO_OK;
+}
+
+/* Gives the vertices of simplices their numbers in the list of images, ascending in each simplex. */
+static void name_vertices(const alpha_call *c, brio_alpha_complex *complex) {
+    for (size_t k = 0; k < 4; k++)
+        for (size_t n = 0; n < complex->counts[k]; n++) {
+            uint32_t *v = complex->simplices[k] + n * (k + 1);
+            for (size_t i = 0; i <= k; i++) {
+                uint32_t image = c->order[v[i]];
+                size_t at = i;
+                for (; at > 0 && v[at - 1] > image; at--) v[at] = v[at - 1];
+                v[at] = image;
+            }
+        }
+}
+
+static brio_status show_images(const alpha_call *c, brio_periodic_alpha *out) {
+    static const int64_t none[3] = {0, 0, 0};
+    const brio_images *m = &c->images;
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, out->images, m->count + 1));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, out->positions, 3 * m->count + 1));
+    out->num_images = m->count;
+    for (size_t i = 0; i < m->count; i++) {
+        out->images[i] = brio_periodic_show(c->t, &m->list[i], c->t->home[m->list[i].point], none);
+        for (int k = 0; k < 3; k++)
+            out->positions[3 * i + (size_t)k] = brio_lattice_shown(&c->t->lattice, m->x[i][k], k);
+    }
+    return BRIO_OK;
+}
+
+void brio_periodic_alpha_free(brio_periodic_alpha *a) {
+    if (!a) return;
+    brio_context *ctx = a->context;
+    brio_release(ctx, a->images);
+    brio_release(ctx, a->positions);
+    if (a->complex) brio_alpha_complex_free(a->complex);
+    brio_release(ctx, a->complex);
+    brio_release(ctx, a);
+}
+
+static brio_status find(alpha_call *c, brio_periodic_alpha *out) {
+    BRIO_FORWARD(brio_images_copy(c->ctx, &c->t->images, &c->t->lattice, &c->images));
+    BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, &c->images, &c->unfolded));
+    BRIO_FORWARD(number_images(c));
+    const brio_alpha_input in = {.tet = c->unfolded.tet,
+                                 .num_finite = c->unfolded.num_finite,
+                                 .count = c->unfolded.count,
+                                 .points = c->x,
+                                 .weights = c->weight,
+                                 .num_points = c->images.count,
+                                 .own = c->own};
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, out->complex, 1));
+    BRIO_FORWARD(brio_alpha_of_classes(c->ctx, &in, out->complex));
+    name_vertices(c, out->complex);
+    return show_images(c, out);
+}
+
+brio_status brio_periodic_alpha_values(brio_context *ctx, const brio_periodic *t, brio_periodic_alpha **out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    alpha_call c = {.ctx = ctx, .t = t};
+    brio_periodic_alpha *made = NULL;
+    *out = NULL;
+    BRIO_REQUIRE(ctx, t->stats.tetrahedra > 0, BRIO_ERR_NO_ANSWER,
+                 "%zu vertices of dimension %d have no tetrahedra, so no alpha complex", t->stats.vertices,
+                 t->stats.dimension);
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, made, 1));
+    made->size = sizeof *made;
+    made->context = ctx;
+    BRIO_TRY(find(&c, made));
+    *out = made;
+    made = NULL;
+done:
+    brio_periodic_alpha_free(made);
+    brio_images_free(&c.images);
+    brio_release(ctx, c.unfolded.tet);
+    brio_release(ctx, c.order);
+    brio_release(ctx, c.rank);
+    brio_release(ctx, c.x);
+    brio_release(ctx, c.weight);
+    brio_release(ctx, c.own);
+    return status;
+}

@@ -1,0 +1,280 @@
+/* Cells in ascending order of their sites: divided into files by their sites, each of which is then sorted in memory.
+ *
+ * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988. */
+#include "base/memory.h"
+#include "base/sort.h"
+#include "tiles/cells.h"
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* PARTS: files for each tile, so that the cells of one, with faces, fit where a tile fitted. AT_ONCE: cells that are
+ * handed on together. BUFFER: bytes that wait for a file, at most; all together have ALL_BUFFERS. Chosen. */
+enum { PARTS = 2, AT_ONCE = 1 << 11, BUFFER = 1 << 16, LEAST_BUFFER = 1 << 10, ALL_BUFFERS = 1 << 25 };
+
+typedef struct {
+    uint64_t site;
+    double volume, area, centroid[3];
+    uint32_t bounded, faces;
+} cell_row;
+
+typedef struct {
+    int64_t neighbour;
+    double area, normal[3];
+} face_row;
+
+/* A file, and what waits for it. */
+typedef struct {
+    brio_store_file file;
+    char *buffer;
+    size_t used, room;
+} tray;
+
+typedef struct {
+    brio_tiles *t;
+    bool areas, centroids, faces;
+    uint64_t share; /* sites of a part */
+    size_t num_parts;
+    tray *cells_of, *faces_of; /* of each part */
+} ordering;
+
+/* --- to the files --- */
+
+static brio_status flush(tray *f) {
+    brio_status status = f->used ? brio_store_append(&f->file, f->buffer, f->used) : BRIO_OK;
+    f->used = 0;
+    return status;
+}
+
+static brio_status put(tray *f, const void *bytes, size_t size) {
+    if (f->used + size > f->room) BRIO_FORWARD(flush(f));
+    assert(size <= f->room);
+    memcpy(f->buffer + f->used, bytes, size);
+    f->used += size;
+    return BRIO_OK;
+}
+
+static brio_status put_cell(ordering *o, const brio_cells *cells, size_t c, uint64_t site) {
+    size_t part = (size_t)(site / o->share);
+    cell_row row = {.site = site, .volume = cells->volume[c], .bounded = cells->bounded[c]};
+    assert(part < o->num_parts);
+    if (o->areas) row.area = cells->area[c];
+    if (o->centroids) memcpy(row.centroid, cells->centroid + 3 * c, sizeof row.centroid);
+    if (!o->faces) return put(&o->cells_of[part], &row, sizeof row);
+    row.faces = (uint32_t)(cells->face_offsets[c + 1] - cells->face_offsets[c]);
+    for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
+        face_row face = {.neighbour = cells->face_neighbours[f], .area = cells->face_areas[f]};
+        memcpy(face.normal, cells->face_normals + 3 * f, sizeof face.normal);
+        BRIO_FORWARD(put(&o->faces_of[part], &face, sizeof face));
+    }
+    return put(&o->cells_of[part], &row, sizeof row);
+}
+
+static brio_status put_cells(void *user, brio_cells *cells, const uint64_t *site) {
+    ordering *o = user;
+    for (size_t c = 0; c < cells->num_cells; c++) {
+        BRIO_FORWARD(put_cell(o, cells, c, site[c]));
+        BRIO_FORWARD(brio_look(o->t->ctx, 1));
+    }
+    return BRIO_OK;
+}
+
+static void name_of(const char *kind, size_t part, char name[32]) {
+    snprintf(name, 32, "%s-%zu", kind, part);
+}
+
+static brio_status open_tray(ordering *o, const char *kind, size_t part, tray *f) {
+    char name[32];
+    size_t share = ALL_BUFFERS / (2 * o->num_parts);
+    f->room = share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
+    name_of(kind, part, name);
+    BRIO_FORWARD(brio_store_create(&o->t->folder, name, &f->file));
+    brio_store_shut(&f->file);
+    return BRIO_ALLOC(o->t->ctx, f->buffer, f->room);
+}
+
+/* Closes the files. They stay in the folder. */
+static void close_trays(ordering *o, tray *list) {
+    for (size_t i = 0; list && i < o->num_parts; i++) {
+        brio_store_close(&list[i].file);
+        brio_release(o->t->ctx, list[i].buffer);
+        list[i].buffer = NULL;
+    }
+}
+
+static brio_status divide(ordering *o, const brio_cells_options *options, brio_tiles_cells_stats *stats) {
+    const brio_tile_cells_sink sink = {put_cells, o};
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(o->t->ctx, o->cells_of, o->num_parts));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(o->t->ctx, o->faces_of, o->num_parts));
+    for (size_t i = 0; i < o->num_parts; i++) o->cells_of[i].file.file = o->faces_of[i].file.file = -1;
+    for (size_t i = 0; i < o->num_parts; i++) {
+        BRIO_FORWARD(open_tray(o, "cells", i, &o->cells_of[i]));
+        if (o->faces) BRIO_FORWARD(open_tray(o, "faces", i, &o->faces_of[i]));
+    }
+    BRIO_FORWARD(brio_tiles_run_cells(o->t, options, &sink, stats));
+    for (size_t i = 0; i < o->num_parts; i++) {
+        BRIO_FORWARD(flush(&o->cells_of[i]));
+        if (o->faces) BRIO_FORWARD(flush(&o->faces_of[i]));
+    }
+    return BRIO_OK;
+}
+
+/* --- from the files --- */
+
+/* The cells of a part. */
+typedef struct {
+    cell_row *cell;
+    face_row *face;
+    uint64_t *begin; /* of each cell, its first face */
+    uint32_t *order;
+    size_t count;
+} rows;
+
+static int compare_sites(uint32_t i, uint32_t j, const void *user) {
+    const cell_row *cell = user;
+    return cell[i].site < cell[j].site ? -1 : cell[i].site > cell[j].site;
+}
+
+/* Reads a whole file, and removes it. */
+static brio_status read_all(ordering *o, const char *kind, size_t part, size_t size, void **out, size_t *count) {
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    char name[32], *bytes = NULL;
+    name_of(kind, part, name);
+    BRIO_TRY(brio_store_open(&o->t->folder, name, &f));
+    *count = (size_t)f.size / size;
+    BRIO_TRY(BRIO_ALLOC(o->t->ctx, bytes, *count * size + 1));
+    *out = bytes;
+    BRIO_TRY(brio_store_read(&f, 0, bytes, *count * size));
+done:
+    brio_store_close(&f);
+    brio_store_remove(&o->t->folder, name);
+    return status;
+}
+
+static brio_status read_rows(ordering *o, size_t part, rows *r) {
+    brio_context *ctx = o->t->ctx;
+    size_t num_faces = 0;
+    uint64_t next = 0;
+    void *cells = NULL, *faces = NULL;
+    brio_status status = read_all(o, "cells", part, sizeof *r->cell, &cells, &r->count);
+    r->cell = cells;
+    BRIO_FORWARD(status);
+    if (o->faces) status = read_all(o, "faces", part, sizeof *r->face, &faces, &num_faces);
+    r->face = faces;
+    BRIO_FORWARD(status);
+    BRIO_FORWARD(BRIO_ALLOC(ctx, r->begin, r->count + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, r->order, r->count + 1));
+    for (size_t c = 0; c < r->count; c++) {
+        r->order[c] = (uint32_t)c;
+        r->begin[c] = next;
+        next += r->cell[c].faces;
+    }
+    BRIO_EXPECT(ctx, next == num_faces, BRIO_ERR_OPEN, "%s/faces-%zu was changed from outside", o->t->folder.path,
+                part);
+    return brio_sort_many_indices(ctx, r->order, r->count, compare_sites, r->cell);
+}
+
+static brio_status make_cells(ordering *o, size_t n, size_t faces, brio_cells **out) {
+    brio_context *ctx = o->t->ctx;
+    brio_cells *cells = NULL;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, cells, 1));
+    *out = cells;
+    cells->size = sizeof *cells;
+    cells->context = ctx;
+    cells->num_cells = n;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, cells->site, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, cells->volume, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, cells->bounded, n + 1));
+    if (o->areas) BRIO_FORWARD(BRIO_ALLOC(ctx, cells->area, n + 1));
+    if (o->centroids) BRIO_FORWARD(BRIO_ALLOC(ctx, cells->centroid, 3 * n + 1));
+    if (!o->faces) return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_offsets, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_neighbours, faces + 1));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_areas, faces + 1));
+    return BRIO_ALLOC(ctx, cells->face_normals, 3 * faces + 1);
+}
+
+static void fill_cells(const ordering *o, const rows *r, size_t first, brio_cells *cells, uint64_t *site) {
+    uint64_t next = 0;
+    for (size_t c = 0; c < cells->num_cells; c++) {
+        const cell_row *row = &r->cell[r->order[first + c]];
+        const face_row *face = r->face + r->begin[r->order[first + c]];
+        site[c] = row->site;
+        cells->site[c] = (uint32_t)c;
+        cells->volume[c] = row->volume;
+        cells->bounded[c] = (uint8_t)row->bounded;
+        if (o->areas) cells->area[c] = row->area;
+        if (o->centroids) memcpy(cells->centroid + 3 * c, row->centroid, sizeof row->centroid);
+        if (!o->faces) continue;
+        cells->face_offsets[c] = next;
+        for (uint32_t f = 0; f < row->faces; f++, next++) {
+            cells->face_neighbours[next] = face[f].neighbour;
+            cells->face_areas[next] = face[f].area;
+            memcpy(cells->face_normals + 3 * next, face[f].normal, sizeof face->normal);
+        }
+    }
+    if (o->faces) cells->face_offsets[cells->num_cells] = next;
+}
+
+static brio_status hand_on(ordering *o, const rows *r, const brio_tile_cells_sink *sink) {
+    uint64_t site[AT_ONCE];
+    brio_status status = BRIO_OK;
+    for (size_t first = 0; first < r->count && status == BRIO_OK; first += AT_ONCE) {
+        size_t n = r->count - first < AT_ONCE ? r->count - first : AT_ONCE, faces = 0;
+        brio_cells *cells = NULL;
+        for (size_t c = 0; c < n; c++) faces += r->cell[r->order[first + c]].faces;
+        status = make_cells(o, n, faces, &cells);
+        if (status == BRIO_OK) {
+            fill_cells(o, r, first, cells, site);
+            status = sink->take(sink->user, cells, site);
+        }
+        brio_cells_free(cells);
+        if (status == BRIO_OK) status = brio_look(o->t->ctx, n);
+    }
+    return status;
+}
+
+static brio_status hand_on_part(ordering *o, size_t part, const brio_tile_cells_sink *sink) {
+    rows r = {0};
+    brio_status status = read_rows(o, part, &r);
+    if (status == BRIO_OK) status = hand_on(o, &r, sink);
+    brio_release(o->t->ctx, r.cell);
+    brio_release(o->t->ctx, r.face);
+    brio_release(o->t->ctx, r.begin);
+    brio_release(o->t->ctx, r.order);
+    return status;
+}
+
+static void remove_files(ordering *o) {
+    char name[32];
+    for (size_t i = 0; i < o->num_parts; i++) {
+        name_of("cells", i, name);
+        if (brio_store_has(&o->t->folder, name)) brio_store_remove(&o->t->folder, name);
+        name_of("faces", i, name);
+        if (brio_store_has(&o->t->folder, name)) brio_store_remove(&o->t->folder, name);
+    }
+}
+
+brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options,
+                                         const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats) {
+    ordering o = {.t = t,
+                  .areas = !options->no_areas,
+                  .centroids = !options->no_centroids,
+                  .faces = !options->no_faces,
+                  .num_parts = (size_t)PARTS * t->num_tiles};
+    brio_status status = BRIO_OK;
+    o.share = t->stats.points / o.num_parts + 1;
+    BRIO_TRY(divide(&o, options, stats));
+    close_trays(&o, o.cells_of);
+    close_trays(&o, o.faces_of);
+    for (size_t i = 0; i < o.num_parts; i++) BRIO_TRY(hand_on_part(&o, i, sink));
+done:
+    close_trays(&o, o.cells_of);
+    close_trays(&o, o.faces_of);
+    remove_files(&o);
+    brio_release(t->ctx, o.cells_of);
+    brio_release(t->ctx, o.faces_of);
+    return status;
+}
