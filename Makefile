@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets wheels integrations release npm page
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets wheels integrations release npm page mpi
 
 all:
 	@sh scripts/setup.sh build
@@ -64,6 +64,13 @@ bruteforce mutations metamorphic:
 	cmake --preset release
 	cmake --build build -j $(JOBS) --target $@
 	build/$@ --inputs $(INPUTS)
+
+# The same triangulation on many hosts, and its tests: docs/mpi.md.
+mpi:
+	@sh scripts/setup.sh mpi
+	cmake -S . -B build-mpi -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_MPI=ON
+	cmake --build build-mpi -j $(JOBS) --target brio-cli brio-mpi
+	/usr/bin/python3 tests/mpi/test_mpi.py build-mpi
 
 # Lines and branches of src and cli that the tests and the fuzzers' inputs reach: a table, and pages in out/coverage.
 # COVERAGE="-R unit" runs some of the tests: docs/measured/reliability.md.

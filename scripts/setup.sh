@@ -110,6 +110,12 @@ missing() {
     if [ "$1" = threads ]; then
         [ -x $python ] || echo python3
     fi
+    if [ "$1" = mpi ]; then
+        has mpicc || echo libopenmpi-dev
+        has mpirun || echo openmpi-bin
+        [ -x $python ] || echo python3
+        return 0
+    fi
     [ "$1" = check ] || return 0
     [ -x $python ] || echo python3
     has_python_with numpy || echo python3-numpy
@@ -138,7 +144,7 @@ missing_peers() {
         has npm || echo nodejs npm
         return 0
     fi
-    case $1 in build | model | npm | threads | analyze | fuzz | coverage | oracles | quality | site | deb) return 0 ;; esac
+    case $1 in build | model | npm | threads | mpi | analyze | fuzz | coverage | oracles | quality | site | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
@@ -311,9 +317,9 @@ packages)
     sh "$0" web || true
     exit 0
     ;;
-build | check | web | model | threads | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | blender | npm | site | deb) ;;
+build | check | web | model | threads | mpi | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | blender | npm | site | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|web|model|threads|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|blender|npm|site|deb" >&2
+    echo "usage: setup.sh build|check|packages|web|model|threads|mpi|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|blender|npm|site|deb" >&2
     exit 1
     ;;
 esac

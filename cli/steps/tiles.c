@@ -46,15 +46,18 @@ typedef struct {
     brio_status status;
 } intake;
 
+brio_status cli_block_weights(run *r, const weights_options *options, const brio_mesh *block, uint64_t first,
+                              double **weights) {
+    weights_options o = *options;
+    o.estimate = first > 0; /* its words are said once */
+    if (o.exponent != NO_EXPONENT) return cli_modular_weights(r, o.exponent, first, block->num_vertices, weights);
+    return cli_weights(r, &o, block, weights);
+}
+
 static brio_status add_block(intake *in, const brio_mesh *block) {
     double *weights = NULL;
     brio_status status = BRIO_OK;
-    weights_options options = *in->options;
-    options.estimate = in->count > 0; /* its words are said once */
-    if (options.exponent != NO_EXPONENT)
-        TRY(cli_modular_weights(in->r, options.exponent, in->count, block->num_vertices, &weights));
-    else
-        TRY(cli_weights(in->r, &options, block, &weights));
+    TRY(cli_block_weights(in->r, in->options, block, in->count, &weights));
     TRY(brio_tiles_add(in->r->ctx, in->tiles, block->vertices, weights, block->num_vertices));
     in->count += block->num_vertices;
 done:
@@ -94,20 +97,17 @@ static uint64_t mix_text(uint64_t hash, const char *text) {
 }
 
 /* Returns whether the points may be in files beside the one that is named: .node beside .ele, buffers beside .gltf. */
-static bool has_files_beside(const run *r) {
+static bool has_files_beside(const run *r, const char *path) {
     const common_options *c = &r->common;
-    brio_format format = brio_format_of(c->input_format ? c->input_format : r->operands[0]);
+    brio_format format = brio_format_of(c->input_format ? c->input_format : path);
     return format == brio_format_of(".ele") || format == brio_format_of(".gltf");
 }
 
-/* Returns a number for the input as it is now and the way in which it is read, or 0 if it cannot be read again, or if
- * the file does not tell whether the points are the same. */
-static uint64_t key_of(const run *r, const weights_options *w) {
+uint64_t cli_tiles_key(const run *r, const weights_options *w, const char *path) {
     brio_place_facts file;
     const common_options *c = &r->common;
-    const char *path = r->operands[0];
     if (!strcmp(path, "-") || !brio_find_facts(path, &file) || file.kind != BRIO_IS_FILE) return 0;
-    if (has_files_beside(r)) return 0;
+    if (has_files_beside(r, path)) return 0;
     uint64_t hash = mix_text(1, path);
     hash = mix(mix(hash, file.number), file.volume);
     hash = mix(mix(hash, file.size), (uint64_t)file.seconds);
@@ -120,13 +120,9 @@ static uint64_t key_of(const run *r, const weights_options *w) {
 
 /* --- report --- */
 
-static brio_status report(run *r, brio_tiles *t, bool weighted) {
-    const brio_tiles_stats *s = brio_tiles_facts(t);
+void cli_report_tiles(run *r, const brio_tiles_stats *s, uint64_t checksum) {
     facts *f = &r->facts;
-    uint64_t checksum;
-    FORWARD(brio_tiles_checksum(r->ctx, t, &checksum));
-    cli_lap(r, "checksum");
-    cli_fact_bool(f, "weighted", weighted);
+    cli_fact_bool(f, "weighted", s->weighted);
     cli_fact_count(f, "points", s->points);
     cli_fact_count(f, "vertices", s->vertices);
     cli_fact_count(f, "duplicates", s->duplicates);
@@ -146,21 +142,25 @@ static brio_status report(run *r, brio_tiles *t, bool weighted) {
     cli_fact_count(f, "triangulated", s->triangulated);
     cli_fact_count(f, "most_rounds", s->most_rounds);
     cli_fact_count(f, "most_tetrahedra", s->most_tetrahedra);
+}
+
+static brio_status report(run *r, brio_tiles *t) {
+    uint64_t checksum;
+    FORWARD(brio_tiles_checksum(r->ctx, t, &checksum));
+    cli_lap(r, "checksum");
+    cli_report_tiles(r, brio_tiles_facts(t), checksum);
     return BRIO_OK;
 }
 
 /* --- output --- */
 
-/* Writes a tile. Its vertices have the property `point`, the index in the input, and `weight` if points have weights:
- * all files have the same properties, which the index names. */
-static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighted, const char *path) {
-    brio_tile_part part = {.size = sizeof part};
+brio_status cli_write_part(run *r, const brio_tile_part *p, bool weighted, const char *path) {
+    brio_tile_part part = *p;
     brio_mesh *mesh = NULL;
     brio_write_options how = {.size = sizeof how, .ascii = r->common.ascii, .compress = r->common.compress};
     double *values;
     void *data;
     brio_status status = BRIO_OK;
-    TRY(brio_tiles_part(r->ctx, t, tile, &part));
     TRY(brio_mesh_new(r->ctx, &mesh));
     TRY(brio_mesh_set_vertices(mesh, part.points, part.num_vertices));
     TRY(brio_mesh_set_tetrahedra(mesh, *part.tetrahedra, 4, part.num_tetrahedra));
@@ -174,11 +174,18 @@ static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighte
     status = brio_write(r->ctx, path, mesh, &how);
 done:
     brio_mesh_free(mesh);
+    return status;
+}
+
+static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighted, const char *path) {
+    brio_tile_part part = {.size = sizeof part};
+    FORWARD(brio_tiles_part(r->ctx, t, tile, &part));
+    brio_status status = cli_write_part(r, &part, weighted, path);
     brio_tile_part_free(r->ctx, &part);
     return status;
 }
 
-static brio_status write_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
+brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
     new_file f = {0};
     brio_status status = BRIO_OK;
     TRY(cli_new_file_open(r, r->common.output, &f));
@@ -212,7 +219,7 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
         TRY(write_tile(r, t, i, weighted, path));
     }
     TRY(cli_new_folder_name(r, &folder));
-    status = write_index(r, folder.path, tiles, weighted);
+    status = cli_write_tiles_index(r, folder.path, tiles, weighted);
 done:
     cli_new_folder_close(&folder, status == BRIO_OK);
     cli_lap(r, "write");
@@ -224,7 +231,7 @@ done:
 brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars,
                                   brio_tiles **out) {
     brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles, .stars = stars};
-    o.key = key_of(r, weights);
+    o.key = cli_tiles_key(r, weights, r->operands[0]);
     FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
     FORWARD(brio_tiles_new(r->ctx, &o, out));
     if (!brio_tiles_has_points(*out)) FORWARD(read_into(r, weights, *out));
@@ -241,9 +248,8 @@ brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
     brio_tiles *t = NULL;
     brio_status status = BRIO_OK;
     TRY(cli_triangulate_tiles(r, weights, tiles, false, &t));
-    bool weighted = brio_tiles_facts(t)->weighted;
-    TRY(report(r, t, weighted));
-    if (r->common.output) TRY(write_tiles(r, t, (uint32_t)tiles, weighted));
+    TRY(report(r, t));
+    if (r->common.output) TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
 done:
     brio_tiles_free(t);
     return status;

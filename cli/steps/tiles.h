@@ -24,4 +24,19 @@ brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64
  *  the folder x beside it. */
 brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles);
 
+/* --- what brio-mpi has the same of --- */
+
+/** Returns a number for a file as it is now and the way in which it is read, or 0 if it cannot be read again, or if
+ *  the file does not tell whether the points are the same. */
+uint64_t cli_tiles_key(const run *r, const weights_options *w, const char *path);
+/** Finds the weights of a block, or NULL.   first  the index of its first point.   *weights  the caller frees it. */
+brio_status cli_block_weights(run *r, const weights_options *options, const brio_mesh *block, uint64_t first,
+                              double **weights);
+void cli_report_tiles(run *r, const brio_tiles_stats *s, uint64_t checksum);
+/** Writes the tetrahedra of a tile. Its vertices have the property `point`, the index in the input, and `weight` if
+ *  points have weights: all files have the same properties, which the index names. */
+brio_status cli_write_part(run *r, const brio_tile_part *part, bool weighted, const char *path);
+/** Writes -o, the index of files 0.vtu and so on in a folder beside it. */
+brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted);
+
 #endif

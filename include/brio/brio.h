@@ -96,6 +96,7 @@
 #include "points.h"        /* thinning, outliers, samples of a mesh */
 #include "triangulation.h" /* Delaunay and regular triangulations */
 #include "tiles.h"         /* triangulations of more points than fit in memory */
+#include "ranks.h"         /* the same by many processes */
 #include "dynamic.h"       /* triangulations that live: points inserted, removed, moved */
 #include "queries.h"       /* location, nearest vertices, interpolation */
 #include "cells.h"         /* Voronoi and power cells */

@@ -59,6 +59,8 @@
 #define BRIO_FIRST_brio_surface_stats         rounding
 #define BRIO_FIRST_brio_tile_part             num_tetrahedra
 #define BRIO_FIRST_brio_tiles_options         key
+#define BRIO_FIRST_brio_ranks_options         key
+#define BRIO_FIRST_brio_transport             end
 #define BRIO_FIRST_brio_voronoi_axis_options  seed
 #define BRIO_FIRST_brio_voronoi_axis_stats    label_seconds
 #define BRIO_FIRST_brio_write_options         reserved_int

@@ -108,8 +108,15 @@ static bool spans_more(const brio_tiles *t, brio_filter *f, const double *p) {
     }
 }
 
+void brio_tiles_note(brio_tiles *t, brio_filter *f, const brio_set_point *p) {
+    bool first = t->num_basis == 0;
+    for (int d = 0; d < TILE_DIRECTIONS; d++)
+        if (first || along(d, p->record) > along(d, t->extreme[d].record)) t->extreme[d] = *p;
+    if (spans_more(t, f, p->record)) t->basis[t->num_basis++] = *p;
+}
+
 /* Notes the extreme ones of the points of a block. In most directions its box tells that it has none: the sums are
- * monotone, also as they are rounded. */
+ * monotone, also as they are rounded. The point at the first place of this process is compared with none. */
 static void note_extremes(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (size_t i = 0; i < n; i++)
@@ -121,9 +128,9 @@ static void note_extremes(brio_tiles *t, const brio_set_point *points, size_t n,
     for (int d = 0; d < TILE_DIRECTIONS; d++) {
         double corner[3];
         for (int k = 0; k < 3; k++) corner[k] = sign_along(d, k) < 0 ? low[k] : high[k];
-        if (place > 0 && !(along(d, corner) > along(d, t->extreme[d].record))) continue;
+        if (place > t->first_place && !(along(d, corner) > along(d, t->extreme[d].record))) continue;
         for (size_t i = 0; i < n; i++)
-            if (place + i == 0 || along(d, points[i].record) > along(d, t->extreme[d].record)) {
+            if (place + i == t->first_place || along(d, points[i].record) > along(d, t->extreme[d].record)) {
                 t->extreme[d] = points[i];
                 t->extreme[d].name = place + i;
             }
@@ -187,7 +194,7 @@ brio_status brio_tiles_arrange(brio_tiles *t) {
     brio_store_file out = {.file = -1};
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(t->ctx);
-    uint64_t place = 0;
+    uint64_t place = t->first_place;
     BRIO_TRY(brio_store_create(&t->folder, "points.new", &out));
     out.hashes = t->key != 0;
     for (uint32_t i = 0; i < t->num_tiles; i++) {

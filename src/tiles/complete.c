@@ -21,18 +21,25 @@ typedef struct {
 
 _Static_assert(sizeof(tile_head) % 8 == 0, "whole words");
 
-static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '3'}, BORDER[] = "border.new";
+static const char MAGIC[8] = {'b', 'r', 'i', 'o', 't', 'i', 'l', '3'};
 
-enum { BUFFER = 1 << 13 };
+enum { BUFFER = 1 << 13 }; /* tetrahedra of the border */
 
-typedef struct {
+struct brio_tile_work {
     brio_tiles *t;
-    brio_tile *facts;
+    uint32_t tile;
+    brio_tile *facts, before;
+    brio_ball_box seen; /* all points in it are known from the beginning */
+    brio_tile_source *source;
+    brio_completion *completion;
+    size_t num_known;            /* from the beginning */
     brio_store_file out, border; /* the border is copied to the end of `out` */
-    uint32_t (*buffer)[4];       /* of the border */
+    uint32_t (*buffer)[4];       /* what the border has not yet */
     size_t num_buffer;
     uint64_t *halo;
-} writing;
+};
+
+typedef brio_tile_work writing;
 
 /* --- tetrahedra --- */
 
@@ -54,6 +61,24 @@ static bool belongs_here(const writing *w, const brio_set_point *known, const ui
     for (int i = 1; i < count; i++)
         if (brio_lexicographic(known[v[i]].record, known[v[least]].record) < 0) least = i;
     return v[least] < w->facts->points;
+}
+
+static void name_border(const writing *w, char name[32]) {
+    snprintf(name, 32, "border-%u", w->tile);
+}
+
+static brio_status begin_border(writing *w) {
+    char name[32];
+    name_border(w, name);
+    BRIO_FORWARD(brio_store_create(&w->t->folder, name, &w->border));
+    return BRIO_ALLOC(w->t->ctx, w->buffer, BUFFER);
+}
+
+static void end_border(writing *w) {
+    char name[32];
+    name_border(w, name);
+    brio_store_close(&w->border);
+    brio_store_remove(&w->t->folder, name);
 }
 
 static brio_status flush_border(writing *w) {
@@ -104,10 +129,10 @@ static bool is_known(const brio_set_point *points, size_t begin, size_t end, uin
 }
 
 /* Lists the points that are known from the beginning: own ones, extreme ones, a basis, those near the border, a coarse
- * sample. */
-static brio_status list_known(brio_tiles *t, uint32_t tile, brio_tile_source *source, brio_found *list,
-                              brio_ball_box *seen) {
-    const brio_tile *facts = &t->tile[tile];
+ * sample; and those of other processes. */
+static brio_status list_known(const writing *w, const brio_found *more, brio_found *list) {
+    brio_tiles *t = w->t;
+    const brio_tile *facts = w->facts;
     size_t n = facts->points;
     BRIO_FORWARD(BRIO_RESERVE(t->ctx, list->point, list->capacity, n + TILE_DIRECTIONS + 4));
     BRIO_FORWARD(brio_tile_points(t, facts->place, n, list->point));
@@ -118,8 +143,9 @@ static brio_status list_known(brio_tiles *t, uint32_t tile, brio_tile_source *so
         bool own = p->name >= facts->place && p->name - facts->place < n;
         if (!own && !is_known(list->point, n, list->count, p->name)) list->point[list->count++] = *p;
     }
-    BRIO_FORWARD(brio_tile_halo(t, tile, list, seen));
-    return brio_tile_coarse_sample(source, list);
+    BRIO_FORWARD(brio_tile_halo_add(t, w->tile, (uint32_t)t->num_nodes - 1, &w->seen, list));
+    for (size_t i = 0; more && i < more->count; i++) BRIO_FORWARD(brio_found_add(list, &more->point[i]));
+    return brio_tile_coarse_sample(w->source, &t->node[facts->root].box, list);
 }
 
 static void note_facts(brio_tile *facts, const brio_completion_stats *s, const brio_tile_source *source,
@@ -137,14 +163,14 @@ static void note_facts(brio_tile *facts, const brio_completion_stats *s, const b
     facts->stars = stars;
 }
 
-static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_vertex) {
+static brio_status write_rest(writing *w, const uint8_t *is_vertex) {
     brio_store_file *f = &w->out;
     char name[32];
     tile_head head;
     memset(&head, 0, sizeof head);
-    head.key = w->t->key, head.tile = tile, head.points = w->facts->points, head.facts = *w->facts;
+    head.key = w->t->key, head.tile = w->tile, head.points = w->facts->points, head.facts = *w->facts;
     memcpy(head.magic, MAGIC, sizeof head.magic);
-    snprintf(name, sizeof name, "tile-%u", tile);
+    snprintf(name, sizeof name, "tile-%u", w->tile);
     BRIO_FORWARD(brio_store_append(f, w->halo, w->facts->halo * sizeof *w->halo));
     if (w->t->stars) BRIO_FORWARD(copy_border(w));
     BRIO_FORWARD(brio_store_append(f, is_vertex, w->facts->points)); /* last: all else is whole words */
@@ -154,84 +180,14 @@ static brio_status write_rest(writing *w, uint32_t tile, const uint8_t *is_verte
     return brio_store_publish(f, name);
 }
 
-/* Asks the questions of a round. */
-static brio_status ask(brio_completion *c, size_t questions, brio_tile_source *source, brio_ball *balls,
-                       brio_found *found) {
-    brio_tile_source_round(source);
-    for (size_t first = 0; first < questions; first += BRIO_COMPLETION_BALLS) {
-        size_t n = questions - first < BRIO_COMPLETION_BALLS ? questions - first : BRIO_COMPLETION_BALLS;
-        brio_completion_balls(c, first, n, balls);
-        found->count = 0;
-        BRIO_FORWARD(brio_tile_conflicts(source, balls, n, found));
-        BRIO_FORWARD(brio_completion_take(c, found->point, found->count));
-        for (size_t i = 0; i < n; i++)
-            if (balls[i].is_free) brio_completion_is_free(c, first + i);
-    }
-    return BRIO_OK;
-}
-
-static brio_status run_rounds(brio_tiles *t, brio_completion *c, brio_tile_source *source) {
-    brio_status status = BRIO_OK;
-    brio_ball *balls = NULL;
-    brio_found found = {.ctx = t->ctx};
-    BRIO_TRY(BRIO_ALLOC(t->ctx, balls, BRIO_COMPLETION_BALLS));
-    for (bool goes_on = true; goes_on;) {
-        size_t questions;
-        BRIO_TRY(brio_completion_begin(c, &questions));
-        BRIO_TRY(ask(c, questions, source, balls, &found));
-        BRIO_TRY(brio_completion_end(c, &goes_on));
-    }
-done:
-    brio_release(t->ctx, balls);
-    brio_release(t->ctx, found.point);
-    return status;
-}
-
 /* Lists the names of the known points of other tiles. */
-static brio_status list_halo(writing *w, const brio_completion *c) {
+static brio_status list_halo(writing *w) {
     size_t own = w->facts->points, count;
-    const brio_set_point *known = brio_completion_known(c, &count);
+    const brio_set_point *known = brio_completion_known(w->completion, &count);
     w->facts->halo = count - own;
     BRIO_FORWARD(BRIO_ALLOC(w->t->ctx, w->halo, count - own + 1));
     for (size_t i = own; i < count; i++) w->halo[i - own] = known[i].name;
     return BRIO_OK;
-}
-
-static brio_status complete(brio_tiles *t, uint32_t tile, writing *w) {
-    brio_status status = BRIO_OK;
-    brio_bar bar = brio_progress_bar(t->ctx);
-    brio_tile_source *source = NULL;
-    brio_completion *c = NULL;
-    brio_found list = {.ctx = t->ctx};
-    uint8_t *is_vertex = NULL;
-    brio_ball_box seen;
-    BRIO_TRY(brio_tile_source_new(t, tile, &source));
-    BRIO_TRY(list_known(t, tile, source, &list, &seen));
-    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, is_vertex, w->facts->points + 1));
-    brio_completion_task task = {.points = list.point,
-                                 .num_own = w->facts->points,
-                                 .num_points = list.count,
-                                 .weighted = t->weighted,
-                                 .all = t->all,
-                                 .home = &seen,
-                                 .final = t->stars ? take_stars : take,
-                                 .final_user = w,
-                                 .least_only = !t->stars};
-    BRIO_TRY(brio_completion_new(t->ctx, &task, &c));
-    brio_release(t->ctx, list.point);
-    list.point = NULL;
-    BRIO_TRY(run_rounds(t, c, source));
-    brio_completion_vertices(c, is_vertex);
-    BRIO_TRY(list_halo(w, c));
-    note_facts(w->facts, brio_completion_facts(c), source, list.count, t->stars);
-    status = write_rest(w, tile, is_vertex);
-done:
-    brio_completion_delete(c);
-    brio_tile_source_free(source);
-    brio_release(t->ctx, list.point);
-    brio_release(t->ctx, is_vertex);
-    brio_progress_part(t->ctx, bar, 0, 1);
-    return status;
 }
 
 /* Returns whether a file is that of the tile as a run before wrote it, every byte of it.   head  receives its head. */
@@ -267,33 +223,142 @@ static brio_status take_finished(brio_tiles *t, uint32_t tile, bool *found) {
     return status == BRIO_ERR_OPEN ? BRIO_OK : status; /* what cannot be read is made anew */
 }
 
-brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
-    writing w = {.t = t, .facts = &t->tile[tile], .out.file = -1, .border.file = -1};
-    const brio_tile before = *w.facts;
+static brio_status begin(brio_tile_work *w, const brio_found *more) {
     brio_status status = BRIO_OK;
+    brio_tiles *t = w->t;
+    brio_found list = {.ctx = t->ctx};
     tile_head none = {.points = 0};
+    char name[32];
+    snprintf(name, sizeof name, "new-%u", w->tile);
+    BRIO_TRY(brio_store_create(&t->folder, name, &w->out));
+    BRIO_TRY(brio_store_append(&w->out, &none, sizeof none));
+    w->out.hashes = t->key != 0;
+    if (t->stars) BRIO_TRY(begin_border(w));
+    BRIO_TRY(brio_tile_source_new(t, w->tile, (uint32_t)t->num_nodes - 1, &w->source));
+    BRIO_TRY(list_known(w, more, &list));
+    w->num_known = list.count;
+    brio_completion_task task = {.points = list.point,
+                                 .num_own = w->facts->points,
+                                 .num_points = list.count,
+                                 .weighted = t->weighted,
+                                 .all = t->all,
+                                 .home = &w->seen,
+                                 .final = t->stars ? take_stars : take,
+                                 .final_user = w,
+                                 .least_only = !t->stars};
+    status = brio_completion_new(t->ctx, &task, &w->completion);
+done:
+    brio_release(t->ctx, list.point);
+    return status;
+}
+
+brio_status brio_tile_begin(brio_tiles *t, uint32_t tile, const brio_found *more, const brio_ball_box *seen,
+                            brio_tile_work **out) {
+    brio_tile_work *w = NULL;
+    brio_status status = BRIO_OK;
+    brio_tile *facts = &t->tile[tile];
     bool found = false;
-    if (!before.points || before.finished) return BRIO_OK;
+    *out = NULL;
+    if (!facts->points || facts->finished) return BRIO_OK;
     if (t->key) BRIO_TRY(take_finished(t, tile, &found));
     t->stats.resumed += found;
     if (found) goto done;
-    BRIO_TRY(brio_store_create(&t->folder, "tile.new", &w.out));
-    BRIO_TRY(brio_store_append(&w.out, &none, sizeof none));
-    w.out.hashes = t->key != 0;
-    if (t->stars) {
-        BRIO_TRY(brio_store_create(&t->folder, BORDER, &w.border));
-        BRIO_TRY(BRIO_ALLOC(t->ctx, w.buffer, BUFFER));
-    }
-    status = complete(t, tile, &w);
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, w, 1));
+    w->t = t, w->tile = tile, w->facts = facts, w->before = *facts, w->out.file = w->border.file = -1;
+    if (seen)
+        w->seen = *seen;
+    else
+        BRIO_TRY(brio_tile_halo_box(t, tile, &w->seen));
+    BRIO_TRY(begin(w, more));
+    *out = w;
+    w = NULL;
 done:
-    if (status != BRIO_OK) *w.facts = before; /* the tile may be tried again */
-    brio_store_close(&w.out);
-    if (w.border.file >= 0) {
-        brio_store_close(&w.border);
-        brio_store_remove(&t->folder, BORDER);
+    brio_tile_end(w);
+    return status;
+}
+
+void brio_tile_end(brio_tile_work *w) {
+    if (!w) return;
+    brio_context *ctx = w->t->ctx;
+    if (!w->facts->finished) *w->facts = w->before; /* the tile may be tried again */
+    brio_completion_delete(w->completion);
+    brio_tile_source_free(w->source);
+    brio_store_close(&w->out);
+    if (w->border.file >= 0) end_border(w);
+    brio_release(ctx, w->buffer);
+    brio_release(ctx, w->halo);
+    brio_release(ctx, w);
+}
+
+brio_completion *brio_tile_work_completion(brio_tile_work *w) {
+    return w->completion;
+}
+
+brio_tile_source *brio_tile_work_source(brio_tile_work *w) {
+    return w->source;
+}
+
+brio_status brio_tile_finish(brio_tile_work *w) {
+    uint8_t *is_vertex = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(w->t->ctx, is_vertex, w->facts->points + 1));
+    brio_completion_vertices(w->completion, is_vertex);
+    BRIO_TRY(list_halo(w));
+    note_facts(w->facts, brio_completion_facts(w->completion), w->source, w->num_known, w->t->stars);
+    status = write_rest(w, is_vertex);
+done:
+    if (status != BRIO_OK) w->facts->finished = 0;
+    brio_release(w->t->ctx, is_vertex);
+    return status;
+}
+
+/* --- with one process --- */
+
+/* Asks the questions of a round. */
+static brio_status ask(brio_tile_work *w, size_t questions, brio_ball *balls, brio_found *found) {
+    brio_completion *c = w->completion;
+    brio_tile_source_round(w->source);
+    for (size_t first = 0; first < questions; first += BRIO_COMPLETION_BALLS) {
+        size_t n = questions - first < BRIO_COMPLETION_BALLS ? questions - first : BRIO_COMPLETION_BALLS;
+        brio_completion_balls(c, first, n, balls);
+        found->count = 0;
+        BRIO_FORWARD(brio_tile_conflicts(w->source, balls, n, found));
+        BRIO_FORWARD(brio_completion_take(c, found->point, found->count));
+        for (size_t i = 0; i < n; i++)
+            if (balls[i].is_free) brio_completion_is_free(c, first + i);
     }
-    brio_release(t->ctx, w.buffer);
-    brio_release(t->ctx, w.halo);
+    return BRIO_OK;
+}
+
+static brio_status run_rounds(brio_tile_work *w) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = w->t->ctx;
+    brio_ball *balls = NULL;
+    brio_found found = {.ctx = ctx};
+    BRIO_TRY(BRIO_ALLOC(ctx, balls, BRIO_COMPLETION_BALLS));
+    for (bool goes_on = true; goes_on;) {
+        size_t questions;
+        BRIO_TRY(brio_completion_begin(w->completion, &questions));
+        BRIO_TRY(ask(w, questions, balls, &found));
+        BRIO_TRY(brio_completion_end(w->completion, &goes_on));
+    }
+done:
+    brio_release(ctx, balls);
+    brio_release(ctx, found.point);
+    return status;
+}
+
+brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile) {
+    brio_status status = BRIO_OK;
+    brio_bar bar = brio_progress_bar(t->ctx);
+    brio_tile_work *w = NULL;
+    BRIO_TRY(brio_tile_begin(t, tile, NULL, NULL, &w));
+    if (!w) goto done;
+    BRIO_TRY(run_rounds(w));
+    status = brio_tile_finish(w);
+done:
+    brio_tile_end(w);
+    brio_progress_part(t->ctx, bar, 0, 1);
     return status;
 }
 

@@ -66,13 +66,14 @@ static brio_status begin_taking(brio_tiles *t) {
     return BRIO_OK;
 }
 
-brio_status brio_tiles_take(brio_tiles *t, const double *points, const double *weights, size_t num_points) {
+brio_status brio_tiles_take(brio_tiles *t, const double *points, const double *weights, size_t num_points,
+                            uint64_t first) {
     BRIO_FORWARD(begin_taking(t));
     for (size_t i = 0; i < num_points; i++) {
         brio_set_point *p = &t->some[t->num_some];
         for (size_t k = 0; k < 3; k++) p->record[k] = points[3 * i + k] + 0.0;
         p->record[3] = weights ? weights[i] + 0.0 : 0.0;
-        p->name = t->stats.points;
+        p->name = first + i;
         static const char *const NAME[4] = {"x", "y", "z", "the weight"};
         for (int k = 0; k < 4; k++)
             BRIO_EXPECT(t->ctx, isfinite(p->record[k]), BRIO_ERR_NOT_FINITE, "point %llu: %s is %s",
@@ -85,6 +86,26 @@ brio_status brio_tiles_take(brio_tiles *t, const double *points, const double *w
         BRIO_FORWARD(brio_look(t->ctx, 1));
     }
     return BRIO_OK;
+}
+
+brio_status brio_tiles_end_taking(brio_tiles *t) {
+    BRIO_FORWARD(begin_taking(t));
+    return flush_raw(t);
+}
+
+brio_status brio_tiles_read_raw(brio_tiles *t, uint64_t from, size_t *count) {
+    uint64_t left = t->stats.points - from;
+    *count = left < MOST_SOME ? (size_t)left : MOST_SOME;
+    return brio_store_read(&t->raw, from * sizeof *t->some, t->some, *count * sizeof *t->some);
+}
+
+void brio_tiles_drop_raw(brio_tiles *t) {
+    brio_store_close(&t->raw);
+    brio_store_remove(&t->folder, "raw");
+    brio_release(t->ctx, t->some);
+    brio_release(t->ctx, t->sample);
+    brio_release(t->ctx, t->sample_hash);
+    t->some = NULL, t->sample = NULL, t->sample_hash = NULL;
 }
 
 /* --- cuts --- */
@@ -144,10 +165,10 @@ static size_t partition(brio_tiles *t, const part *p, const brio_tile_cut *cut) 
 }
 
 /* Cuts a part, and appends its cuts. Returns what names it in a cut. */
-static int32_t cut_part(brio_tiles *t, const part *p, uint64_t *key) {
+static int32_t cut_part(brio_tiles *t, const part *p, uint64_t *key, brio_ball_box *home) {
     brio_tile_cut cut = {.at = -INFINITY}; /* all points above: what coincides is in one tile */
     if (p->num_tiles == 1) {
-        t->tile[p->first_tile].home = p->home;
+        home[p->first_tile] = p->home;
         return -1 - (int32_t)p->first_tile;
     }
     part below = *p, above = *p;
@@ -158,28 +179,37 @@ static int32_t cut_part(brio_tiles *t, const part *p, uint64_t *key) {
     below.end = above.begin = partition(t, p, &cut);
     below.home.high[cut.axis] = above.home.low[cut.axis] = cut.at;
     int32_t at = (int32_t)t->num_cuts++;
-    cut.below = cut_part(t, &below, key);
-    cut.above = cut_part(t, &above, key);
+    cut.below = cut_part(t, &below, key, home);
+    cut.above = cut_part(t, &above, key, home);
     t->cut[at] = cut;
     return at;
 }
 
-static brio_status cut_space(brio_tiles *t) {
+brio_status brio_tiles_cut(brio_tiles *t, uint32_t num_tiles, brio_ball_box *home) {
     uint64_t *key = NULL;
     part whole = {0,
-                  t->num_tiles,
+                  num_tiles,
                   0,
                   t->num_sample,
                   {{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}, t->all.weight}};
-    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->cut, t->num_tiles));
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->cut, num_tiles));
     BRIO_FORWARD(BRIO_ALLOC(t->ctx, key, t->num_sample + 1));
     t->num_cuts = 0;
-    cut_part(t, &whole, key);
+    cut_part(t, &whole, key, home);
     brio_release(t->ctx, key);
     return BRIO_OK;
 }
 
-static uint32_t tile_of(const brio_tiles *t, const double *record) {
+static brio_status cut_space(brio_tiles *t) {
+    brio_ball_box *home = NULL;
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, home, t->num_tiles));
+    brio_status status = brio_tiles_cut(t, t->num_tiles, home);
+    for (uint32_t i = 0; status == BRIO_OK && i < t->num_tiles; i++) t->tile[i].home = home[i];
+    brio_release(t->ctx, home);
+    return status;
+}
+
+uint32_t brio_tiles_tile_of(const brio_tiles *t, const double *record) {
     int32_t at = t->num_cuts ? 0 : -1;
     while (at >= 0) at = record[t->cut[at].axis] < t->cut[at].at ? t->cut[at].below : t->cut[at].above;
     return (uint32_t)(-1 - at);
@@ -187,11 +217,13 @@ static uint32_t tile_of(const brio_tiles *t, const double *record) {
 
 /* --- distribution --- */
 
-typedef struct {
+struct brio_tile_tray {
     brio_store_file file;
     brio_set_point *buffer;
     size_t count, room;
-} tray;
+};
+
+typedef brio_tile_tray tray;
 
 /* Returns how many points wait for each tile's file: few if there are many tiles, so that all together fit. */
 static size_t room_of_tray(const brio_tiles *t) {
@@ -199,8 +231,22 @@ static size_t room_of_tray(const brio_tiles *t) {
     return share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
 }
 
-static brio_status put(brio_tiles *t, tray *trays, const brio_set_point *p) {
-    uint32_t tile = tile_of(t, p->record);
+brio_status brio_tile_trays_new(brio_tiles *t, brio_tile_tray **out) {
+    char name[32];
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, *out, t->num_tiles));
+    tray *trays = *out;
+    for (uint32_t i = 0; i < t->num_tiles; i++) trays[i].file.file = -1;
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        snprintf(name, sizeof name, "divided-%u", i);
+        BRIO_FORWARD(brio_store_create(&t->folder, name, &trays[i].file));
+        brio_store_shut(&trays[i].file);
+        trays[i].room = room_of_tray(t);
+        BRIO_FORWARD(BRIO_ALLOC(t->ctx, trays[i].buffer, trays[i].room));
+    }
+    return BRIO_OK;
+}
+
+brio_status brio_tile_trays_put(brio_tiles *t, brio_tile_tray *trays, uint32_t tile, const brio_set_point *p) {
     tray *tr = &trays[tile];
     t->tile[tile].raw++;
     tr->buffer[tr->count++] = *p;
@@ -209,21 +255,15 @@ static brio_status put(brio_tiles *t, tray *trays, const brio_set_point *p) {
     return brio_store_append(&tr->file, tr->buffer, tr->room * sizeof *p);
 }
 
-static brio_status distribute(brio_tiles *t, tray *trays) {
-    uint64_t n = t->stats.points;
-    brio_store_file *raw = &t->raw;
-    for (uint64_t done = 0; done < n; done += MOST_SOME) {
-        size_t some = n - done < MOST_SOME ? (size_t)(n - done) : MOST_SOME;
-        BRIO_FORWARD(brio_progress(t->ctx, "divide", (double)done / (double)n));
-        BRIO_FORWARD(brio_store_read(raw, done * sizeof *t->some, t->some, some * sizeof *t->some));
-        for (size_t i = 0; i < some; i++) BRIO_FORWARD(put(t, trays, &t->some[i]));
-    }
-    for (uint32_t i = 0; i < t->num_tiles; i++)
+brio_status brio_tile_trays_end(brio_tiles *t, brio_tile_tray *trays) {
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
         BRIO_FORWARD(brio_store_append(&trays[i].file, trays[i].buffer, trays[i].count * sizeof(brio_set_point)));
+        trays[i].count = 0;
+    }
     return BRIO_OK;
 }
 
-static void free_trays(brio_tiles *t, tray *trays) {
+void brio_tile_trays_free(brio_tiles *t, brio_tile_tray *trays) {
     for (uint32_t i = 0; trays && i < t->num_tiles; i++) {
         brio_store_close(&trays[i].file);
         brio_release(t->ctx, trays[i].buffer);
@@ -231,30 +271,26 @@ static void free_trays(brio_tiles *t, tray *trays) {
     brio_release(t->ctx, trays);
 }
 
+static brio_status distribute(brio_tiles *t, tray *trays) {
+    size_t some;
+    for (uint64_t done = 0; done < t->stats.points; done += some) {
+        BRIO_FORWARD(brio_progress(t->ctx, "divide", (double)done / (double)t->stats.points));
+        BRIO_FORWARD(brio_tiles_read_raw(t, done, &some));
+        for (size_t i = 0; i < some; i++)
+            BRIO_FORWARD(brio_tile_trays_put(t, trays, brio_tiles_tile_of(t, t->some[i].record), &t->some[i]));
+    }
+    return brio_tile_trays_end(t, trays);
+}
+
 brio_status brio_tiles_divide(brio_tiles *t) {
     tray *trays = NULL;
     brio_status status = BRIO_OK;
-    char name[32];
-    BRIO_TRY(begin_taking(t));
-    BRIO_TRY(flush_raw(t));
+    BRIO_TRY(brio_tiles_end_taking(t));
     BRIO_TRY(cut_space(t));
-    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, trays, t->num_tiles));
-    for (uint32_t i = 0; i < t->num_tiles; i++) trays[i].file.file = -1;
-    for (uint32_t i = 0; i < t->num_tiles; i++) {
-        snprintf(name, sizeof name, "divided-%u", i);
-        BRIO_TRY(brio_store_create(&t->folder, name, &trays[i].file));
-        brio_store_shut(&trays[i].file);
-        trays[i].room = room_of_tray(t);
-        BRIO_TRY(BRIO_ALLOC(t->ctx, trays[i].buffer, trays[i].room));
-    }
+    BRIO_TRY(brio_tile_trays_new(t, &trays));
     BRIO_TRY(distribute(t, trays));
-    brio_store_close(&t->raw);
-    brio_store_remove(&t->folder, "raw");
-    brio_release(t->ctx, t->some);
-    brio_release(t->ctx, t->sample);
-    brio_release(t->ctx, t->sample_hash);
-    t->some = NULL, t->sample = NULL, t->sample_hash = NULL;
+    brio_tiles_drop_raw(t);
 done:
-    free_trays(t, trays);
+    brio_tile_trays_free(t, trays);
     return status;
 }

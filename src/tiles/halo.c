@@ -15,7 +15,7 @@ enum { HALVINGS = 16 };
 
 typedef struct {
     brio_tiles *t;
-    uint32_t tile;
+    uint32_t tile, root;
     uint32_t *block; /* nodes */
     size_t count, capacity;
 } nearby;
@@ -42,8 +42,8 @@ static bool overlap(const brio_ball_box *a, const brio_ball_box *b) {
  * box than they are large. */
 static brio_status list_blocks(nearby *n, uint32_t at, const brio_ball_box *reach) {
     const brio_tile_node *node = &n->t->node[at];
-    brio_ball_box wide = widened(&n->t->tile[n->tile].home, longest_side(&node->box));
-    if (node->tile == n->tile || !overlap(&node->box, reach ? reach : &wide)) return BRIO_OK;
+    brio_ball_box wide = reach ? *reach : widened(&n->t->tile[n->tile].home, longest_side(&node->box));
+    if (node->tile == n->tile || !overlap(&node->box, &wide)) return BRIO_OK;
     for (uint32_t c = 0; c < node->children; c++) BRIO_FORWARD(list_blocks(n, node->first + c, reach));
     if (node->children) return BRIO_OK;
     BRIO_FORWARD(BRIO_RESERVE(n->t->ctx, n->block, n->capacity, n->count + 1));
@@ -53,7 +53,7 @@ static brio_status list_blocks(nearby *n, uint32_t at, const brio_ball_box *reac
 
 static brio_status relist_blocks(nearby *n, const brio_ball_box *reach) {
     n->count = 0;
-    return list_blocks(n, (uint32_t)n->t->num_nodes - 1, reach);
+    return list_blocks(n, n->root, reach);
 }
 
 /* Returns about how far apart the points of a block are, whether they fill space, a surface or a line: its longest d
@@ -110,7 +110,9 @@ static brio_status add_points(const nearby *n, const brio_ball_box *box, brio_fo
     BRIO_TRY(brio_store_open(&n->t->folder, "points", &f));
     for (size_t i = 0; i < n->count; i++) {
         const brio_tile_node *node = &n->t->node[n->block[i]];
-        BRIO_TRY(brio_store_read(&f, node->place * sizeof *some, some, node->points * sizeof *some));
+        if (node->tile == TILE_FAR) continue;
+        uint64_t row = node->place - n->t->first_place;
+        BRIO_TRY(brio_store_read(&f, row * sizeof *some, some, node->points * sizeof *some));
         for (uint32_t p = 0; p < node->points; p++) {
             const double *x = some[p].record;
             some[p].name = node->place + p;
@@ -124,8 +126,8 @@ done:
     return status;
 }
 
-brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, brio_found *found, brio_ball_box *seen) {
-    nearby n = {.t = t, .tile = tile};
+brio_status brio_tile_halo_box(brio_tiles *t, uint32_t tile, brio_ball_box *seen) {
+    nearby n = {.t = t, .tile = tile, .root = (uint32_t)t->num_nodes - 1};
     brio_status status = BRIO_OK;
     *seen = t->tile[tile].home;
     BRIO_TRY(relist_blocks(&n, NULL));
@@ -134,11 +136,28 @@ brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, brio_found *found, brio
         brio_ball_box wide = widened(&t->tile[tile].home, width);
         BRIO_TRY(relist_blocks(&n, &wide));
         if (!(points_in(&n, &wide) <= MOST_SHARE * t->tile[tile].points)) continue;
-        BRIO_TRY(add_points(&n, &wide, found));
         *seen = wide;
         break;
     }
 done:
+    brio_release(t->ctx, n.block);
+    return status;
+}
+
+brio_status brio_tile_halo_add(brio_tiles *t, uint32_t tile, uint32_t root, const brio_ball_box *box,
+                               brio_found *found) {
+    nearby n = {.t = t, .tile = tile, .root = root};
+    brio_status status = relist_blocks(&n, box);
+    if (status == BRIO_OK) status = add_points(&n, box, found);
+    brio_release(t->ctx, n.block);
+    return status;
+}
+
+brio_status brio_tile_halo_ranks(brio_tiles *t, const brio_ball_box *box, brio_tile_roots *ranks) {
+    nearby n = {.t = t, .tile = TILE_OTHER, .root = (uint32_t)t->num_nodes - 1};
+    brio_status status = relist_blocks(&n, box);
+    for (size_t i = 0; status == BRIO_OK && i < n.count; i++)
+        if (t->node[n.block[i]].tile == TILE_FAR) status = brio_tile_roots_add(t, ranks, t->node[n.block[i]].first);
     brio_release(t->ctx, n.block);
     return status;
 }

@@ -11,8 +11,9 @@ static int compare_places(uint32_t i, uint32_t j, const void *user) {
     return place[i] < place[j] ? -1 : place[i] > place[j];
 }
 
-/* Reads the points of the halo, in its order. */
-static brio_status read_halo(brio_tiles *t, const uint64_t *halo, size_t n, brio_set_point *points) {
+/* Reads the points of the halo, as a brio_halo_fn. */
+static brio_status read_halo(void *user, const uint64_t *halo, size_t n, brio_set_point *points) {
+    brio_tiles *t = user;
     brio_store_file f = {.file = -1};
     uint32_t *order = NULL;
     uint64_t *place = NULL;
@@ -68,7 +69,7 @@ static brio_status fill(brio_tiles *t, const brio_set_point *points, const uint3
     return BRIO_OK;
 }
 
-static brio_status read_part(brio_tiles *t, uint32_t tile, brio_tile_part *p) {
+brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_of, void *user, brio_tile_part *p) {
     const brio_tile *facts = &t->tile[tile];
     brio_tile_result result = {0};
     brio_set_point *points = NULL;
@@ -83,7 +84,8 @@ static brio_status read_part(brio_tiles *t, uint32_t tile, brio_tile_part *p) {
                          t->folder.path, tile);
     BRIO_TRY(BRIO_ALLOC(t->ctx, points, n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, number, n + 1));
-    BRIO_TRY(brio_tile_all_points(t, tile, result.halo, points));
+    BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
+    BRIO_TRY(halo_of(user, result.halo, facts->halo, points + facts->points));
     p->num_tetrahedra = facts->tetrahedra;
     p->num_vertices = number_vertices(&result, facts->tetrahedra, n, number);
     BRIO_TRY(fill(t, points, number, n, p));
@@ -103,7 +105,7 @@ brio_status brio_tiles_part(brio_context *ctx, brio_tiles *t, uint32_t tile, bri
     BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
     BRIO_EXPECT(ctx, tile < t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, t->num_tiles);
-    brio_status status = read_part(t, tile, &p);
+    brio_status status = brio_tile_part_make(t, tile, read_halo, t, &p);
     if (status != BRIO_OK)
         brio_tile_part_free(ctx, &p);
     else

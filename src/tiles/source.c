@@ -45,12 +45,14 @@ typedef struct {
     brio_found found;
     uint64_t ties, hits;  /* of samples compared: those that are not in conflict by a hair, those that are */
     uint32_t *now, *next; /* nodes */
+    brio_tile_asked *asked;
+    size_t num_asked, asked_capacity;
     size_t now_capacity, next_capacity, num_now, num_next;
 } search;
 
 struct brio_tile_source {
     brio_tiles *t;
-    uint32_t tile;
+    uint32_t tile, root;
     brio_store_file points;
     block **cache; /* of each node that is a block; atomic */
     uint64_t num_read;
@@ -65,41 +67,45 @@ struct brio_tile_source {
     int threads;
     brio_status status; /* of the threads; atomic */
     brio_ball *balls;
+    brio_tile_asked *asked; /* of other processes, in the last call */
+    size_t num_asked, asked_capacity;
 };
 
 void brio_tiles_filter(const brio_tiles *t, brio_filter *f) {
-    double extent[3], heaviest = fabs(t->all.weight), lightest = t->stats.points ? t->lightest : 0;
+    double extent[3], heaviest = fabs(t->all.weight), lightest = isfinite(t->lightest) ? t->lightest : 0;
     for (int k = 0; k < 3; k++) extent[k] = t->all.high[k] - t->all.low[k];
     brio_filter_set(f, extent, t->weighted ? heaviest + fabs(lightest) : 0, t->weighted);
 }
 
-/* Sets the nodes' parents, and how many blocks of other tiles are below each. Children come before their parents; the
- * root of a tile has a copy, the later one of which is in the tree. */
+/* Sets the parents of a node and of those below, and how many blocks of other tiles each has. Roots of tiles have copies
+ * that are in no tree, or in that of another root. A node of another process counts as a block that is never read: what
+ * is above it is never gone past. */
+static uint32_t count_below(brio_tile_source *s, uint32_t at, uint32_t parent) {
+    const brio_tile_node *node = &s->t->node[at];
+    uint32_t left = node->children == 0;
+    s->parent[at] = parent;
+    if (node->tile == s->tile) return 0;
+    for (uint32_t c = node->first; c < node->first + node->children; c++) left += count_below(s, c, at);
+    return s->left[at] = left;
+}
+
 static brio_status count_blocks(brio_tile_source *s) {
     const brio_tiles *t = s->t;
     BRIO_FORWARD(BRIO_ALLOC(t->ctx, s->parent, t->num_nodes + 1));
-    BRIO_FORWARD(BRIO_ALLOC(t->ctx, s->left, t->num_nodes + 1));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, s->left, t->num_nodes + 1));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, s->last, t->num_nodes + 1));
-    for (size_t i = 0; i < t->num_nodes; i++) {
-        const brio_tile_node *node = &t->node[i];
-        s->parent[i] = TILE_NONE;
-        s->left[i] = node->children == 0;
-        for (uint32_t c = node->first; c < node->first + node->children; c++) {
-            s->parent[c] = (uint32_t)i;
-            s->left[i] += s->left[c];
-        }
-        if (node->tile == s->tile) s->left[i] = 0;
-    }
+    count_below(s, s->root, TILE_NONE);
     return BRIO_OK;
 }
 
-brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, brio_tile_source **out) {
+brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, brio_tile_source **out) {
     brio_tile_source *s = NULL;
     brio_status status = BRIO_OK;
     *out = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s, 1));
     s->t = t;
     s->tile = tile;
+    s->root = root;
     s->points.file = -1;
     brio_mutex_new(&s->lock);
     s->threads = brio_threads(t->ctx, 1 << 20, BALLS_A_THREAD);
@@ -126,11 +132,13 @@ void brio_tile_source_free(brio_tile_source *s) {
         brio_release(ctx, s->search[i].found.point);
         brio_release(ctx, s->search[i].now);
         brio_release(ctx, s->search[i].next);
+        brio_release(ctx, s->search[i].asked);
     }
     brio_store_close(&s->points);
     brio_mutex_free(&s->lock);
     brio_release(ctx, s->search);
     brio_release(ctx, s->read);
+    brio_release(ctx, s->asked);
     brio_release(ctx, s->cache);
     brio_release(ctx, s->parent);
     brio_release(ctx, s->left);
@@ -152,7 +160,8 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
     b->points = node->points;
     b->wasted = 0;
     b->state = BLOCK_NEW;
-    brio_status status = brio_store_read(&s->points, node->place * sizeof *some, some, node->points * sizeof *some);
+    brio_status status = brio_store_read(&s->points, (node->place - s->t->first_place) * sizeof *some, some,
+                                         node->points * sizeof *some);
     for (uint32_t i = 0; status == BRIO_OK && i < node->points; i++) {
         b->x[i] = some[i].record[0], b->y[i] = some[i].record[1];
         b->z[i] = some[i].record[2], b->w[i] = some[i].record[3];
@@ -288,11 +297,22 @@ static brio_status descend(brio_tile_source *s, search *se, const brio_ball *bal
     return BRIO_OK;
 }
 
-static brio_status search_ball(brio_tile_source *s, search *se, brio_ball *ball) {
+/* Notes that another process must be asked about a ball. */
+static brio_status note_far(brio_tile_source *s, search *se, uint32_t ball, uint32_t rank, size_t begin) {
+    for (size_t i = begin; i < se->num_asked; i++)
+        if (se->asked[i].rank == rank) return BRIO_OK;
+    BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->asked, se->asked_capacity, se->num_asked + 1));
+    se->asked[se->num_asked++] = (brio_tile_asked){ball, rank};
+    return BRIO_OK;
+}
+
+static brio_status search_ball(brio_tile_source *s, search *se, uint32_t number) {
+    brio_ball *ball = &s->balls[number];
+    size_t num_asked = se->num_asked;
     int hits = 0;
     bool unsure = false;
     se->num_next = 0;
-    const brio_tile_node above = {.first = (uint32_t)s->t->num_nodes - 1, .children = 1};
+    const brio_tile_node above = {.first = s->root, .children = 1};
     BRIO_FORWARD(descend(s, se, ball, &above, &hits, &unsure));
     while (se->num_next > 0 && hits < ENOUGH) {
         uint32_t *swap = se->now;
@@ -303,10 +323,13 @@ static brio_status search_ball(brio_tile_source *s, search *se, brio_ball *ball)
             const brio_tile_node *node = &s->t->node[se->now[i]];
             if (node->children)
                 BRIO_FORWARD(descend(s, se, ball, node, &hits, &unsure));
+            else if (node->tile == TILE_FAR)
+                BRIO_FORWARD(note_far(s, se, number, node->first, num_asked));
             else
                 BRIO_FORWARD(search_block(s, se, ball, se->now[i], &hits, &unsure));
         }
     }
+    if (hits >= ENOUGH) se->num_asked = num_asked;
     ball->is_free = hits == 0 && !unsure;
     return BRIO_OK;
 }
@@ -315,7 +338,15 @@ static void search_some(void *user, size_t begin, size_t end, int thread) {
     brio_tile_source *s = user;
     for (size_t i = begin; i < end; i++)
         if (__atomic_load_n(&s->status, __ATOMIC_RELAXED) == BRIO_OK)
-            brio_report(&s->status, search_ball(s, &s->search[thread], &s->balls[i]));
+            brio_report(&s->status, search_ball(s, &s->search[thread], (uint32_t)i));
+}
+
+static brio_status collect_asked(brio_tile_source *s, search *se) {
+    BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, s->asked, s->asked_capacity, s->num_asked + se->num_asked));
+    if (se->num_asked) memcpy(s->asked + s->num_asked, se->asked, se->num_asked * sizeof *se->asked);
+    s->num_asked += se->num_asked;
+    se->num_asked = 0;
+    return BRIO_OK;
 }
 
 void brio_tile_source_round(brio_tile_source *s) {
@@ -330,14 +361,21 @@ brio_status brio_tile_conflicts(brio_tile_source *s, brio_ball *balls, size_t co
     int threads = brio_threads(s->t->ctx, count, BALLS_A_THREAD);
     s->balls = balls;
     s->status = BRIO_OK;
+    s->num_asked = 0;
     BRIO_FORWARD(brio_for_chunks(s->t->ctx, threads < s->threads ? threads : s->threads, count, 32, search_some, s));
     BRIO_FORWARD(s->status);
     for (int i = 0; i < s->threads; i++) {
         brio_found *f = &s->search[i].found;
         for (size_t k = 0; k < f->count; k++) BRIO_FORWARD(brio_found_add(found, &f->point[k]));
         f->count = 0;
+        BRIO_FORWARD(collect_asked(s, &s->search[i]));
     }
     return BRIO_OK;
+}
+
+const brio_tile_asked *brio_tile_source_asked(const brio_tile_source *s, size_t *count) {
+    *count = s->num_asked;
+    return s->asked;
 }
 
 /* --- coarse sample --- */
@@ -355,21 +393,23 @@ static double size_and_distance(const brio_ball_box *box, const brio_ball_box *o
     return size;
 }
 
-brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found) {
+brio_status brio_tile_coarse_sample(brio_tile_source *s, const brio_ball_box *own, brio_found *found) {
     search *se = &s->search[0];
-    const brio_ball_box *own = &s->t->node[s->t->tile[s->tile].root].box;
+    s->num_asked = 0;
     BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->next, se->next_capacity, 1));
-    se->next[0] = (uint32_t)s->t->num_nodes - 1;
+    se->next[0] = s->root;
     for (se->num_next = 1; se->num_next > 0;) {
         const brio_tile_node *node = &s->t->node[se->next[--se->num_next]];
         double apart, size = size_and_distance(&node->box, own, &apart);
         if (node->tile == s->tile) continue;
-        if (!node->children || size < NEAR * NEAR * apart) {
+        bool near = !(size < NEAR * NEAR * apart);
+        if (near && node->tile == TILE_FAR) BRIO_FORWARD(note_far(s, se, 0, node->first, 0));
+        if (!node->children || !near) {
             BRIO_FORWARD(brio_found_add(found, &node->sample));
             continue;
         }
         BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->next, se->next_capacity, se->num_next + node->children));
         for (uint32_t c = 0; c < node->children; c++) se->next[se->num_next++] = node->first + c;
     }
-    return BRIO_OK;
+    return collect_asked(s, se);
 }

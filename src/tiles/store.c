@@ -58,6 +58,13 @@ void brio_store_end(brio_store_folder *f) {
     f->path = NULL;
 }
 
+void brio_store_leave(brio_store_folder *f) {
+    if (!f->path) return;
+    brio_close(f->lock);
+    brio_release(f->ctx, f->path);
+    f->path = NULL;
+}
+
 static brio_status fail_file(const brio_store_file *f, brio_status status, const char *verb, int error) {
     return brio_fail(f->folder->ctx, status, "%s/%s: cannot %s: %s", f->folder->path, f->name, verb,
                      error ? strerror(error) : "the file ends early");

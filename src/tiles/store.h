@@ -27,6 +27,8 @@ typedef struct {
 brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out);
 /** Removes the folder and all its files. */
 void brio_store_end(brio_store_folder *f);
+/** Leaves the folder and its files to a process that goes on. */
+void brio_store_leave(brio_store_folder *f);
 /** Removes all files. */
 void brio_store_clear(brio_store_folder *f);
 

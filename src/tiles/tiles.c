@@ -90,7 +90,7 @@ brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const double *point
     if (!t->stats.points) t->weighted = weights != NULL;
     BRIO_EXPECT(ctx, !weights == !t->weighted, BRIO_ERR_ARGUMENT, "earlier points have %s, and these have %s",
                 t->weighted ? "weights" : "no weights", weights ? "some" : "none");
-    return brio_tiles_take(t, points, weights, num_points);
+    return brio_tiles_take(t, points, weights, num_points, t->stats.points);
 }
 
 /* --- points by place --- */
@@ -99,7 +99,7 @@ brio_status brio_tile_points(brio_tiles *t, uint64_t place, size_t count, brio_s
     brio_store_file f = {.file = -1};
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_store_open(&t->folder, "points", &f));
-    BRIO_TRY(brio_store_read(&f, place * sizeof *points, points, count * sizeof *points));
+    BRIO_TRY(brio_store_read(&f, (place - t->first_place) * sizeof *points, points, count * sizeof *points));
 done:
     brio_store_close(&f);
     return status;
@@ -216,7 +216,7 @@ static brio_status restore(brio_tiles *t, brio_store_file *f, bool *found) {
     BRIO_FORWARD(check_points(t, h.points_hash, found));
     if (!*found) return BRIO_OK;
     t->points_hash = h.points_hash;
-    t->num_nodes = h.num_nodes;
+    t->num_nodes = t->node_capacity = h.num_nodes;
     t->stats = h.stats;
     t->all = h.all;
     t->lightest = h.lightest;
@@ -240,18 +240,33 @@ brio_status brio_tiles_restore(brio_tiles *t, bool *found) {
     return BRIO_OK;
 }
 
+void brio_tiles_forget(brio_tiles *t) {
+    brio_store_clear(&t->folder);
+    memset(t->tile, 0, t->num_tiles * sizeof *t->tile);
+    brio_release(t->ctx, t->node);
+    t->node = NULL;
+    t->num_nodes = t->node_capacity = 0;
+    t->stats = (brio_tiles_stats){.size = sizeof t->stats, .dimension = -1};
+    t->num_basis = 0;
+    t->has_points = false;
+}
+
+void brio_tiles_leave(brio_tiles *t) {
+    brio_store_leave(&t->folder);
+}
+
 /* --- all stages --- */
 
-/* Refuses tiles that do not fit in the memory that the context may have. */
-static brio_status require_memory(brio_tiles *t) {
+brio_status brio_tiles_require_memory(brio_tiles *t, int at_once) {
     double most = 0, index = (double)t->num_nodes * (sizeof *t->node + 8), limit = (double)brio_memory_limit(t->ctx);
     for (uint32_t i = 0; i < t->num_tiles; i++) most = fmax(most, t->tile[i].points);
+    most *= at_once;
     double need = most * BYTES_A_POINT + index;
     BRIO_EXPECT(
         t->ctx, need <= limit, BRIO_ERR_NO_MEMORY,
         "the largest of %u tiles has %.0f points, and needs about %.0f MB of the %.0f MB that are allowed: take "
         "about %.0f tiles",
-        t->num_tiles, most, need / 1e6, limit / 1e6,
+        t->num_tiles, most / at_once, need / 1e6, limit / 1e6,
         limit > index ? ceil(1.2 * t->num_tiles * most * BYTES_A_POINT / (limit - index)) : MOST_TILES);
     return BRIO_OK;
 }
@@ -267,7 +282,7 @@ static brio_status require_disk(brio_tiles *t) {
     return BRIO_OK;
 }
 
-static void add_facts(brio_tiles *t) {
+void brio_tiles_add_facts(brio_tiles *t) {
     brio_tiles_stats *s = &t->stats;
     uint64_t positions = 0;
     for (uint32_t i = 0; i < t->num_tiles; i++) {
@@ -327,10 +342,10 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     BRIO_REQUIRE(ctx, !t->weighted || t->stats.dimension == 3 || t->stats.points < 2, BRIO_ERR_NO_ANSWER,
                  "all points are in a plane, and have weights: their hidden points are found without tiles only");
     if (t->stats.dimension == 3) {
-        BRIO_TRY(require_memory(t));
+        BRIO_TRY(brio_tiles_require_memory(t, 1));
         BRIO_TRY(triangulate(t, bar));
     }
-    add_facts(t);
+    brio_tiles_add_facts(t);
     t->has_result = true;
     t->stats.triangulate_seconds = brio_seconds() - start;
 done:

@@ -71,3 +71,72 @@ brio_status brio_tile_tree_close(brio_tiles *t) {
     }
     return append_levels(t, begin);
 }
+
+/* --- several processes --- */
+
+enum { UPPER_LEVELS = 2 }; /* below the root of a tile. Chosen: docs/scaling.md */
+
+static uint32_t points_below(const brio_tiles *t, const brio_tile_node *node) {
+    uint32_t sum = node->points;
+    for (uint32_t c = 0; c < node->children; c++) sum += points_below(t, &t->node[node->first + c]);
+    return sum;
+}
+
+brio_status brio_tile_tree_upper(brio_tiles *t, brio_tile_node **out, size_t *count) {
+    brio_status status = BRIO_OK;
+    brio_tile_node *list = NULL;
+    size_t n = 0, capacity = 0;
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        if (t->tile[i].root == TILE_NONE || !t->tile[i].points) continue;
+        BRIO_TRY(BRIO_RESERVE(t->ctx, list, capacity, n + 1));
+        list[n] = t->node[t->tile[i].root];
+        list[n].tile = i;
+        size_t level = n++;
+        for (int k = 0; k < UPPER_LEVELS; k++)
+            for (size_t end = n; level < end; level++) {
+                brio_tile_node from = list[level];
+                list[level].first = (uint32_t)n;
+                BRIO_TRY(BRIO_RESERVE(t->ctx, list, capacity, n + from.children));
+                for (uint32_t c = 0; c < from.children; c++) list[n++] = t->node[from.first + c];
+            }
+        for (; level < n; level++) {
+            list[level].points = points_below(t, &list[level]);
+            list[level].children = 0;
+        }
+    }
+    *out = list, *count = n;
+    list = NULL;
+done:
+    brio_release(t->ctx, list);
+    return status;
+}
+
+brio_status brio_tile_roots_add(brio_tiles *t, brio_tile_roots *roots, uint32_t node) {
+    BRIO_FORWARD(BRIO_RESERVE(t->ctx, roots->node, roots->capacity, roots->count + 1));
+    roots->node[roots->count++] = node;
+    return BRIO_OK;
+}
+
+brio_status brio_tile_tree_far(brio_tiles *t, const brio_tile_node *nodes, size_t count, int rank,
+                               brio_tile_roots *roots) {
+    uint32_t begin = (uint32_t)t->num_nodes;
+    for (size_t i = 0; i < count; i++) {
+        brio_tile_node node = nodes[i];
+        bool is_root = node.tile != TILE_NONE;
+        node.tile = node.children ? TILE_NONE : TILE_FAR;
+        node.first = node.children ? begin + node.first : (uint32_t)rank;
+        BRIO_FORWARD(append(t, &node));
+        if (is_root) BRIO_FORWARD(brio_tile_roots_add(t, roots, begin + (uint32_t)i));
+    }
+    return BRIO_OK;
+}
+
+brio_status brio_tile_tree_join(brio_tiles *t, const brio_tile_roots *roots) {
+    size_t begin = t->num_nodes;
+    for (size_t i = 0; i < roots->count; i++) {
+        brio_tile_node root = t->node[roots->node[i]];
+        if (root.tile < t->num_tiles) t->tile[root.tile].root = (uint32_t)t->num_nodes;
+        BRIO_FORWARD(append(t, &root));
+    }
+    return append_levels(t, begin);
+}

@@ -16,7 +16,9 @@ enum {
     TILE_DIRECTIONS = 26 /* in which extreme points are found */
 };
 
-#define TILE_NONE UINT32_MAX
+#define TILE_NONE  UINT32_MAX
+#define TILE_FAR   (UINT32_MAX - 1) /* of a node whose points another process has; `first` is its rank */
+#define TILE_OTHER (UINT32_MAX - 2) /* a tile of another process: none of the nodes here is of it */
 
 /** A node of the tree of boxes over all blocks. */
 typedef struct {
@@ -59,6 +61,7 @@ struct brio_tiles {
     uint64_t key;
     uint64_t points_hash; /* of the file of points */
     uint32_t num_tiles;
+    uint64_t first_place; /* of all: what is added to the row of the file of points */
     /* while points are added */
     brio_store_file raw;
     brio_set_point *some; /* that are not written yet */
@@ -82,14 +85,46 @@ struct brio_tiles {
 
 /** --- stages, in their order; each returns BRIO_OK or what its public function promises --- */
 
-/** Appends points to the raw file, and samples them. */
-brio_status brio_tiles_take(brio_tiles *t, const double *points, const double *weights, size_t num_points);
+/** Appends points to the raw file, and samples them.   first  the index of the first. */
+brio_status brio_tiles_take(brio_tiles *t, const double *points, const double *weights, size_t num_points,
+                            uint64_t first);
 /** Cuts space by the sample, and makes a file of points for each tile. */
 brio_status brio_tiles_divide(brio_tiles *t);
 /** Brings the points of all tiles to their places, and makes the tree of boxes. */
 brio_status brio_tiles_arrange(brio_tiles *t);
 /** Triangulates one tile, and writes its file. */
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
+
+/** Refuses tiles that do not fit in the memory that the context may have.   at_once  tiles in memory together. */
+brio_status brio_tiles_require_memory(brio_tiles *t, int at_once);
+/** Sums the tiles' facts. */
+void brio_tiles_add_facts(brio_tiles *t);
+/** Empties tiles whose points a run before left. */
+void brio_tiles_forget(brio_tiles *t);
+/** Leaves the folder for another process that goes on. */
+void brio_tiles_leave(brio_tiles *t);
+
+/** --- parts of these stages --- */
+
+/** Writes the points that wait, after the last were taken. */
+brio_status brio_tiles_end_taking(brio_tiles *t);
+/** Reads up to t->num_some of the raw points into t->some.   from  the first.   *count  receives how many. */
+brio_status brio_tiles_read_raw(brio_tiles *t, uint64_t from, size_t *count);
+/** Removes the raw points and the sample. */
+void brio_tiles_drop_raw(brio_tiles *t);
+/** Cuts space into tiles by the sample.   home  receives the box of each. */
+brio_status brio_tiles_cut(brio_tiles *t, uint32_t num_tiles, brio_ball_box *home);
+/** Returns the tile of a position. */
+uint32_t brio_tiles_tile_of(const brio_tiles *t, const double *record);
+/** Takes a point into account for the extreme points and the basis.   f  a filter for all points. */
+void brio_tiles_note(brio_tiles *t, brio_filter *f, const brio_set_point *p);
+
+/** Files that points of each tile are appended to. */
+typedef struct brio_tile_tray brio_tile_tray;
+brio_status brio_tile_trays_new(brio_tiles *t, brio_tile_tray **out);
+brio_status brio_tile_trays_put(brio_tiles *t, brio_tile_tray *trays, uint32_t tile, const brio_set_point *p);
+brio_status brio_tile_trays_end(brio_tiles *t, brio_tile_tray *trays);
+void brio_tile_trays_free(brio_tiles *t, brio_tile_tray *trays);
 
 /** Saves or finds what the stages before brio_tiles_complete made. *found tells whether it was there. */
 brio_status brio_tiles_save(brio_tiles *t);
@@ -105,26 +140,68 @@ brio_status brio_tile_tree_add(brio_tiles *t, uint32_t tile, const brio_set_poin
 /** Appends the nodes over the roots of the tiles. The last node is then the root of all. */
 brio_status brio_tile_tree_close(brio_tiles *t);
 
+/** Lists the upper nodes of the tiles, for other processes: of each tile its root, with the tile's number, and what is
+ *  below it, level by level. `first` is a row of the list.   *out  owned by the caller. */
+brio_status brio_tile_tree_upper(brio_tiles *t, brio_tile_node **out, size_t *count);
+/** Nodes over which one more is to come, in the order of space. */
+typedef struct {
+    uint32_t *node;
+    size_t count, capacity;
+} brio_tile_roots;
+brio_status brio_tile_roots_add(brio_tiles *t, brio_tile_roots *roots, uint32_t node);
+/** Appends the upper nodes of another process, and their roots to a list. */
+brio_status brio_tile_tree_far(brio_tiles *t, const brio_tile_node *nodes, size_t count, int rank,
+                               brio_tile_roots *roots);
+/** Appends nodes over roots. */
+brio_status brio_tile_tree_join(brio_tiles *t, const brio_tile_roots *roots);
+
 /** Sets a filter for all points. */
 void brio_tiles_filter(const brio_tiles *t, brio_filter *f);
 
 /** Points of other tiles that a tile asks for: reads their blocks, and keeps those that it read. */
 typedef struct brio_tile_source brio_tile_source;
 
-brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, brio_tile_source **out);
+/** Makes a source.   root  the node below which it searches. */
+brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, brio_tile_source **out);
 void brio_tile_source_free(brio_tile_source *s);
 /** Notes that a round of the completion begins, which knows all that was added before. */
 void brio_tile_source_round(brio_tile_source *s);
 /** Finds points in conflict, as a brio_conflicts_fn. */
 brio_status brio_tile_conflicts(brio_tile_source *s, brio_ball *balls, size_t count, brio_found *found);
-/** Adds a sample of the other tiles: the denser the nearer they are. */
-brio_status brio_tile_coarse_sample(brio_tile_source *s, brio_found *found);
+/** A question for another process. */
+typedef struct {
+    uint32_t ball, rank;
+} brio_tile_asked;
+/** Returns what other processes must be asked for, after brio_tile_conflicts or brio_tile_coarse_sample. */
+const brio_tile_asked *brio_tile_source_asked(const brio_tile_source *s, size_t *count);
+/** Adds a sample of the other tiles: the denser the nearer they are to a box. */
+brio_status brio_tile_coarse_sample(brio_tile_source *s, const brio_ball_box *own, brio_found *found);
 /** Returns the number of blocks that were read. */
 uint64_t brio_tile_source_read(const brio_tile_source *s);
 
-/** Adds the points of other tiles that are near a tile's border.
- *  seen  receives a box in whose interior all points are the tile's or were added. */
-brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, brio_found *found, brio_ball_box *seen);
+/** Chooses the box, wider than a tile's home, in which a tile shall know all points when it begins. */
+brio_status brio_tile_halo_box(brio_tiles *t, uint32_t tile, brio_ball_box *seen);
+/** Adds the points of other tiles in a box, those that this process has.
+ *  root  the node below which they are.   tile  of which none is added. */
+brio_status brio_tile_halo_add(brio_tiles *t, uint32_t tile, uint32_t root, const brio_ball_box *box,
+                               brio_found *found);
+/** Lists the ranks that may have points in a box.   *ranks  grows by them, each at least once. */
+brio_status brio_tile_halo_ranks(brio_tiles *t, const brio_ball_box *box, brio_tile_roots *ranks);
+
+/** A tile at work. */
+typedef struct brio_tile_work brio_tile_work;
+/** Begins a tile.
+ *  more  NULL if one process has all points; else points of other processes that it begins with: all in `seen`, and a
+ *        coarse sample.
+ *  *out  NULL if the tile has no points or is finished, also by a run before. */
+brio_status brio_tile_begin(brio_tiles *t, uint32_t tile, const brio_found *more, const brio_ball_box *seen,
+                            brio_tile_work **out);
+brio_completion *brio_tile_work_completion(brio_tile_work *w);
+brio_tile_source *brio_tile_work_source(brio_tile_work *w);
+/** Writes the file of a completed tile. */
+brio_status brio_tile_finish(brio_tile_work *w);
+/** Frees the work; a tile that is not finished may be begun again. */
+void brio_tile_end(brio_tile_work *w);
 
 /** --- results --- */
 
@@ -146,6 +223,11 @@ brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]
 /** Reads the points of a tile, and behind them those of its halo. Names become indices.
  *  points  as many as the tile's facts say, both. */
 brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *halo, brio_set_point *points);
+
+/** A function that reads the points of a halo, in its order. */
+typedef brio_status (*brio_halo_fn)(void *user, const uint64_t *halo, size_t n, brio_set_point *points);
+/** Makes the part of a tile, as brio_tiles_part. */
+brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn read_halo, void *user, brio_tile_part *p);
 
 /** Sums the hashes of all tetrahedra: the checksum. */
 brio_status brio_tiles_sum(brio_tiles *t, uint64_t *checksum);

@@ -1,0 +1,118 @@
+/* brio/ranks.h: the triangulation of brio/tiles.h by many processes, each with tiles in a scratch folder of its host.
+ *
+ * The processes are ranks of a transport, which sends bytes among them: libbrio-mpi has one for MPI, and the caller may
+ * have another. All ranks call the same collective functions in the same order; a rank alone calls brio_ranks_add, and
+ * the functions that say so. A failure of one rank is the failure of all, with one sentence.
+ * docs/mpi.md says what it costs; docs/decisions/021-ranks.md why it is right.
+ *
+ *     brio_ranks_options o = {.size = sizeof o, .scratch = "/var/tmp", .tiles = 4};
+ *     brio_ranks *r;
+ *     brio_ranks_new(ctx, &transport, &o, &r);
+ *     status = read my share: brio_ranks_add(ctx, r, points, NULL, count, index of the first);
+ *     brio_ranks_agree(ctx, r, status);
+ *     brio_ranks_run(ctx, r);
+ *     brio_ranks_checksum(ctx, r, &checksum);
+ *     brio_ranks_free(r);
+ */
+#ifndef BRIO_RANKS_H
+#define BRIO_RANKS_H
+
+#include "tiles.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** What one rank sends to another in an exchange. */
+typedef struct brio_letter {
+    const void *bytes; /* aligned to 8 bytes */
+    uint64_t size;     /* may be 0 */
+    uint64_t note;
+    int rank; /* to which it goes, or from which it came */
+    int reserved_int;
+} brio_letter;
+
+/** Sends bytes among ranks. In an exchange every rank sends a message to every rank, itself included. Exchanges end in
+ *  the order in which they began, and at most two are under way. */
+typedef struct brio_transport {
+    size_t size;
+    int rank, ranks;
+    const char *host; /* a name for messages */
+    void *user;
+    /** Begins an exchange, and does not wait.   messages  one to each rank, in their order; bytes stay until it ends.
+     *  Returns 0, or another number if the transport failed. */
+    int (*begin)(void *user, const brio_letter *messages);
+    /** Waits until the oldest exchange is complete.   received  one message from each rank, in any order; their bytes
+     *  are valid until the next call of `end`. Returns what `begin` returns. */
+    int (*end)(void *user, brio_letter *received);
+} brio_transport;
+
+typedef struct brio_ranks brio_ranks;
+
+typedef struct brio_ranks_options {
+    size_t size;
+    const char *scratch; /* a folder of this host with room for about 190 bytes a point of this rank */
+    uint32_t tiles;      /* of each rank, at most 4,096; 0 means 4; the same on all ranks. Two are in memory */
+    int reserved_int;
+    uint64_t key; /* as in brio_tiles_options; the same on all ranks. A run goes on if all ranks have their folders */
+} brio_ranks_options;
+
+/** What the ranks sent, all ranks together. */
+typedef struct brio_ranks_traffic {
+    size_t size;
+    uint64_t exchanges;                 /* of each rank */
+    uint64_t bytes;                     /* sent to other ranks, all phases */
+    uint64_t question_bytes;            /* of these, while tiles were completed */
+    uint64_t far_asked;                 /* questions to other ranks */
+    uint64_t far_found;                 /* points in their answers */
+    uint64_t rounds;                    /* of the ranks together */
+    uint64_t least_points, most_points; /* of a rank */
+    double waited_seconds;              /* for other ranks, the mean of all */
+} brio_ranks_traffic;
+
+/** Collective. Makes an empty set of points, and a folder in the scratch folder.
+ *  transport  copied; what it points to must stay.
+ *  out  owned by the caller: brio_ranks_free; NULL on error.
+ *  Returns BRIO_OK or, on all ranks, what brio_tiles_new returns on one. */
+BRIO_API brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport,
+                                    const brio_ranks_options *options, brio_ranks **out);
+
+/** Returns 1 if a run before left all points in the folders of all ranks, so that none are to be added; else 0. */
+BRIO_API int brio_ranks_has_points(const brio_ranks *r);
+
+/** Appends points of this rank alone; not collective.
+ *  first  the index of the first of them among all points of all ranks. Each index is given once.
+ *  Returns what brio_tiles_add returns: hand it to brio_ranks_agree. */
+BRIO_API brio_status brio_ranks_add(brio_context *ctx, brio_ranks *r, const double *points, const double *weights,
+                                    size_t num_points, uint64_t first);
+
+/** Collective. Tells all ranks how this one fares.
+ *  status  BRIO_OK, or a failure of this rank, whose sentence is in the context.
+ *  sentence  NULL, or the sentence instead.
+ *  Returns BRIO_OK on all ranks, or on all the failure of one: the sentence then names the rank and its host. */
+BRIO_API brio_status brio_ranks_agree(brio_context *ctx, brio_ranks *r, brio_status status, const char *sentence);
+
+/** Collective. Divides all points into tiles, and triangulates these: brio_tiles_run.
+ *  Returns BRIO_OK or, on all ranks, what brio_tiles_run returns on one. */
+BRIO_API brio_status brio_ranks_run(brio_context *ctx, brio_ranks *r);
+
+/** Returns the facts of all ranks together. The views are valid until brio_ranks_free. */
+BRIO_API const brio_tiles_stats *brio_ranks_facts(const brio_ranks *r);
+BRIO_API const brio_ranks_traffic *brio_ranks_sent(const brio_ranks *r);
+
+/** Collective. Computes what brio_triangulation_checksum returns for the triangulation of all points.
+ *  Memory: about 80 bytes for each point of a rank. Returns what brio_tiles_checksum returns. */
+BRIO_API brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint64_t *checksum);
+
+/** Collective. Reads the tetrahedra of one tile of each rank.
+ *  tile  below the number of tiles of each rank; the same on all.   out  freed with brio_tile_part_free. */
+BRIO_API brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, brio_tile_part *out);
+
+/** Frees everything, and removes this rank's files, unless the run has a key and failed after the points were divided:
+ *  then a run that follows goes on with them. NULL is accepted. Not collective. */
+BRIO_API void brio_ranks_free(brio_ranks *r);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

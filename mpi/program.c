@@ -1,0 +1,390 @@
+/* brio-mpi: what `brio delaunay --tiles` does, by the ranks of an MPI job. Rank 0 reports; all have one exit code. */
+#include "brio/mpi.h"
+#include "cli/files/files.h"
+#include "cli/files/new_file.h"
+#include "cli/files/read_write.h"
+#include "cli/report/plain.h"
+#include "cli/run/interrupt.h"
+#include "cli/run/run.h"
+#include "cli/steps/tiles.h"
+#include "cli/steps/weights.h"
+#include "platform/folder.h"
+#include "platform/program.h"
+#include "platform/thread.h"
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MOST_TILES = 1 << 12,
+    FILE_SHIFT = 40 /* of a point's name: below it the index in its file */
+};
+
+static const char VTU[] = ".vtu";
+
+typedef struct {
+    weights_options weights;
+    uint64_t tiles;
+} arguments;
+
+static const option options[] = {
+    WEIGHTS_ROWS(arguments, weights),
+    {"tiles-per-rank", 0, OPTION_NATURAL | OPTION_POSITIVE, offsetof(arguments, tiles), "N",
+     "tiles of each rank, two of which are in memory (default 4)", 0},
+    {0},
+};
+
+typedef struct {
+    run *r;
+    arguments a;
+    brio_mpi *mpi;
+    brio_ranks *ranks;
+    int rank, size;
+    uint64_t *first; /* of each file, the index of its first point */
+} job;
+
+/* --- reading --- */
+
+/* A file, and whose turn it is: blocks go to the ranks that read it in turns. */
+typedef struct {
+    job *j;
+    uint64_t file, blocks, points;
+    uint64_t readers, turn;
+    brio_status status;
+} share;
+
+static brio_status add_block(share *s, const brio_mesh *block) {
+    double *weights = NULL;
+    brio_status status = BRIO_OK;
+    run *r = s->j->r;
+    if (s->blocks % s->readers == s->turn && !brio_ranks_has_points(s->j->ranks)) {
+        uint64_t name = s->file << FILE_SHIFT | s->points;
+        TRY(cli_block_weights(r, &s->j->a.weights, block, s->points, &weights));
+        TRY(brio_ranks_add(r->ctx, s->j->ranks, block->vertices, weights, block->num_vertices, name));
+    }
+    s->blocks++;
+    s->points += block->num_vertices;
+done:
+    free(weights);
+    return status;
+}
+
+static int take_block(const brio_mesh *block, void *user) {
+    share *s = user;
+    s->status = add_block(s, block);
+    if (s->status != BRIO_OK) cli_keep_failure(s->j->r, s->status);
+    return s->status != BRIO_OK;
+}
+
+static brio_status read_file(job *j, uint64_t file, uint64_t readers, uint64_t turn, uint64_t *points) {
+    share s = {.j = j, .file = file, .readers = readers, .turn = turn};
+    brio_read_options how = cli_read_options(j->r);
+    brio_status status = brio_read_blocks(j->r->ctx, j->r->operands[file], &how, take_block, &s, NULL);
+    FORWARD(s.status);
+    *points = s.points;
+    return status;
+}
+
+/* Reads this rank's share. Ranks that are more than files read one together; files that are more than ranks are dealt
+ * out.   points  of each file, as far as this rank has read it. */
+static brio_status read_share(job *j, uint64_t *points) {
+    uint64_t files = (uint64_t)j->r->num_operands, ranks = (uint64_t)j->size, rank = (uint64_t)j->rank;
+    if (files < ranks) {
+        uint64_t file = rank % files;
+        return read_file(j, file, (ranks - file + files - 1) / files, rank / files, &points[file]);
+    }
+    for (uint64_t file = rank; file < files; file += ranks) FORWARD(read_file(j, file, 1, 0, &points[file]));
+    return BRIO_OK;
+}
+
+static brio_status agree(job *j, brio_status status) {
+    run *r = j->r;
+    const char *sentence = status != BRIO_OK ? cli_message(r, status) : NULL;
+    if (status != BRIO_OK && cli_interrupted()) status = BRIO_ERR_CANCELLED, sentence = "interrupted";
+    char copy[1024];
+    snprintf(copy, sizeof copy, "%s", sentence ? sentence : "");
+    r->message[0] = 0; /* from now on that of all */
+    return brio_ranks_agree(r->ctx, j->ranks, status, sentence ? copy : NULL);
+}
+
+/* Reads all files, and finds where each begins. Points that a run before left are not read again; the output needs where
+ * files begin, if they are several. */
+static brio_status read_all(job *j) {
+    size_t n = (size_t)j->r->num_operands;
+    uint64_t *points = calloc(n + 1, sizeof *points);
+    brio_status status = BRIO_OK;
+    j->first = calloc(n + 1, sizeof *j->first);
+    if (!points || !j->first) TRY(agree(j, cli_fail(j->r, BRIO_ERR_NO_MEMORY, "no memory for %zu files", n)));
+    if (n > 1 || !brio_ranks_has_points(j->ranks)) TRY(agree(j, read_share(j, points)));
+    MPI_Allreduce(points, j->first, (int)n, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
+    for (size_t i = 0, before = 0; i < n; i++) {
+        size_t count = j->first[i];
+        j->first[i] = before;
+        before += count;
+    }
+done:
+    free(points);
+    return status;
+}
+
+/* --- output --- */
+
+static void name_part(const char *folder, uint64_t number, char path[BRIO_PATH_MOST + 64]) {
+    snprintf(path, BRIO_PATH_MOST + 64, "%s/%" PRIu64 "%s", folder, number, VTU);
+}
+
+/* Writes a tile of this rank into a folder. */
+static brio_status write_part(job *j, brio_tile_part *part, uint32_t tile, const char *folder) {
+    char path[BRIO_PATH_MOST + 64];
+    for (size_t v = 0; v < part->num_vertices; v++) {
+        uint64_t name = part->index[v];
+        part->index[v] = j->first[name >> FILE_SHIFT] + (name & ((UINT64_C(1) << FILE_SHIFT) - 1));
+    }
+    name_part(folder, (uint64_t)j->rank * j->a.tiles + tile, path);
+    return cli_write_part(j->r, part, brio_ranks_facts(j->ranks)->weighted, path);
+}
+
+static brio_status write_parts(job *j, const char *folder) {
+    brio_status status = BRIO_OK;
+    for (uint32_t i = 0; i < j->a.tiles; i++) {
+        brio_tile_part part = {.size = sizeof part};
+        FORWARD(brio_ranks_part(j->r->ctx, j->ranks, i, &part));
+        status = write_part(j, &part, i, folder);
+        if (status != BRIO_OK) cli_keep_failure(j->r, status);
+        brio_tile_part_free(j->r->ctx, &part);
+        FORWARD(agree(j, status));
+    }
+    return BRIO_OK;
+}
+
+/* Makes the folder, on rank 0. */
+static brio_status open_folder(job *j, new_folder *folder) {
+    return j->rank ? BRIO_OK : cli_new_folder_open(j->r, j->r->common.output, VTU, folder);
+}
+
+/* Rank 0 gives the folder its name, and then writes the index: without it there is no output. */
+static brio_status publish(job *j, new_folder *folder) {
+    char path[BRIO_PATH_MOST + 64];
+    uint64_t all = (uint64_t)j->size * j->a.tiles;
+    if (j->rank) return BRIO_OK;
+    for (uint64_t i = 0; i < all; i++) {
+        name_part(folder->path, i, path);
+        if (!brio_is_there(path))
+            return cli_fail(j->r, BRIO_ERR_WRITE,
+                            "%s: another rank wrote it, and it is not there: all ranks must see one folder", path);
+    }
+    FORWARD(cli_new_folder_name(j->r, folder));
+    return cli_write_tiles_index(j->r, folder->path, (uint32_t)all, brio_ranks_facts(j->ranks)->weighted);
+}
+
+/* Removes what this rank wrote into the folder, and the folder if it was the last in it. */
+static void remove_parts(job *j, const char *folder) {
+    char path[BRIO_PATH_MOST + 64];
+    for (uint32_t i = 0; i < j->a.tiles; i++) {
+        name_part(folder, (uint64_t)j->rank * j->a.tiles + i, path);
+        brio_remove_file(path);
+    }
+    brio_remove_folder(folder);
+}
+
+/* Writes all files, then the index. On failure the files are removed, and an older output stays as it was. */
+static brio_status write_all(job *j) {
+    new_folder folder = {.path = ""};
+    brio_status status = BRIO_OK;
+    TRY(agree(j, open_folder(j, &folder)));
+    MPI_Bcast(folder.path, sizeof folder.path, MPI_CHAR, 0, MPI_COMM_WORLD);
+    TRY(write_parts(j, folder.path));
+    status = agree(j, publish(j, &folder));
+done:
+    if (j->rank == 0) cli_new_folder_close(&folder, status == BRIO_OK);
+    if (j->rank && status != BRIO_OK && *folder.path) remove_parts(j, folder.path);
+    cli_lap(j->r, "write");
+    return status;
+}
+
+/* --- the run --- */
+
+static void report(job *j, uint64_t checksum) {
+    const brio_ranks_traffic *t = brio_ranks_sent(j->ranks);
+    facts *f = &j->r->facts;
+    cli_report_tiles(j->r, brio_ranks_facts(j->ranks), checksum);
+    cli_fact_open(f, "ranks", FACT_OBJECT);
+    cli_fact_integer(f, "count", j->size);
+    cli_fact_count(f, "exchanges", t->exchanges);
+    cli_fact_count(f, "bytes", t->bytes);
+    cli_fact_count(f, "question_bytes", t->question_bytes);
+    cli_fact_count(f, "far_asked", t->far_asked);
+    cli_fact_count(f, "far_found", t->far_found);
+    cli_fact_count(f, "rounds", t->rounds);
+    cli_fact_count(f, "least_points", t->least_points);
+    cli_fact_count(f, "most_points", t->most_points);
+    cli_fact_seconds(f, "waited", t->waited_seconds);
+    cli_fact_close(f);
+}
+
+static uint64_t key_of(const job *j) {
+    uint64_t key = 0;
+    for (int i = 0; i < j->r->num_operands; i++) {
+        uint64_t one = cli_tiles_key(j->r, &j->a.weights, j->r->operands[i]);
+        if (!one) return 0;
+        key = key * UINT64_C(0x9e3779b97f4a7c15) + one;
+    }
+    return key;
+}
+
+static brio_status triangulate(job *j) {
+    run *r = j->r;
+    brio_ranks_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)j->a.tiles};
+    brio_transport t = brio_mpi_transport(j->mpi);
+    uint64_t checksum;
+    o.key = key_of(j);
+    MPI_Bcast(&o.key, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+    FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* tiles are in memory */
+    FORWARD(brio_ranks_new(r->ctx, &t, &o, &j->ranks));
+    j->first = NULL;
+    FORWARD(read_all(j));
+    cli_lap(r, "read");
+    FORWARD(brio_ranks_run(r->ctx, j->ranks));
+    const brio_tiles_stats *s = brio_ranks_facts(j->ranks);
+    cli_stage(r, "divide", s->divide_seconds);
+    cli_stage(r, "insert", s->triangulate_seconds);
+    r->lap = cli_clock();
+    FORWARD(brio_ranks_checksum(r->ctx, j->ranks, &checksum));
+    cli_lap(r, "checksum");
+    report(j, checksum);
+    return r->common.output ? write_all(j) : BRIO_OK;
+}
+
+/* --- the command line --- */
+
+static const command delaunay = {
+    .name = "delaunay",
+    .operands = "IN...",
+    .summary = "Delaunay triangulation of points by the ranks of an MPI job; regular with weights",
+    .examples = "mpirun -n 8 brio-mpi delaunay scan.laz --scratch /var/tmp\n",
+    .has_output = true,
+    .holds = CLI_TETRAHEDRA,
+    .options = options,
+};
+
+static void print_help(void) {
+    puts("usage: mpirun -n RANKS brio-mpi delaunay IN... --scratch DIR [options]\n\n"
+         "What 'brio delaunay IN --tiles N' computes, by many processes on many hosts: docs/mpi.md.\n\n"
+         "  --tiles-per-rank N   tiles of each rank, two of which are in memory (default 4)\n"
+         "  --scratch DIR        a folder of each host, for about 190 bytes a point of its ranks\n"
+         "  -o FILE.pvtu         also write a file for each tile; a folder that all hosts see\n"
+         "  --max-memory SIZE    of each rank\n"
+         "and --json, --quiet, --progress, --threads, --input-format, --columns, --drop-invalid, --salvage,\n"
+         "--unweighted, --weights-mod, --compress as 'brio delaunay' has them.");
+}
+
+static brio_status check(run *r, arguments *a) {
+    if (r->num_operands < 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "delaunay: expected IN..., got no argument");
+    if (a->tiles > MOST_TILES)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles-per-rank: %" PRIu64 " are more than %d", a->tiles, MOST_TILES);
+    if (a->weights.exponent != NO_EXPONENT && r->num_operands > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--weights-mod: with one file only");
+    for (int i = 0; i < r->num_operands; i++)
+        if (!strcmp(r->operands[i], "-"))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "-: the ranks have no standard input; give files");
+    FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
+    return cli_check_tile_files(r);
+}
+
+static brio_status parse(run *r, arguments *a, int argc, char **argv, bool *help) {
+    const option_group groups[] = {{options, a}, {cli_common_options, &r->common}};
+    option_parse p = {.groups = groups, .num_groups = 2};
+    if (!cli_parse(&p, argc, argv)) return cli_fail(r, BRIO_ERR_ARGUMENT, "delaunay: %s", p.message);
+    *help = p.help;
+    r->operands = p.operands;
+    r->num_operands = p.num_operands;
+    return p.help ? BRIO_OK : check(r, a);
+}
+
+/* Shares the processors of a host among its ranks, unless the launcher bound each to its own. */
+static int threads_of_rank(void) {
+    MPI_Comm host;
+    int ranks = 1, processors = brio_processors();
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host);
+    MPI_Comm_size(host, &ranks);
+    MPI_Comm_free(&host);
+    return processors > ranks ? processors / ranks : 1;
+}
+
+static int stop(void *user) {
+    (void)user;
+    return cli_interrupted();
+}
+
+/* Reports, on rank 0. Returns the exit code. */
+static int finish(job *j, brio_status status) {
+    run *r = j->r;
+    int code = cli_exit_code(status);
+    cli_progress_end(&r->bar);
+    if (j->rank) return code;
+    if (status == BRIO_OK) cli_closing_facts(r);
+    if (r->common.json && status != BRIO_OK) {
+        cli_fact_text(&r->facts, "error", cli_message(r, status));
+        cli_fact_integer(&r->facts, "exit", code);
+    }
+    if (r->common.json)
+        cli_json_write(stdout, &r->facts, "delaunay");
+    else if (status == BRIO_OK && !r->common.quiet)
+        cli_text_write(stdout, &r->facts, "delaunay", r->common.verbose);
+    if (!r->common.quiet) cli_notes_print(stderr, "warning", &r->warnings);
+    if (status != BRIO_OK) {
+        fputs("brio-mpi: ", stderr);
+        cli_print_plain(stderr, cli_message(r, status));
+        fputc('\n', stderr);
+        if (!r->common.quiet) cli_notes_print(stderr, "hint", &r->hints);
+    }
+    if (fflush(stdout) && status == BRIO_OK) code = cli_exit_code(BRIO_ERR_WRITE);
+    return code;
+}
+
+static brio_status run_job(job *j, int argc, char **argv, bool *help) {
+    run *r = j->r;
+    FORWARD(parse(r, &j->a, argc, argv, help));
+    if (*help) return BRIO_OK;
+    if (!r->common.threads) r->common.threads = threads_of_rank();
+    if (j->rank) r->common.quiet = true, r->common.progress = false;
+    FORWARD(cli_check_common(r));
+    FORWARD(cli_begin(r));
+    cli_opening_facts(r);
+    r->lap = cli_clock();
+    return triangulate(j);
+}
+
+int main(int argc, char **argv) {
+    run r = {.command = &delaunay, .common = cli_common_defaults, .started = cli_clock()};
+    job j = {.r = &r, .a = {.weights.exponent = NO_EXPONENT, .tiles = 4}};
+    r.arguments = &j.a;
+    bool help = false;
+    int level;
+    MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+    brio_program_begin(&argc, &argv);
+    cli_interrupt_install();
+    MPI_Comm_rank(MPI_COMM_WORLD, &j.rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &j.size);
+    j.mpi = brio_mpi_new(MPI_COMM_WORLD);
+    brio_status status = BRIO_OK;
+    if (argc < 2 || strcmp(argv[1], "delaunay")) {
+        help = argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"));
+        if (!help) status = cli_fail(&r, BRIO_ERR_ARGUMENT, "expected 'delaunay', the one command; see --help");
+    } else if (!j.mpi) {
+        status = cli_fail(&r, BRIO_ERR_NO_MEMORY, "no memory for the exchange of %d ranks", j.size);
+    } else {
+        brio_mpi_set_stop(j.mpi, stop, NULL);
+        status = run_job(&j, argc - 2, argv + 2, &help);
+    }
+    if (help && j.rank == 0) print_help();
+    int code = help ? 0 : finish(&j, status);
+    bool broken = j.ranks && cli_interrupted(); /* others may wait for what does not come */
+    brio_ranks_free(j.ranks);
+    free(j.first);
+    cli_end(&r);
+    if (broken) MPI_Abort(MPI_COMM_WORLD, code);
+    brio_mpi_free(j.mpi);
+    MPI_Finalize();
+    return code;
+}

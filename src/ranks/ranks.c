@@ -1,0 +1,246 @@
+/* The public functions of brio/ranks.h: each ends when all ranks agree that it went well. */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/versioned.h"
+#include "ranks/exchange.h"
+#include "ranks/work.h"
+#include <string.h>
+
+enum { TILES = 4, MOST_TILES = 1 << 12, MOST_RANKS = 1 << 20 };
+
+/* --- life --- */
+
+/* Goes on with what a run before left only if it is there on all ranks. */
+static brio_status agree_on_points(brio_ranks *r) {
+    BRIO_FORWARD(brio_exchange_now(&r->x, !r->t->has_points));
+    if (r->x.any && r->t->has_points) brio_tiles_forget(r->t);
+    return BRIO_OK;
+}
+
+static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *o) {
+    brio_tiles_options of_tiles = {
+        .size = sizeof of_tiles, .scratch = o->scratch, .tiles = o->tiles ? o->tiles : TILES};
+    BRIO_EXPECT(r->ctx, of_tiles.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles of a rank; at most %d", o->tiles,
+                MOST_TILES);
+    if (o->key) of_tiles.key = brio_hash(brio_hash(o->key, (uint64_t)r->ranks), (uint64_t)r->rank) | 1;
+    BRIO_FORWARD(brio_tiles_new(r->ctx, &of_tiles, &r->t));
+    r->t->first_place = (uint64_t)r->rank << RANK_SHIFT;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(r->ctx, r->sample, r->t->num_tiles));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(r->ctx, r->seen, r->t->num_tiles));
+    for (uint32_t i = 0; i < r->t->num_tiles; i++) r->sample[i].ctx = r->ctx;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(r->ctx, r->served, r->ranks * RANK_SLOTS));
+    return agree_on_points(r);
+}
+
+brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
+                           brio_ranks **out) {
+    BRIO_DOOR;
+    brio_ranks_options o = {0};
+    brio_transport how = {0};
+    brio_ranks *r = NULL;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_transport, transport, &how));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_ranks_options, options, &o));
+    BRIO_REQUIRE(ctx,
+                 how.begin && how.end && how.host && how.ranks > 0 && how.ranks <= MOST_RANKS && how.rank >= 0 &&
+                     how.rank < how.ranks,
+                 BRIO_ERR_ARGUMENT, "a transport of rank %d of %d", how.rank, how.ranks);
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r, 1));
+    r->ctx = ctx, r->rank = how.rank, r->ranks = how.ranks;
+    BRIO_TRY(brio_exchange_new(ctx, &how, &r->x));
+    BRIO_TRY(brio_exchange_agree(&r->x, open_tiles(r, &o)));
+    *out = r;
+    r = NULL;
+done:
+    brio_ranks_free(r);
+    return status;
+}
+
+void brio_ranks_free(brio_ranks *r) {
+    if (!r) return;
+    brio_context *ctx = r->ctx;
+    if (r->t && r->t->key && r->t->has_points && r->x.failure != BRIO_OK) brio_tiles_leave(r->t);
+    for (uint32_t i = 0; r->sample && i < r->t->num_tiles; i++) brio_release(ctx, r->sample[i].point);
+    brio_release(ctx, r->sample);
+    brio_release(ctx, r->seen);
+    brio_release(ctx, r->served);
+    brio_release(ctx, r->splitter);
+    brio_release(ctx, r->rank_of);
+    brio_tiles_free(r->t);
+    brio_exchange_free(&r->x);
+    brio_release(ctx, r);
+}
+
+int brio_ranks_has_points(const brio_ranks *r) {
+    return r->t->has_points;
+}
+
+const brio_tiles_stats *brio_ranks_facts(const brio_ranks *r) {
+    return &r->facts;
+}
+
+const brio_ranks_traffic *brio_ranks_sent(const brio_ranks *r) {
+    return &r->traffic;
+}
+
+/* --- points --- */
+
+brio_status brio_ranks_add(brio_context *ctx, brio_ranks *r, const double *points, const double *weights,
+                           size_t num_points, uint64_t first) {
+    BRIO_DOOR;
+    brio_tiles *t = r->t;
+    BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
+    BRIO_EXPECT(ctx, !t->has_points && !t->torn, BRIO_ERR_ARGUMENT, "the ranks have all their points already");
+    if (!num_points) return BRIO_OK;
+    if (!t->stats.points) t->weighted = weights != NULL;
+    BRIO_EXPECT(ctx, !weights == !t->weighted, BRIO_ERR_ARGUMENT, "earlier points have %s, and these have %s",
+                t->weighted ? "weights" : "no weights", weights ? "some" : "none");
+    return brio_tiles_take(t, points, weights, num_points, first);
+}
+
+brio_status brio_ranks_agree(brio_context *ctx, brio_ranks *r, brio_status status, const char *sentence) {
+    BRIO_DOOR;
+    BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
+    if (status != BRIO_OK && sentence) brio_fail(ctx, status, "%s", sentence);
+    return brio_exchange_agree(&r->x, status);
+}
+
+/* --- facts of all ranks --- */
+
+typedef struct {
+    brio_tiles_stats stats;
+    uint64_t points, far_asked, far_found, rounds, bytes, question_bytes;
+    double waited;
+} rank_facts;
+
+static void add_stats(brio_tiles_stats *to, const brio_tiles_stats *s) {
+    to->vertices += s->vertices;
+    to->hidden += s->hidden;
+    to->tiles += s->tiles;
+    to->tetrahedra += s->tetrahedra;
+    to->hull_facets += s->hull_facets;
+    to->asked += s->asked;
+    to->found += s->found;
+    to->sampled += s->sampled;
+    to->read += s->read;
+    to->triangulated += s->triangulated;
+    to->resumed += s->resumed;
+    to->scratch_bytes += s->scratch_bytes;
+    if (s->most_rounds > to->most_rounds) to->most_rounds = s->most_rounds;
+    if (s->most_points > to->most_points) to->most_points = s->most_points;
+    if (s->most_tetrahedra > to->most_tetrahedra) to->most_tetrahedra = s->most_tetrahedra;
+}
+
+static void add_traffic(brio_ranks_traffic *to, const rank_facts *f) {
+    to->bytes += f->bytes;
+    to->question_bytes += f->question_bytes;
+    to->far_asked += f->far_asked;
+    to->far_found += f->far_found;
+    to->rounds += f->rounds;
+    to->waited_seconds += f->waited;
+    if (f->points > to->most_points) to->most_points = f->points;
+    if (f->points < to->least_points) to->least_points = f->points;
+}
+
+static brio_status add_facts(brio_ranks *r) {
+    rank_facts f = {.far_asked = r->far_asked,
+                    .far_found = r->far_found,
+                    .rounds = r->rounds,
+                    .bytes = r->x.bytes,
+                    .question_bytes = r->question_bytes,
+                    .waited = r->x.waited};
+    brio_tiles_add_facts(r->t);
+    for (uint32_t i = 0; i < r->t->num_tiles; i++) f.points += r->t->tile[i].points;
+    f.stats = r->t->stats;
+    BRIO_FORWARD(brio_exchange_all(&r->x, &f, sizeof f));
+    r->traffic = (brio_ranks_traffic){.size = sizeof r->traffic, .least_points = UINT64_MAX};
+    r->facts.size = sizeof r->facts;
+    r->facts.weighted = r->t->weighted;
+    for (int i = 0; i < r->ranks; i++) {
+        memcpy(&f, r->x.from[i]->bytes, sizeof f);
+        add_stats(&r->facts, &f.stats);
+        add_traffic(&r->traffic, &f);
+    }
+    r->traffic.waited_seconds /= r->ranks;
+    r->traffic.exchanges = r->x.ended;
+    return BRIO_OK;
+}
+
+/* --- all stages --- */
+
+static brio_status divide(brio_ranks *r) {
+    brio_tiles *t = r->t;
+    t->torn = true;
+    BRIO_FORWARD(brio_ranks_divide(r));
+    BRIO_FORWARD(brio_tiles_arrange(t));
+    t->has_points = true;
+    t->torn = false;
+    return t->key ? brio_tiles_save(t) : BRIO_OK;
+}
+
+static brio_status run(brio_ranks *r) {
+    double start = brio_seconds();
+    BRIO_EXPECT(r->ctx, !r->has_result && !r->t->torn, BRIO_ERR_ARGUMENT, "the ranks have run already");
+    if (!r->t->has_points) BRIO_FORWARD(divide(r));
+    BRIO_FORWARD(brio_ranks_join(r));
+    r->facts.divide_seconds = brio_seconds() - start;
+    start = brio_seconds();
+    BRIO_EXPECT(r->ctx, !r->t->weighted || r->facts.dimension == 3 || r->facts.points < 2, BRIO_ERR_NO_ANSWER,
+                "all points are in a plane, and have weights: their hidden points are found without tiles only");
+    if (r->facts.dimension == 3) {
+        BRIO_FORWARD(brio_tiles_require_memory(r->t, r->t->num_tiles > 1 ? RANK_SLOTS : 1));
+        BRIO_FORWARD(brio_ranks_complete(r));
+    }
+    BRIO_FORWARD(add_facts(r));
+    r->facts.triangulate_seconds = brio_seconds() - start;
+    r->has_result = true;
+    return BRIO_OK;
+}
+
+brio_status brio_ranks_run(brio_context *ctx, brio_ranks *r) {
+    BRIO_DOOR;
+    BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
+    return brio_exchange_agree(&r->x, run(r));
+}
+
+brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint64_t *checksum) {
+    BRIO_DOOR;
+    double start = brio_seconds();
+    BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
+    BRIO_EXPECT(ctx, r->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    brio_status status = brio_exchange_agree(&r->x, brio_ranks_sum(r, checksum));
+    r->facts.rank_seconds = brio_seconds() - start;
+    return status;
+}
+
+/* --- parts --- */
+
+static brio_status answer_point(brio_ranks *r, uint64_t place, void *row) {
+    return brio_tile_points(r->t, place, 1, row);
+}
+
+static brio_status read_halo(void *user, const uint64_t *halo, size_t n, brio_set_point *points) {
+    return brio_ranks_rows(user, halo, n, answer_point, sizeof *points, points);
+}
+
+static brio_status make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p) {
+    if (!r->t->tile[tile].tetrahedra) return brio_ranks_rows(r, NULL, 0, answer_point, sizeof(brio_set_point), NULL);
+    return brio_tile_part_make(r->t, tile, read_halo, r, p);
+}
+
+brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, brio_tile_part *out) {
+    BRIO_DOOR;
+    brio_tile_part p = {.size = sizeof p};
+    BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_tile_part, out));
+    BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
+    BRIO_EXPECT(ctx, r->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    BRIO_EXPECT(ctx, tile < r->t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, r->t->num_tiles);
+    brio_status status = brio_exchange_agree(&r->x, make_part(r, tile, &p));
+    if (status != BRIO_OK)
+        brio_tile_part_free(ctx, &p);
+    else
+        BRIO_GIVE(brio_tile_part, out, &p);
+    return status;
+}

@@ -1,0 +1,55 @@
+/* A triangulation by many ranks: what its stages share. The tiles of a rank are numbered from 0 in it; tile i of rank r
+ * is tile r * tiles + i of all. A place has its rank in the upper bits. */
+#ifndef BRIO_RANKS_WORK_H
+#define BRIO_RANKS_WORK_H
+
+#include "ranks/exchange.h"
+#include "tiles/work.h"
+
+enum { RANK_SHIFT = 40, RANK_SLOTS = 2 /* tiles that a rank works on at once */ };
+
+/** Where the tiles of another rank ask: the source of the tile that asked last from a slot of this rank. */
+typedef struct {
+    uint32_t tile;
+    brio_tile_source *source;
+} brio_rank_served;
+
+struct brio_ranks {
+    brio_context *ctx;
+    brio_exchange x;
+    brio_tiles *t;
+    int rank, ranks;
+    brio_tiles_stats facts;     /* of all ranks */
+    brio_ranks_traffic traffic; /* the same */
+    uint32_t own_root;          /* node over this rank's tiles; TILE_NONE if there are no points */
+    double (*splitter)[3];      /* ranks - 1, ascending: where lists of positions are divided among ranks */
+    brio_found *sample;         /* of each own tile, the points of other ranks that it begins with */
+    brio_ball_box *seen;        /* of each own tile: all points in it are known when it begins */
+    brio_rank_served *served;   /* by rank and slot */
+    uint64_t *rank_of;          /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
+    uint64_t far_asked, far_found, rounds, question_bytes;
+    bool has_result;
+};
+
+/** --- stages, collective; each returns BRIO_OK or a failure of this rank or of all --- */
+
+/** Sends the points to the ranks of their tiles. */
+brio_status brio_ranks_divide(brio_ranks *r);
+/** Tells all ranks of each other's tiles: extreme points, a basis, upper nodes. */
+brio_status brio_ranks_join(brio_ranks *r);
+/** Triangulates all tiles. */
+brio_status brio_ranks_complete(brio_ranks *r);
+/** Sums the hashes of all tetrahedra. */
+brio_status brio_ranks_sum(brio_ranks *r, uint64_t *checksum);
+
+/** Fetches rows by their places from the ranks that have them.   answer  gives a row of an own place.
+ *  rows  n of `size` bytes, a multiple of 8. */
+typedef brio_status (*brio_row_fn)(brio_ranks *r, uint64_t place, void *row);
+brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, brio_row_fn answer, size_t size,
+                            void *rows);
+
+static inline int brio_rank_of_place(uint64_t place) {
+    return (int)(place >> RANK_SHIFT);
+}
+
+#endif
