@@ -172,12 +172,12 @@ static int32_t cut_part(brio_tiles *t, const part *p, uint64_t *key, brio_ball_b
         return -1 - (int32_t)p->first_tile;
     }
     part below = *p, above = *p;
-    choose_cut(t, p, key, &cut);
+    bool is_cut = choose_cut(t, p, key, &cut);
     below.num_tiles = p->num_tiles / 2;
     above.first_tile += below.num_tiles;
     above.num_tiles -= below.num_tiles;
     below.end = above.begin = partition(t, p, &cut);
-    below.home.high[cut.axis] = above.home.low[cut.axis] = cut.at;
+    if (is_cut) below.home.high[cut.axis] = above.home.low[cut.axis] = cut.at; /* else above is the whole */
     int32_t at = (int32_t)t->num_cuts++;
     cut.below = cut_part(t, &below, key, home);
     cut.above = cut_part(t, &above, key, home);

@@ -200,6 +200,14 @@ class Tiles(CliTest):
         self.assertIn("that of a run that goes on", run.err)
         self.assertEqual(os.listdir(self.path("out.part")), [".brio-part"])
 
+    def test_more_tiles_than_points_made_a_wrong_triangulation(self):
+        rng = random.Random(6)  # a part that could not be cut had a home without a border
+        with open(self.path("wide.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z\n")
+            f.writelines("%r,%r,%r\n" % tuple(rng.choice((-1, 1)) * 10 ** rng.uniform(-20, 20) for _ in range(3))
+                         for _ in range(60))
+        self.same(self.path("wide.csv"), tiles=300)
+
     def test_the_index_was_no_xml(self):
         cloud = self.rows("a.csv", 300)
         self.facts("delaunay", cloud, "--tiles", "2", "--scratch", self.scratch(), "-o", self.path('a&b <"c".pvtu'))
