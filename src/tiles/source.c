@@ -77,9 +77,9 @@ void brio_tiles_filter(const brio_tiles *t, brio_filter *f) {
     brio_filter_set(f, extent, t->weighted ? heaviest + fabs(lightest) : 0, t->weighted);
 }
 
-/* Sets the parents of a node and of those below, and how many blocks of other tiles each has. Roots of tiles have copies
- * that are in no tree, or in that of another root. A node of another process counts as a block that is never read: what
- * is above it is never gone past. */
+/* Sets the parents of a node and of those below, and how many blocks of other tiles each has. Roots of tiles have
+ * copies that are in no tree, or in that of another root. A node of another process counts as a block that is never
+ * read: what is above it is never gone past. */
 static uint32_t count_below(brio_tile_source *s, uint32_t at, uint32_t parent) {
     const brio_tile_node *node = &s->t->node[at];
     uint32_t left = node->children == 0;
