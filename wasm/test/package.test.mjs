@@ -178,6 +178,11 @@ test('memory is used again, and views and room need no copies', () => {
   const before = brio.memory;
   for (let i = 0; i < 10; i++) delaunay(points).free();
   strictEqual(brio.memory, before, 'calls leave memory behind');
+  const few = cube(100); // their blocks shrink to less than 64 KiB
+  delaunay(few).free();
+  const small = brio.memory;
+  for (let i = 0; i < 100; i++) delaunay(few).free();
+  ok(brio.memory - small <= 2 ** 18, `100 small calls leave ${brio.memory - small} bytes behind`);
   const own = room(20000);
   own.array.set(points);
   const t = delaunay(own.array);
