@@ -8,6 +8,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 import tarfile
 
 # platform: what a wheel for Python says of the system, or None where there is no wheel
@@ -75,6 +76,38 @@ def unpack(root, library):
     return next(p for p in folder.iterdir() if p.is_dir())
 
 
+# The notices of what the compiler links in from its C library, by system: those of glibc and of macOS are not linked in.
+SYSTEM_NOTICES = {
+    'WASI': ['wasi/LICENSE', 'wasi/LICENSE-MIT', 'wasi/libc-bottom-half/cloudlibc/LICENSE', 'wasi/libc-top-half/musl/COPYRIGHT'],
+    'Windows': ['mingw/COPYING', 'musl/COPYRIGHT'],
+    'musl': ['musl/COPYRIGHT'],
+}
+NOTICES = {'zlib': 'README', 'expat': 'expat/COPYING', 'cjson': 'LICENSE', 'zstd': 'LICENSE'}
+
+
+def notices_of(root, system, libraries=LIBRARIES):
+    """The notices that go with what was built for a system: bytes, by names of files."""
+    where = subprocess.run([root / 'out/targets-env/bin/python', '-c', 'import ziglang; print(ziglang.__path__[0])'], check=True,
+                           capture_output=True, text=True)
+    compiler = pathlib.Path(where.stdout.strip())
+    found = {'zig': (compiler / 'LICENSE').read_bytes()}
+    for name in SYSTEM_NOTICES.get(system, []):
+        found[name.replace('/', '-')] = (compiler / 'lib/libc' / name).read_bytes()
+    for library in libraries:
+        sources = unpack(root, library)
+        if sources:
+            found[library.name] = (sources / NOTICES[library.name]).read_bytes()
+    return found
+
+
+def write_notices(folder, notices):
+    """Writes them as one file, NOTICES."""
+    rule = '\n' + 72 * '-' + '\n'
+    text = 'What is inside besides brio, and its terms.\n'
+    text += ''.join('%s%s\n\n%s' % (rule, name, data.decode()) for name, data in sorted(notices.items()))
+    (pathlib.Path(folder) / 'NOTICES').write_text(text, encoding='utf-8')
+
+
 def build_library(root, target, library, tools):
     """What CMake is told of a library, which is compiled if it was not: nothing where its sources are missing."""
     use = 'BRIO_USE_' + library.cmake
@@ -101,6 +134,11 @@ def build_library(root, target, library, tools):
     return {use: 'ON', library.cmake + '_LIBRARY': archive, library.cmake + '_INCLUDE_DIR': include}
 
 
+def c_library(target):
+    """The key of SYSTEM_NOTICES."""
+    return 'musl' if target.triple.endswith('-musl') else target.system
+
+
 def options_of(root, target):
     """What CMake is told to build for a target."""
     tools = tools_of(root, target)
@@ -122,3 +160,11 @@ def configure_and_build(source, folder, options, goals):
                         ['cmake', '--build', folder, '-j', str(os.cpu_count()), '--target', *goals, '--', '-k']):
             if subprocess.run([str(w) for w in command], stdout=log, stderr=log).returncode:
                 raise RuntimeError('does not build, see %s' % log.name)
+
+
+if __name__ == '__main__':  # cross.py FOLDER TARGET|module: writes NOTICES of a program, or of brio-module.wasm, which has no libraries
+    here = pathlib.Path(__file__).resolve().parents[1]
+    if sys.argv[2] == 'module':
+        write_notices(sys.argv[1], notices_of(here, 'WASI', []))
+    else:
+        write_notices(sys.argv[1], notices_of(here, c_library(next(t for t in TARGETS if t.name == sys.argv[2]))))

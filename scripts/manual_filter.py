@@ -7,19 +7,26 @@ import sys
 text = open(sys.argv[1], encoding="utf-8").read()
 
 
+def brief_of(body):
+    """The first sentence, or what is before a list."""
+    sentence = re.split(r"(?<=\.)\s|(?<=:)\n|\n\n", body, maxsplit=1)[0]
+    return re.sub(r"([#@\\<>&%])", r"\\\1", " ".join(sentence.split()))
+
+
 def documented(found):
     lines = [re.sub(r"^\s*\* ?", "", line) for line in found[1].strip().split("\n")]
     body = "\n".join(lines)
-    sentence = re.split(r"(?<=[.:])\s", " ".join(body.split("\n\n")[0].split()), maxsplit=1)[0]
-    brief = re.sub(r"([#@\\<>&%])", r"\\\1", sentence)
+    brief = brief_of(body)
     # as many lines as before, so that line numbers stay
     return "/** %s\\verbatim %s \\endverbatim */" % (brief + "\n\n" if len(lines) > 1 else "", body) if len(lines) > 1 else "/** %s */" % brief
 
 
 def page(found):
+    """The opening comment: of brio.h the first page of the manual, of another header its own page."""
     body = "\n".join(re.sub(r"^ \* ?", "", line) for line in found[1].strip().split("\n"))
-    command = "\\mainpage brio.h" if body.startswith("brio.h") else "\\file"
-    return "/** %s\n\\verbatim %s \\endverbatim */" % (command, body)
+    name, _, rest = body.partition(": ")
+    command = "\\mainpage The manual" if name == "brio" else "\\file %s \\brief %s" % (name, brief_of(rest))
+    return "/** %s\n\n\\verbatim %s \\endverbatim */" % (command, body)
 
 
 text = re.sub(r"(?s)\A/\*(.*?)\*/", page, text)

@@ -24,6 +24,7 @@ cmake -S "$root" -B "$build" -DCMAKE_SYSTEM_NAME=WASI -DCMAKE_SYSTEM_PROCESSOR=w
 cmake --build "$build" -j "$jobs" --target brio-wasm >>"$build/log" 2>&1 || { tail -n 20 "$build/log" >&2; exit 1; }
 
 if [ "$what" = page ]; then
+    "$root/out/targets-env/bin/python" "$root/scripts/cross.py" "$build" module
     node "$root/web/build.mjs" "$build/brio-module.wasm" "$root/out/brio.html"
     exit 0
 fi
@@ -31,6 +32,7 @@ fi
 # The package: what its folder holds is what is packed. The version is the library's.
 rm -rf "$package" && mkdir -p "$package"
 cp "$root"/wasm/*.mjs "$root"/wasm/*.d.ts "$root/wasm/README.md" "$root/LICENSE" "$package/"
+"$root/out/targets-env/bin/python" "$root/scripts/cross.py" "$package" module
 cp "$build/brio-module.wasm" "$package/brio.wasm" && chmod 644 "$package/brio.wasm"
 version=$(sed -n 's/^#define BRIO_VERSION  *"\(.*\)"/\1/p' "$root/include/brio/context.h")
 sed "s/\"version\": \"0.0.0\"/\"version\": \"$version\"/" "$root/wasm/package.json" >"$package/package.json"

@@ -24,6 +24,7 @@ for folder in build/targets/*/; do
         archive=brio-$version-$target
         mkdir -p "build/release-parts/$archive"
         cp "$folder$program" LICENSE README.md "build/release-parts/$archive/"
+        python3 scripts/cross.py "build/release-parts/$archive" "$target"
         tar -C build/release-parts --sort=name --owner=0 --group=0 --numeric-owner --mtime=@0 -cf - "$archive" | gzip -9n >"$release/$archive.tar.gz"
     done
 done

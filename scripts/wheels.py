@@ -26,7 +26,6 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import cross  # noqa: E402
 
 MOST_BYTES = 3_000_000
-NOTICES = {'zlib': 'README', 'expat': 'expat/COPYING', 'cjson': 'LICENSE', 'zstd': 'LICENSE'}
 WHEN = (2020, 1, 1, 0, 0, 0)  # of every file in a wheel, so that the same sources make the same wheel
 # Libraries that a system of a kind has, by its name for CMake.
 SYSTEMS_OWN = {
@@ -111,10 +110,8 @@ def package_of(root, module, facts, target, version):
     files[information + 'METADATA'] = facts
     files[information + 'WHEEL'] = ('Wheel-Version: 1.0\nGenerator: brio\nRoot-Is-Purelib: false\n' + tags).encode()
     files[information + 'licenses/LICENSE'] = (root / 'LICENSE').read_bytes()
-    for library in cross.LIBRARIES:
-        sources = cross.unpack(root, library)
-        if sources:
-            files[information + 'licenses/' + library.name] = (sources / NOTICES[library.name]).read_bytes()
+    for name, notice in cross.notices_of(root, cross.c_library(target)).items():
+        files[information + 'licenses/' + name] = notice
     rows = ['%s,sha256=%s,%d' % (name, base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b'=').decode(), len(data))
             for name, data in files.items()]
     files[information + 'RECORD'] = ('\n'.join([*rows, information + 'RECORD,,']) + '\n').encode()

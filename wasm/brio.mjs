@@ -43,15 +43,18 @@ async function own() {
 }
 
 class Brio {
-  constructor() { this.files = new Files(); this.progress = null; this.thrown = null; }
+  constructor() { this.files = new Files(); this.progress = null; this.thrown = null; this.asking = false; }
 
   /* Whether to stop. What `progress` throws stops the call, too, and is thrown when the library has put its things away. */
   asked(stage, share) {
+    this.asking = true;
     try {
       return this.progress?.(stage, share) === true ? 1 : 0;
     } catch (error) {
       this.thrown = { error };
       return 1;
+    } finally {
+      this.asking = false;
     }
   }
 
@@ -96,7 +99,7 @@ class Brio {
 
   /** Makes the alpha complex of points, or of points with weights: every simplex with its alpha, a squared radius. */
   alphaComplex(points, options = {}) {
-    const flat = options.dimension === 2;
+    const flat = isFlat(options);
     return this.during(options, (blocks) => {
       const given = blocks.weighted(points, options.weights, flat), out = blocks.room(4), t = this.triangulated(given, flat, out);
       try {
@@ -145,7 +148,7 @@ class Brio {
     return this.during(options, (blocks) => {
       const out = blocks.room(4), facts = blocks.room(48), given = blocks.doubles(choices(options));
       let status;
-      if (points instanceof Mesh) status = this.x.surface_of(this.context, points.at, given, out, facts);
+      if (points instanceof Mesh) status = this.x.surface_of(this.context, points.address, given, out, facts);
       else {
         const p = blocks.points(points, 3);
         const normals = options.normals ? blocks.doubles(options.normals, 3 * p.count, 'normals') : 0;
@@ -193,7 +196,7 @@ class Brio {
     return this.during(options, (blocks) => {
       const made = mesh instanceof Mesh ? mesh : this.mesh(mesh);
       try {
-        this.check(this.x.write(this.context, blocks.text(name), made.at, options.ascii ? 1 : 0, options.float32 ? 1 : 0));
+        this.check(this.x.write(this.context, blocks.text(name), made.address, options.ascii ? 1 : 0, options.float32 ? 1 : 0));
         return this.files.take(name);
       } finally {
         if (made !== mesh) made.free();
@@ -206,7 +209,7 @@ class Brio {
     return this.during(options, (blocks) => {
       const texts = (key) => blocks.words(layers.map((l) => (l[key] ? blocks.text(l[key]) : 0)));
       const name = 'page.html';
-      this.check(this.x.page(this.context, blocks.text(name), blocks.words(layers.map((l) => l.mesh.at)), texts('name'), texts('report'),
+      this.check(this.x.page(this.context, blocks.text(name), blocks.words(layers.map((l) => l.mesh.address)), texts('name'), texts('report'),
         layers.length, options.selfIntersections ? 1 : 0));
       return this.files.take(name);
     });
@@ -215,7 +218,7 @@ class Brio {
   // --- within ---
 
   triangulate(points, weights, options) {
-    const flat = options.dimension === 2;
+    const flat = isFlat(options);
     return this.during(options, (blocks) => this.triangulated(blocks.weighted(points, weights, flat), flat, blocks.room(4)));
   }
   triangulated({ at, weights, count }, flat, out) {
@@ -248,6 +251,7 @@ class Brio {
 
   /* Calls with blocks of the module's memory, which are released at the end. */
   during(options, call) {
+    if (this.asking) throw new BrioError(ARGUMENT, 'progress is told of a call that runs: no other can begin');
     const taken = [], x = this.x, before = this.progress;
     const room = (size) => {
       const at = x.allocate(size);
@@ -256,7 +260,9 @@ class Brio {
       new Uint8Array(x.memory.buffer, at, size).fill(0);
       return at;
     };
-    const bytes = (array) => {
+    const bytes = (given) => {
+      const array = given instanceof ArrayBuffer ? new Uint8Array(given) : given;
+      if (!ArrayBuffer.isView(array)) throw new BrioError(ARGUMENT, 'expected an array of numbers, or bytes');
       if (array.buffer.detached) throw new BrioError(ARGUMENT, 'an array was a view of memory that has moved since: read it from its result again');
       if (array.buffer === x.memory.buffer) return array.byteOffset; // it is there already
       const at = room(array.byteLength);
@@ -268,14 +274,17 @@ class Brio {
       return bytes(array instanceof Float64Array ? array : Float64Array.from(array));
     };
     const points = (array, coordinates) => {
+      if (typeof array?.length !== 'number') throw new BrioError(ARGUMENT, 'expected points: an array of numbers');
       const count = array.length / coordinates;
       if (!Number.isInteger(count)) throw new BrioError(ARGUMENT, `points have ${array.length} numbers; expected ${coordinates} of each point, one after the other`);
       return { at: doubles(array), count };
     };
     const weights = (w, count) => (w ? doubles(w, count, 'weights') : 0);
     const weighted = (array, w, flat) => {
+      const count = array?.length / (flat ? 2 : 3);
+      const first = w?.buffer === x.memory.buffer ? weights(w, count) : undefined; // before the copy of points lets the memory grow
       const p = points(array, flat ? 2 : 3);
-      return { ...p, weights: weights(w, p.count) };
+      return { ...p, weights: first ?? weights(w, p.count) };
     };
     const blocks = { room, bytes, doubles, points, weights, weighted,
       words: (a) => bytes(a instanceof Uint32Array ? a : Uint32Array.from(a)), text: (t) => bytes(new TextEncoder().encode(t + '\0')) };
@@ -302,6 +311,12 @@ class Brio {
     const bytes = new Uint8Array(this.x.memory.buffer, at);
     return new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0)));
   }
+}
+
+/* Whether the points are of the plane. */
+function isFlat({ dimension = 3 }) {
+  if (dimension !== 2 && dimension !== 3) throw new BrioError(ARGUMENT, `dimension is ${dimension}; expected 2 or 3`);
+  return dimension === 2;
 }
 
 /* The options of a surface as numbers, in the order of module.c. */

@@ -24,6 +24,11 @@ class Result {
     this.brio.x[this.release](this.at);
     this.at = 0;
   }
+  /* Where it is, for a call. */
+  get address() {
+    if (!this.at) throw new Error('the result was freed');
+    return this.at;
+  }
   /* The numbers that a function of the module gives of this. */
   parts(name, count, ...more) {
     if (!this.at) throw new Error('the result was freed');
@@ -74,16 +79,17 @@ export class Triangulation extends Result {
   /** The hash that `brio delaunay` reports.   points  those that were given. */
   checksum(points) {
     return this.brio.during({}, (blocks) => {
-      const out = blocks.room(8), p = blocks.points(points, this.flat ? 2 : 3);
-      this.brio.check(this.brio.x[this.flat ? 'triangulation2_checksum' : 'triangulation_checksum'](this.brio.context, this.at, p.at, out));
+      const p = blocks.points(points, this.flat ? 2 : 3), out = blocks.room(8);
+      if (p.count !== this.points) throw new RangeError(`${p.count} points for a triangulation of ${this.points}`);
+      this.brio.check(this.brio.x[this.flat ? 'triangulation2_checksum' : 'triangulation_checksum'](this.brio.context, this.address, p.at, out));
       return this.brio.numbers(BigUint64Array, out, 1)[0].toString(16).padStart(16, '0');
     });
   }
   /** Proves exactly that this is the triangulation of the points; an error says what is wrong. */
   check(points, weights) {
     this.brio.during({}, (blocks) => {
-      const p = blocks.points(points, this.flat ? 2 : 3), w = blocks.weights(weights, p.count);
-      this.brio.check(this.brio.x[this.flat ? 'triangulation2_check' : 'triangulation_check'](this.brio.context, this.at, p.at, w, p.count));
+      const { at, count, weights: w } = blocks.weighted(points, weights, this.flat);
+      this.brio.check(this.brio.x[this.flat ? 'triangulation2_check' : 'triangulation_check'](this.brio.context, this.address, at, w, count));
     });
   }
   copy() {

@@ -26,7 +26,7 @@ async function open(address) {
 /** A queue of calls to a worker that `serve` (serve.mjs) answers.   start  () => a worker as `open` gives it.
  *  hello  what the worker is told first. */
 export class Caller {
-  constructor(start, hello) { this.start = start; this.hello = hello; this.last = Promise.resolve(); this.worker = null; }
+  constructor(start, hello) { this.start = start; this.hello = hello; this.last = Promise.resolve(); this.worker = null; this.ended = null; }
 
   /** Calls `name` with arguments; `signal` and `progress` are of this call. */
   call(name, given, { signal, progress, transfer = [] } = {}) {
@@ -37,23 +37,30 @@ export class Caller {
   async now(name, given, { signal, progress, transfer }) {
     signal?.throwIfAborted();
     const worker = (this.worker ??= await this.begin());
+    signal?.throwIfAborted(); // while the worker began
     const flag = typeof SharedArrayBuffer === 'undefined' ? null : new Int32Array(new SharedArrayBuffer(4));
     return new Promise((done, failed) => {
       const abort = () => {
         if (flag) return void Atomics.store(flag, 0, 1);
+        this.ended = null;
         this.end();
         failed(signal.reason);
       };
       signal?.addEventListener('abort', abort, { once: true });
-      const settle = (f, value) => { signal?.removeEventListener('abort', abort); worker.hold?.(false); f(value); };
-      worker.fail((error) => { this.end(); settle(failed, error); });
+      const settle = (f, value) => { this.ended = null; signal?.removeEventListener('abort', abort); worker.hold?.(false); f(value); };
+      this.ended = () => settle(failed, new Error('the worker was ended'));
+      worker.fail((error) => { settle(failed, error); this.end(); });
       worker.listen((m) => {
         if (m.stage !== undefined) return void progress?.(m.stage, m.share);
         if (!m.error) settle(done, m.result);
         else settle(failed, signal?.aborted ? signal.reason : m.error.status === undefined ? new Error(m.error.message) : new BrioError(m.error.status, m.error.message));
       });
       worker.hold?.(true);
-      worker.post({ name, given, flag }, transfer);
+      try {
+        worker.post({ name, given, flag }, transfer);
+      } catch (error) { // of what cannot be sent
+        settle(failed, error);
+      }
     });
   }
   async begin() {
@@ -61,8 +68,8 @@ export class Caller {
     if (this.hello) worker.post(this.hello, []);
     return worker;
   }
-  /** Ends the worker, and what it does. */
-  end() { this.worker?.end(); this.worker = null; }
+  /** Ends the worker; a call that runs fails. */
+  end() { this.worker?.end(); this.worker = null; this.ended?.(); }
 }
 
 /** Starts a worker.   options.source  a compiled WebAssembly.Module, or the bytes of brio.wasm; not given: the package's. */

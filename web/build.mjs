@@ -6,6 +6,7 @@
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
 import { readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
@@ -27,7 +28,8 @@ if (wasm) {
     // The rule of this page allows what its worker and its module need, and no request either.
     const rule = body.replace("script-src 'unsafe-inline'", "script-src 'unsafe-inline' 'wasm-unsafe-eval'; worker-src blob:").replace("<title>brio</title>", "<title>brio: a surface from your file</title>");
     const data = `<script type="application/json" id="scene">{"title":"brio"}</script>\n<script type="text/plain" id="worker">${bundled("drop/worker.js")}</script>\n`
-        + `<script type="text/plain" id="wasm">${gzipSync(readFileSync(wasm), { level: 9 }).toString("base64")}</script>`;
+        + `<script type="text/plain" id="wasm">${gzipSync(readFileSync(wasm), { level: 9 }).toString("base64")}</script>\n`
+        + `<script type="text/plain" id="notices">${readFileSync(join(dirname(wasm), "NOTICES"), "utf8").replaceAll("</", "<\\/")}</script>`; // of what is in the module
     const page = filled(rule, styled(text("src/page.css") + text("drop/drop.css")), bundled("drop/main.js"), "drop").replace("<!--DATA-->", () => data);
     writeFileSync(out, page);
     console.log(`${out}: ${page.length} characters`);

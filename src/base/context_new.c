@@ -16,7 +16,7 @@ static void *system_alloc(size_t size, void *user) {
 }
 static void *system_realloc(void *block, size_t size, void *user) {
     (void)user;
-    return realloc(block, size);
+    return brio_heap_resize(block, size);
 }
 static void system_free(void *block, void *user) {
     (void)user;

@@ -1,4 +1,4 @@
-/* Memory from the system, in pages: mappings, what is expected of them, and how much memory there is. All sizes are
+/* Memory from the system: mappings in pages, what is expected of them, and how much memory there is. All sizes are
  * multiples of BRIO_PAGE (base/context.h), and all mappings begin at a multiple of 4096 bytes. */
 #ifndef BRIO_PLATFORM_PAGES_H
 #define BRIO_PLATFORM_PAGES_H
@@ -34,6 +34,9 @@ typedef enum {
 
 /** Says how a mapping of a file will be used. Systems that take no advice go on as they do. */
 void brio_pages_advise(void *base, size_t size, brio_pages_use use);
+
+/** Changes the size of a block of malloc, as realloc does. */
+void *brio_heap_resize(void *block, size_t size);
 
 /** Returns the memory that this process may use: the least of the machine's memory and, on Linux, the limits of its
  *  cgroups (v1 and v2). SIZE_MAX if the system does not tell. */

@@ -2,6 +2,7 @@
 #define _GNU_SOURCE
 #include "platform/pages.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -139,6 +140,10 @@ static uint64_t marked_peak(void) {
 enum { PEAK_UNIT = 1 };
 
 #endif
+
+void *brio_heap_resize(void *block, size_t size) {
+    return realloc(block, size);
+}
 
 size_t brio_system_memory(void) {
     size_t machine = machine_memory(), group = group_memory();

@@ -3,6 +3,7 @@
 #include "platform/wide_names.h"
 #include <errno.h>
 #include <io.h>
+#include <stdlib.h>
 #include <string.h>
 #include <windows.h>
 #define PSAPI_VERSION 2 /* of kernel32, without another library */
@@ -58,6 +59,10 @@ void brio_pages_advise(void *base, size_t size, brio_pages_use use) {
 }
 
 /* --- how much there is --- */
+
+void *brio_heap_resize(void *block, size_t size) {
+    return realloc(block, size);
+}
 
 size_t brio_system_memory(void) {
     MEMORYSTATUSEX facts = {.dwLength = sizeof facts};

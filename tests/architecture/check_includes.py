@@ -16,8 +16,8 @@ ARROWS = pathlib.Path(__file__).with_name("arrows.txt")
 PICTURE = "docs/architecture.md"
 PROGRAMS = ["cli", "examples", "bench"]
 CIRCLES = {"io", "io/compressed", "io/las", "mesh", "query", "reconstruct/labels", "reconstruct/noise", "triangulation"}
-SYSTEM_FILES = {"src/base/memory.c", "src/base/context_new.c", "src/platform/pages_wasi.c", "src/platform/program_posix.c",
-                "src/platform/program_windows.c"}
+SYSTEM_FILES = {"src/base/memory.c", "src/base/context_new.c", "src/platform/pages_posix.c", "src/platform/pages_wasi.c",
+                "src/platform/pages_windows.c", "src/platform/program_posix.c", "src/platform/program_windows.c"}
 FORBIDDEN = re.compile(r"(?<![\w.>])(malloc|calloc|realloc|reallocarray|aligned_alloc|posix_memalign|strn?dup|free"
                        r"|v?[fda]?printf|f?puts|f?putc|putchar|perror|_?exit|_Exit|quick_exit|abort)\s*\(")
 COMMENT_OR_TEXT = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', re.S)

@@ -172,12 +172,38 @@ test('failures have the sentence of the library, and leave nothing', () => {
   strictEqual(brio.files.files.size, 0);
 });
 
+test('what cannot be right is refused, not answered', () => {
+  const points = cube(400), freed = hull(points), t = delaunay(points);
+  freed.free();
+  for (const call of [() => write(freed, 'x.ply'), () => surface(freed), () => page([{ mesh: freed, name: 'x' }])]) throws(call, /freed/);
+  throws(() => t.checksum(points.subarray(0, 3)), /1 points for a triangulation of 400/);
+  throws(() => delaunay(points, { dimension: 4 }), /dimension is 4; expected 2 or 3/);
+  throws(() => delaunay(), BrioError);
+  throws(() => read('text', 'x.xyz'), BrioError);
+  strictEqual(read(new TextEncoder().encode('0 0 0\n1 2 3\n').buffer, 'x.xyz').vertices.length, 6);
+  throws(() => delaunay(cube(50000), { progress: () => { delaunay(points); } }), /no other can begin/);
+  strictEqual(delaunay(points).checksum(points), t.checksum(points), 'calls go on');
+});
+
+test('weights in the memory are read where points are copied, and the memory grows', () => {
+  const weights = room(200000, 1);
+  weights.array.fill(0.1);
+  const before = brio.memory, points = Float64Array.from({ length: 600000 }, (_, i) => (i % 3 ? i % 7 : i));
+  ok(regular(points, weights.array).size > 0);
+  ok(brio.memory > before);
+});
+
 test('memory is used again, and views and room need no copies', () => {
   const points = cube(20000);
   for (let i = 0; i < 3; i++) delaunay(points).free();
   const before = brio.memory;
   for (let i = 0; i < 10; i++) delaunay(points).free();
   strictEqual(brio.memory, before, 'calls leave memory behind');
+  const few = cube(100); // their blocks shrink to less than 64 KiB
+  delaunay(few).free();
+  const small = brio.memory;
+  for (let i = 0; i < 100; i++) delaunay(few).free();
+  ok(brio.memory - small <= 2 ** 18, `100 small calls leave ${brio.memory - small} bytes behind`);
   const own = room(20000);
   own.array.set(points);
   const t = delaunay(own.array);
@@ -220,6 +246,11 @@ test('a worker has the calls as promises, and stops them', async () => {
   await rejects(much, (e) => e === stop.signal.reason);
   ok(said.length > 0);
   strictEqual((await worker.hull(GRID)).vertices.length, 24, 'the worker goes on');
+  await rejects(worker.delaunay(points, { unknown: () => 1 }), /could not be cloned/);
+  const ended = worker.delaunay(cube(300000));
+  setTimeout(() => worker.end(), 50);
+  await rejects(ended, /the worker was ended/);
+  strictEqual((await worker.hull(GRID)).vertices.length, 24, 'the next call starts another one');
   worker.end();
 });
 
