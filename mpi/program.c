@@ -189,7 +189,7 @@ static void remove_parts(job *j, const char *folder) {
 
 /* Writes all files, then the index. On failure the files are removed, and an older output stays as it was. */
 static brio_status write_all(job *j) {
-    new_folder folder = {.path = ""};
+    new_folder folder = {.lock = -1};
     brio_status status = BRIO_OK;
     TRY(agree(j, open_folder(j, &folder)));
     MPI_Bcast(folder.path, sizeof folder.path, MPI_CHAR, 0, MPI_COMM_WORLD);
@@ -278,6 +278,15 @@ static void print_help(void) {
          "--unweighted, --weights-mod, --compress as 'brio delaunay' has them.");
 }
 
+/* Rank 0 checks the output for all: it removes what a killed run left of it, which others would find half removed. */
+static brio_status check_output(run *r) {
+    int rank, status = BRIO_OK;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (rank == 0) status = (int)cli_check_tile_files(r);
+    MPI_Bcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    return (brio_status)status;
+}
+
 static brio_status check(run *r, arguments *a) {
     if (r->num_operands < 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "delaunay: expected IN..., got no argument");
     if (a->tiles > MOST_TILES)
@@ -288,7 +297,7 @@ static brio_status check(run *r, arguments *a) {
         if (!strcmp(r->operands[i], "-"))
             return cli_fail(r, BRIO_ERR_ARGUMENT, "-: the ranks have no standard input; give files");
     FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
-    return cli_check_tile_files(r);
+    return check_output(r);
 }
 
 static brio_status parse(run *r, arguments *a, int argc, char **argv, bool *help) {

@@ -81,13 +81,13 @@ static void mark_of(const char *folder, char path[BRIO_PATH_MOST + 64]) {
     snprintf(path, BRIO_PATH_MOST + 64, "%s/%s", folder, MARK);
 }
 
-/* Removes the files 0.EXT, 1.EXT and so on, `most` of them at most. */
+/* Removes the files 0.EXT, 1.EXT and so on, those that are there of the first `most`: processes that write them side by
+ * side leave gaps. */
 static void remove_files(const char *folder, const char *extension, uint32_t most) {
     char path[BRIO_PATH_MOST + 64];
-    bool removed = true;
-    for (uint32_t i = 0; removed && i < most; i++) {
+    for (uint32_t i = 0; i < most; i++) {
         snprintf(path, sizeof path, "%s/%u%s", folder, i, extension);
-        removed = brio_remove_file(path);
+        brio_remove_file(path);
     }
 }
 

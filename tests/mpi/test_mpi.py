@@ -125,9 +125,12 @@ class Mpi(unittest.TestCase):
         self.mpi(2, small, "-o", out)
         before = {path.name: path.read_bytes() for path in [out, *(self.folder / "out").iterdir()]}
         (self.folder / "out.part").write_text("no folder", encoding="ascii")
-        self.fails(6, "Not a directory", self.generate("cube", 900), "-o", out)
+        self.fails(6, "out.part: is in the way", self.generate("cube", 900), "-o", out)
         self.assertEqual(before, {path.name: path.read_bytes() for path in [out, *(self.folder / "out").iterdir()]})
         os.remove(self.folder / "out.part")
+        (self.folder / "out.part").mkdir()
+        for name in (".brio-part", "0.vtu", "5.vtu"):  # what a killed job leaves: ranks write side by side
+            (self.folder / "out.part" / name).write_text("", encoding="ascii")
         self.mpi(3, self.folder / "a.ply", "-o", out)
         self.assertIn("Source=\"out-1/11.vtu\"", out.read_text(encoding="utf-8"))
         self.assertEqual(sorted(path.name for path in self.folder.glob("out*")), ["out-1", "out.pvtu"])
