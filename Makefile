@@ -198,7 +198,7 @@ integrations: all
 	BRIO=$(CURDIR)/$(BRIO) BRIO_PYTHON=$(CURDIR)/build/python out/tests-env/bin/python integrations/run_tests.py
 
 # Every archive of a release with its checksum, in build/release. It signs nothing and uploads nothing: docs/release.md.
-release: wheels deb
+release: wheels npm page deb
 	@sh scripts/release.sh
 
 # Debian packages of what is committed, in out/deb.

@@ -1,7 +1,8 @@
 #!/bin/sh
-# release.sh: gathers in build/release what a release has, of what is committed: the sources, the Python packages (make wheels), the
-# Debian packages (make deb), the programs of build/targets that were built (make targets), the extension of Blender, and SHA256SUMS of
-# them all. It signs nothing and uploads nothing: docs/release.md says what is left to do.
+# release.sh: gathers in build/release what a release has, of what is committed: the sources, the Python packages (make wheels),
+# the npm package and the page that takes a file (make npm, make page), the Debian packages (make deb), the programs of
+# build/targets that were built (make targets), the extension of Blender, and SHA256SUMS of them all. It signs nothing and uploads
+# nothing: docs/release.md says what is left to do.
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -16,6 +17,8 @@ if [ -n "$(git status --porcelain --untracked-files=no)" ]; then
 fi
 git archive --prefix="brio-$version/" HEAD | gzip -9n >"$release/brio-$version.tar.gz"
 cp build/wheels/brio_geometry-"$version"*.whl build/wheels/brio_geometry-"$version".tar.gz "$release/"
+cp out/npm/brio-"$version".tgz "$release/brio-$version-npm.tgz"
+cp out/brio.html "$release/brio-$version.html"
 cp out/deb/*.deb "$release/" 2>/dev/null || echo "release: no Debian packages; make deb makes them" >&2
 for folder in build/targets/*/; do
     target=$(basename "$folder")

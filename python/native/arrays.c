@@ -29,7 +29,7 @@ static Py_ssize_t size_of(char format) {
     }
 }
 
-/* Returns what the buffer protocol calls a format: for integers of 64 bits long, where that has so many, as numpy does. */
+/* Returns what the buffer protocol calls a format. As in numpy, integers of 64 bits are `long` where that has 64. */
 static const char *format_of(char format) {
     static const char formats[][2] = {"d", "L", "l", "I", "i", "f", "h", "H", "b", "B", "?"};
     if (sizeof(long) == 4 && (format == 'L' || format == 'l')) return format == 'L' ? "Q" : "q";

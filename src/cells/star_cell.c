@@ -33,7 +33,7 @@ void brio_star_cell_free(brio_star_cell *c) {
     brio_release(c->d->ctx, c->polygon);
 }
 
-/* MOST_INSERTED, chosen: so many neighbours are sorted by insertion. */
+/* MOST_INSERTED, chosen: at most this number of neighbours are sorted by insertion. */
 enum { MOST_INSERTED = 32 };
 
 /* Makes room for the sides of a star of `size` tetrahedra, and empties the hash table. A star of n tetrahedra has at

@@ -32,7 +32,7 @@ static inline float below(double time) {
     return time < FLT_MAX ? (float)(time * (1 - 0x1p-22)) : FLT_MAX;
 }
 
-/* Lets time begin anew, before it has so many steps that floats lose them. */
+/* Lets time begin anew, before it is so large that a float cannot tell a further step. */
 static void restart(brio_dynamic *d) {
     for (size_t s = 0; s < d->t.count; s++) d->until[s] = below((double)d->until[s] - d->travelled);
     d->travelled = 0;
