@@ -1,6 +1,7 @@
 /* Triangulations in tiles: the public functions, and the order of the stages. */
 #include "brio/tiles.h"
 #include "base/float_state.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/versioned.h"
@@ -323,6 +324,7 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(ctx);
     double start = brio_seconds();
+    brio_keep_begin(ctx); /* a tile takes the memory of the tile before it */
     BRIO_REQUIRE(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_REQUIRE(ctx, !t->has_result, BRIO_ERR_ARGUMENT, "the tiles are triangulated already");
     BRIO_REQUIRE(ctx, !t->torn, BRIO_ERR_ARGUMENT, "an earlier run ended while it divided the points: add them anew");
@@ -349,6 +351,7 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     t->has_result = true;
     t->stats.triangulate_seconds = brio_seconds() - start;
 done:
+    brio_keep_end(ctx);
     brio_progress_part(ctx, bar, 0, 1);
     return status;
 }
@@ -358,7 +361,9 @@ brio_status brio_tiles_checksum(brio_context *ctx, brio_tiles *t, uint64_t *chec
     double start = brio_seconds();
     BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    brio_keep_begin(ctx);
     brio_status status = brio_tiles_sum(t, checksum);
+    brio_keep_end(ctx);
     t->stats.scratch_bytes = t->folder.most;
     t->stats.rank_seconds = brio_seconds() - start;
     return status;
