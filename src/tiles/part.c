@@ -1,6 +1,6 @@
-/* The tetrahedra of one tile for the caller: their vertices, with positions and indices. In the tile's file they are in an
- * order that depends on the threads; here they are sorted by their first three vertices, which no two of them share in
- * this order, for they are positive. */
+/* The tetrahedra of one tile for the caller: their vertices, with positions and indices. In the tile's file they are in
+ * an order that depends on the threads; here they are sorted by their first three vertices, which no two of them share
+ * in this order, for they are positive. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
