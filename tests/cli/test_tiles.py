@@ -310,12 +310,16 @@ class Tiles(CliTest):
 
     def test_too_small_a_disk_is_said_before_the_work(self):
         cloud, disk = self.rows("a.csv", 20000), self.scratch()
-        line = 'mount -t tmpfs -o size=2m none "$1" && exec "$0" delaunay "$2" --tiles 2 --scratch "$1" --quiet'
-        run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, cloud], stderr=subprocess.PIPE, check=False)
-        if run.returncode in (1, 32, 126, 127):
-            self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
-        self.assertEqual(run.returncode, 6, run.stderr)
-        self.assertRegex(run.stderr.decode(), r"20000 points need about 3 MB more on this disk, which has room for \d MB")
+        line = 'mount -t tmpfs -o size=$3 none "$1" && shift 3 && exec "$0" "$@"'
+        for size, need, command in (("2m", 3, ["delaunay"]), ("9m", 16, ["voronoi", "-o", self.path("c.npy")])):
+            with self.subTest(command[0]):
+                run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, cloud, size, *command, cloud,
+                                      "--tiles", "2", "--scratch", disk, "--quiet"], stderr=subprocess.PIPE, check=False)
+                if run.returncode in (1, 32, 126, 127):
+                    self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
+                self.assertEqual(run.returncode, 6, run.stderr)
+                self.assertRegex(run.stderr.decode(), r"20000 points need about %d MB more on this disk, which has room "
+                                 r"for \d MB" % need)
 
     def test_an_interrupted_run_leaves_nothing(self):
         cloud = self.rows("a.csv", 20000)
@@ -331,6 +335,15 @@ class Tiles(CliTest):
                           "--max-memory", "13M")
         self.assertRegex(run.err, r"the largest of 2 tiles has \d+ points.*take about \d+ tiles")
         self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_cells_are_counted_before_the_work(self):
+        cloud = self.rows("a.csv", 20000)
+        limits = ["--scratch", self.scratch(), "--max-memory", "24M"]
+        self.expect(0, "delaunay", cloud, "--tiles", "2", *limits)
+        run = self.expect(4, "voronoi", cloud, "--tiles", "2", *limits, "-o", self.path("c.npy"))
+        tiles = re.search(r"the largest of 2 tiles has \d+ points.*take about (\d+) tiles", run.err).group(1)
+        facts = self.facts("voronoi", cloud, "--tiles", tiles, *limits, "-o", self.path("c.npy"))
+        self.assertEqual(facts["cells"], 20000)
 
     def test_flat_points(self):
         with open(self.path("flat.xyz"), "w", encoding="ascii") as f:
