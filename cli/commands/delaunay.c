@@ -162,7 +162,7 @@ static brio_status check_tiles(run *r, const arguments *a) {
                         "--tiles goes with weights and -o, not with --plane, --verify, orders, "
                         "locations or records");
     FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
-    return cli_check_tile_files(r);
+    return cli_check_tile_output(r);
 }
 
 /* Refuses the files beside .node and .ele where these are not written. */
@@ -478,6 +478,7 @@ const command cli_delaunay = {
         "brio delaunay points.ply -o tetrahedra.vtu\ntetrahedra for ParaView\n"
         "brio delaunay points.xyz --verify\nchecks the result exactly; writes nothing\n"
         "brio delaunay lidar.las --plane xy -o terrain.ply\ntriangles over the ground: terrain\n"
+        "brio delaunay scan.laz --tiles 16 --scratch /var/tmp -o all.ply\nmore points than fit in memory\n"
         "brio delaunay atoms.xyz --cell 20,20,20 -o periodic.vtu\natoms in a box that repeats\n"
         "brio delaunay atoms.xyz --weights radii2.txt -o regular.vtu\nregular triangulation, one weight a line\n",
     .has_output = true,

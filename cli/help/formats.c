@@ -23,6 +23,7 @@ static const struct {
             {BRIO_HOLDS_BINARY, "binary", "binary"},
             {BRIO_HOLDS_COMPRESSED, "compressed", "compressed"},
             {BRIO_HOLDS_PLACES, "places", "no pipes"},
+            {BRIO_HOLDS_PARTS, "parts", "all tiles in one file"},
             {BRIO_HOLDS_RARE_DOUBLES, "rare_doubles", "--float32 for most readers"}};
 
 enum { NUM_HELD = sizeof held / sizeof *held };

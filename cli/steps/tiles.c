@@ -1,8 +1,11 @@
 /* --tiles: points go to the library block by block, as they are read; a report, and a file for each tile. */
 #include "cli/steps/tiles.h"
 #include "cli/files/files.h"
+#include "cli/files/lost.h"
 #include "cli/files/new_file.h"
 #include "cli/files/read_write.h"
+#include "cli/run/interrupt.h"
+#include "cli/steps/properties.h"
 #include "platform/file.h"
 #include <errno.h>
 #include <inttypes.h>
@@ -32,8 +35,28 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
 brio_status cli_check_tile_files(run *r) {
     const char *output = r->common.output;
     if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
-        return cli_fail_output(r, "%s: --tiles writes .pvtu, with a file for each tile beside it", output);
+        return cli_fail_output(r, "%s: --tiles writes .ply, and .pvtu with a file for each tile beside it", output);
     return output ? cli_new_folder_check(r, output, OF_TILES) : BRIO_OK;
+}
+
+/* Returns the format of an output that is one file for all tiles; BRIO_FORMAT_AUTO: the output is none. */
+static brio_format merged_format(const run *r) {
+    const common_options *c = &r->common;
+    brio_format format = c->output ? brio_format_of(c->format ? c->format : c->output) : BRIO_FORMAT_AUTO;
+    const brio_format_info *info = brio_format_facts(format);
+    return info && info->holds & BRIO_HOLDS_PARTS ? format : BRIO_FORMAT_AUTO;
+}
+
+brio_status cli_check_tile_output(run *r) {
+    const char *input = r->operands[0];
+    brio_place_facts file;
+    if (merged_format(r) == BRIO_FORMAT_AUTO) return cli_check_tile_files(r);
+    if (!strcmp(input, "-") || !brio_find_facts(input, &file) || file.kind != BRIO_IS_FILE)
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "%s: for one output of all tiles the input is read twice, so it must be a file; .pvtu needs it "
+                        "once",
+                        strcmp(input, "-") ? input : "standard input");
+    return strcmp(r->common.output, "-") ? cli_check_target(r, r->common.output) : BRIO_OK;
 }
 
 /* --- reading --- */
@@ -226,6 +249,118 @@ done:
     return status;
 }
 
+/* --- one file --- */
+
+/* The output of all tiles in one file. */
+typedef struct {
+    run *r;
+    const weights_options *options;
+    brio_mesh_parts *parts;
+    brio_property *property; /* of a block as it is written */
+    size_t num_properties;   /* of the input */
+    bool adds_weight;
+    uint64_t count, all; /* points */
+    brio_status status;
+} merging;
+
+/* Names the properties of the blocks, as brio delaunay without tiles does: weights are one. */
+static brio_status name_properties(merging *m, const brio_mesh *block, bool weighted) {
+    size_t n = block->num_properties;
+    bool overruled = m->options->exponent != NO_EXPONENT || m->options->unweighted;
+    brio_mesh named = *block;
+    m->property = calloc(n + 1, sizeof *m->property);
+    if (!m->property) return cli_fail(m->r, BRIO_ERR_NO_MEMORY, "out of memory");
+    if (n) memcpy(m->property, block->properties, n * sizeof *m->property);
+    m->num_properties = n;
+    named.properties = m->property;
+    if (overruled) cli_set_aside(m->r, &named, "weight");
+    if (overruled) cli_set_aside(m->r, &named, "radius");
+    m->adds_weight = weighted && !brio_mesh_property(&named, "weight");
+    if (m->adds_weight) m->property[n] = (brio_property){.name = "weight", .type = BRIO_SCALAR_FLOAT64};
+    return BRIO_OK;
+}
+
+static brio_status write_block(merging *m, const brio_mesh *block) {
+    double *weights = NULL;
+    brio_mesh shown = *block;
+    brio_status status = BRIO_OK;
+    TRY(cli_block_weights(m->r, m->options, block, m->count, &weights));
+    if (!m->property) TRY(name_properties(m, block, weights != NULL));
+    if (block->num_vertices > m->all - m->count || block->num_properties != m->num_properties)
+        TRY(cli_fail(m->r, BRIO_ERR_FORMAT, "%s: the file changed between two readings", m->r->operands[0]));
+    for (size_t i = 0; i < m->num_properties; i++) m->property[i].data = block->properties[i].data;
+    if (m->adds_weight) m->property[m->num_properties].data = weights;
+    shown.properties = m->property;
+    shown.num_properties = m->num_properties + m->adds_weight;
+    TRY(brio_mesh_parts_vertices(m->r->ctx, m->parts, &shown));
+    m->count += block->num_vertices;
+done:
+    free(weights);
+    return status;
+}
+
+static int take_again(const brio_mesh *block, void *user) {
+    merging *m = user;
+    m->status = write_block(m, block);
+    if (m->status != BRIO_OK) cli_keep_failure(m->r, m->status);
+    return m->status != BRIO_OK;
+}
+
+static brio_status write_points_again(merging *m) {
+    run *r = m->r;
+    brio_read_options how = cli_read_options(r);
+    brio_status status = brio_read_blocks(r->ctx, r->operands[0], &how, take_again, m, NULL);
+    FORWARD(m->status);
+    FORWARD(status);
+    if (m->count == m->all) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_FORMAT, "%s: the file changed between two readings", r->operands[0]);
+}
+
+static brio_status write_tetrahedra(merging *m, brio_tiles *t, uint32_t tile) {
+    run *r = m->r;
+    brio_tile_part part = {.size = sizeof part};
+    brio_status status = BRIO_OK;
+    TRY(brio_tiles_part(r->ctx, t, tile, &part));
+    for (size_t i = 0; i < part.num_tetrahedra; i++)
+        for (int k = 0; k < 4; k++) part.tetrahedra[i][k] = (uint32_t)part.index[part.tetrahedra[i][k]];
+    TRY(brio_mesh_parts_tetrahedra(r->ctx, m->parts, part.num_tetrahedra ? *part.tetrahedra : NULL,
+                                   part.num_tetrahedra));
+done:
+    brio_tile_part_free(r->ctx, &part);
+    return status;
+}
+
+/* Writes one file: the points as they are read again, in their order and with their properties, then the tetrahedra of
+ * tile after tile. */
+static brio_status write_merged(run *r, const weights_options *weights, brio_tiles *t, uint32_t tiles) {
+    const brio_tiles_stats *s = brio_tiles_facts(t);
+    const common_options *c = &r->common;
+    merging m = {.r = r, .options = weights, .all = s->points};
+    double moved = 0;
+    int rounded = 0;
+    brio_write_options how = {.size = sizeof how,
+                              .format = merged_format(r),
+                              .ascii = c->ascii,
+                              .float32 = c->float32,
+                              .comment = "brio " BRIO_VERSION,
+                              .moved = &moved,
+                              .colours_rounded = &rounded};
+    brio_status status = BRIO_OK;
+    TRY(cli_check_interrupt(r));
+    cli_interrupt_writing(strcmp(c->output, "-") != 0);
+    TRY(brio_mesh_parts_new(r->ctx, c->output, &how, s->points, s->tetrahedra, &m.parts));
+    TRY(write_points_again(&m));
+    for (uint32_t i = 0; i < tiles; i++) TRY(write_tetrahedra(&m, t, i));
+    TRY(brio_mesh_parts_finish(r->ctx, m.parts));
+    cli_tell_moved(r, c->output, moved, 0);
+done:
+    cli_interrupt_writing(false);
+    brio_mesh_parts_free(m.parts);
+    free(m.property);
+    cli_lap(r, "write");
+    return status;
+}
+
 /* --- the run --- */
 
 brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars,
@@ -249,7 +384,10 @@ brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
     brio_status status = BRIO_OK;
     TRY(cli_triangulate_tiles(r, weights, tiles, false, &t));
     TRY(report(r, t));
-    if (r->common.output) TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
+    if (merged_format(r) != BRIO_FORMAT_AUTO)
+        TRY(write_merged(r, weights, t, (uint32_t)tiles));
+    else if (r->common.output)
+        TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
 done:
     brio_tiles_free(t);
     return status;

@@ -16,12 +16,15 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
 /** Refuses an output that is not .pvtu. */
 brio_status cli_check_tile_files(run *r);
 
+/** Refuses an output that is neither .pvtu nor .ply, and for .ply an input that cannot be read twice. */
+brio_status cli_check_tile_output(run *r);
+
 /** Reads the input block by block, and triangulates it in tiles.
  *  stars  whether cells will be computed.   out  freed by the caller, also on an error. */
 brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars, brio_tiles **out);
 
 /** Triangulates the input in tiles, and reports as brio delaunay does. Writes -o: x.pvtu, and a file for each tile in
- *  the folder x beside it. */
+ *  the folder x beside it; or x.ply, all in one file. */
 brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles);
 
 /* --- what brio-mpi has the same of --- */

@@ -95,7 +95,8 @@ enum {
     BRIO_HOLDS_FACE_PROPERTIES = 8192, /* of the faces, any of them */
     BRIO_HOLDS_FACE_COLOURS = 16384,   /* red, green, blue and alpha of the faces, though not all properties */
     BRIO_HOLDS_ORIGIN = 32768,         /* an origin, from which coordinates in single precision are counted */
-    BRIO_HOLDS_PLACES = 65536          /* places of its parts, known at its end: it goes to a file, not into a pipe */
+    BRIO_HOLDS_PLACES = 65536,         /* places of its parts, known at its end: it goes to a file, not into a pipe */
+    BRIO_HOLDS_PARTS = 131072          /* points and tetrahedra that are written part by part: brio_mesh_parts_new */
 };
 
 /** What is known of a format. */
@@ -217,6 +218,37 @@ struct brio_write_options {
     int crs_comment;       /* PLY, 1: the metadata crs.wkt, or without it crs.code, as comments "crs TEXT" */
     int reserved_int;
 };
+
+/** A file of points and tetrahedra that is written part by part, for meshes that are in no memory as a whole: a format
+ *  with BRIO_HOLDS_PARTS, which is PLY. It has the rows of brio_write: first all points, in blocks with the same
+ *  properties, then the tetrahedra. The file gets its name at the end.
+ *
+ *     brio_mesh_parts_new(ctx, path, NULL, num_vertices, num_tetrahedra, &p);
+ *     ... brio_mesh_parts_vertices(ctx, p, block) for each block, then
+ *     ... brio_mesh_parts_tetrahedra(ctx, p, tetrahedra, count) for each part
+ *     brio_mesh_parts_finish(ctx, p);
+ *     brio_mesh_parts_free(p); */
+typedef struct brio_mesh_parts brio_mesh_parts;
+
+/** Begins a file.
+ *  options  NULL, or as in brio_write; its strings and results stay valid until brio_mesh_parts_free.
+ *  num_vertices, num_tetrahedra  of all parts; at most 2^32 - 1 points.
+ *  out      owned by the caller: brio_mesh_parts_free; NULL on error.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no .ply), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_mesh_parts_new(brio_context *ctx, const char *path, const brio_write_options *options,
+                                         uint64_t num_vertices, uint64_t num_tetrahedra, brio_mesh_parts **out);
+/** Appends points with their properties; faces, tetrahedra and edges of the block are not written.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (also for more points than were announced), BRIO_ERR_NOT_FINITE, BRIO_ERR_FORMAT
+ *  (other properties than the first block's), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_mesh_parts_vertices(brio_context *ctx, brio_mesh_parts *p, const brio_mesh *block);
+/** Appends tetrahedra, once all points are there.   tetrahedra  count by 4: rows of points.   Returns as the above. */
+BRIO_API brio_status brio_mesh_parts_tetrahedra(brio_context *ctx, brio_mesh_parts *p, const uint32_t *tetrahedra,
+                                                size_t count);
+/** Ends the file and gives it its name.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (not as many as were announced), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_mesh_parts_finish(brio_context *ctx, brio_mesh_parts *p);
+/** Frees everything; NULL is accepted. A file that was not finished disappears. */
+BRIO_API void brio_mesh_parts_free(brio_mesh_parts *p);
 
 typedef struct brio_convert_options {
     size_t size;

@@ -21,6 +21,7 @@
 #include "base/team.h"
 #include "completion/known.h"
 #include "predicates/circumcentre.h"
+#include "triangulation/triangulation.h"
 #include <assert.h>
 #include <string.h>
 
@@ -51,7 +52,7 @@ struct brio_completion {
     size_t points_capacity, weights_capacity;
     brio_triangulation *t;
     const brio_tetrahedron *tet;
-    size_t num_finite, num_tets;
+    size_t num_tets;
     uint8_t *open;      /* of each local point: OPEN or ENDS if it is an own point whose star is open, else 0 */
     uint8_t *not_final; /* of each local point: 1 if a tetrahedron at it is not final */
     uint8_t *to_ask;    /* of each tetrahedron: 1 if it is asked for and not known to be free of conflicts */
@@ -94,10 +95,13 @@ static brio_status triangulate(completion *c) {
     double done = 1 - 1.0 / (1 + s->rounds); /* the first round takes most of the time */
     brio_progress_part(c->ctx, c->bar, done, 1 - 1.0 / (2 + s->rounds));
     BRIO_FORWARD(gather(c));
-    BRIO_FORWARD(brio_delaunay(c->ctx, c->points, c->task.weighted ? c->weights : NULL, n, &o, &c->t));
+    const double *weights = c->task.weighted ? c->weights : NULL;
+    if (c->task.any_order)
+        BRIO_FORWARD(brio_delaunay_any_order(c->ctx, c->points, weights, n, &o, &c->t));
+    else
+        BRIO_FORWARD(brio_delaunay(c->ctx, c->points, weights, n, &o, &c->t));
     const brio_delaunay_stats *facts = brio_triangulation_stats(c->t);
     c->tet = brio_triangulation_tetrahedra(c->t);
-    c->num_finite = facts->tetrahedra;
     c->num_tets = facts->tetrahedra + facts->hull_facets;
     s->dimension = facts->dimension;
     s->rounds++;
@@ -143,13 +147,13 @@ static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_
     size_t finite = 0;
     assert(n <= BRIO_CENTRE_BATCH);
     for (size_t i = 0; i < n; i++)
-        if (tets[i] < c->num_finite) memcpy(vertex[finite++], c->tet[tets[i]].vertex, sizeof *vertex);
+        if (is_finite_tet(&c->tet[tets[i]])) memcpy(vertex[finite++], c->tet[tets[i]].vertex, sizeof *vertex);
     brio_centre_batch batch = {c->points, c->task.weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, finite};
     if (finite) brio_centres(&batch, *centre, error);
     for (size_t i = 0, f = 0; i < n; i++) {
         brio_ball *b = &balls[i];
         const uint32_t *v = c->tet[tets[i]].vertex;
-        *b = (brio_ball){.infinite = tets[i] >= c->num_finite};
+        *b = (brio_ball){.infinite = !is_finite_tet(&c->tet[tets[i]])};
         for (int k = 0; k < (b->infinite ? 3 : 4); k++)
             memcpy(b->vertex[k], c->known[c->local[v[k]]].record, sizeof *b->vertex);
         if (!b->infinite) memcpy(b->centre, centre[f], sizeof b->centre);
@@ -187,7 +191,7 @@ static void judge_some(void *user, size_t begin, size_t end, int thread) {
             brio_tet_key key = key_of(c, &c->tet[t]);
             if (brio_tet_set_has(&c->asked, &key)) continue;
         }
-        if (t >= c->num_finite || !c->task.home)
+        if (!is_finite_tet(&c->tet[t]) || !c->task.home)
             c->to_ask[t] = 1;
         else
             some[n++] = (uint32_t)t;
@@ -198,6 +202,35 @@ static void judge_some(void *user, size_t begin, size_t end, int thread) {
 
 /* --- asking --- */
 
+static int compare_tets(uint32_t i, uint32_t j, const void *user) {
+    const completion *c = user;
+    brio_tet_key a = key_of(c, &c->tet[i]), b = key_of(c, &c->tet[j]);
+    for (int k = 0; k < 4; k++)
+        if (a.v[k] != b.v[k]) return a.v[k] < b.v[k] ? -1 : 1;
+    return 0;
+}
+
+/* Orders the questions by their vertices: in which order the tetrahedra came is forgotten. */
+static brio_status order_questions(completion *c) {
+    uint64_t *key = NULL;
+    brio_status status = BRIO_OK;
+    size_t n = c->num_questions;
+    BRIO_TRY(BRIO_ALLOC(c->ctx, key, n + 1));
+    for (size_t i = 0; i < n; i++) {
+        brio_tet_key k = key_of(c, &c->tet[c->question[i]]);
+        key[i] = (uint64_t)k.v[0] << 32 | k.v[1];
+    }
+    BRIO_TRY(brio_radix_sort(c->ctx, key, c->question, n, 64));
+    for (size_t begin = 0, end; begin < n; begin = end) {
+        for (end = begin + 1; end < n && key[end] == key[begin];) end++;
+        if (end - begin > 1)
+            BRIO_TRY(brio_sort_many_indices(c->ctx, c->question + begin, end - begin, compare_tets, c));
+    }
+done:
+    brio_release(c->ctx, key);
+    return status;
+}
+
 static brio_status list_questions(completion *c) {
     size_t n = 0;
     for (size_t t = 0; t < c->num_tets; t++) n += c->to_ask[t];
@@ -206,7 +239,7 @@ static brio_status list_questions(completion *c) {
     for (size_t t = 0; t < c->num_tets; t++)
         if (c->to_ask[t]) c->question[c->num_questions++] = (uint32_t)t;
     c->stats.asked += n;
-    return BRIO_OK;
+    return order_questions(c);
 }
 
 brio_status brio_completion_begin(brio_completion *c, size_t *questions) {

@@ -25,8 +25,8 @@ extern const brio_codec brio_ply_codec, brio_off_codec, brio_vtp_codec, brio_vtu
 /* In the order in which a file's beginning is compared with theirs: a format whose beginning is looser comes later. */
 static const brio_format_row table[] = {
     {{sizeof(brio_format_info), BRIO_FORMAT_PLY, "a PLY file", "ply", "ply",
-      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS, BRIO_MOST_NUMBERS - 3,
-      NULL},
+      POINTS | FACES | BRIO_HOLDS_TETRAHEDRA | BRIO_HOLDS_EDGES | BOTH_PRECISIONS | BOTH_FORMS | BRIO_HOLDS_PARTS,
+      BRIO_MOST_NUMBERS - 3, NULL},
      .codec = &brio_ply_codec,
      .colours = BRIO_COLOURS_8,
      .face_colours = BRIO_COLOURS_8},

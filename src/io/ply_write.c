@@ -72,7 +72,8 @@ static brio_status write_crs(brio_output *out, const brio_mesh *m) {
 static brio_status write_header(brio_output *out, const brio_write_job *job, ply_writer *w) {
     const brio_mesh *m = job->mesh;
     const char *binary = brio_host_is_little() ? "binary_little_endian" : "binary_big_endian";
-    const char *index = m->num_vertices > INT32_MAX ? "uint" : "int";
+    uint64_t points = job->points != BRIO_COUNT_UNKNOWN ? job->points : m->num_vertices;
+    const char *index = points > INT32_MAX ? "uint" : "int";
     BRIO_FORWARD(brio_output_format(out, "ply\nformat %s 1.0\n", job->options->ascii ? "ascii" : binary));
     BRIO_FORWARD(brio_output_comment(out, "comment ", job->options->comment));
     if (job->options->crs_comment) BRIO_FORWARD(write_crs(out, m));

@@ -74,6 +74,8 @@ uint64_t brio_row_writer_surveyed_points(const brio_row_writer *w);
 brio_status brio_row_writer_write(brio_row_writer *w, const char *path, const brio_mesh *block);
 /** Returns whether property i of the block that was written has another name in the file. */
 bool brio_row_writer_renames(const brio_row_writer *w, const brio_mesh *block, size_t i);
+/** Writes a part of the tetrahedra, of a file whose number of points was known and whose points are written: PLY. */
+brio_status brio_row_writer_cells(brio_row_writer *w, const brio_mesh *cells);
 /** Ends the file and gives it its name.   last  the mesh whose polygons, tetrahedra and edges follow its points. */
 brio_status brio_row_writer_end(brio_row_writer *w, const brio_mesh *last);
 /** Frees everything. A file that was not ended disappears. */

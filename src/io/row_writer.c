@@ -237,6 +237,12 @@ bool brio_row_writer_renames(const brio_row_writer *w, const brio_mesh *block, s
     return w->job.names && strcmp(w->job.names[i], block->properties[i].name) != 0;
 }
 
+brio_status brio_row_writer_cells(brio_row_writer *w, const brio_mesh *cells) {
+    w->job.mesh = cells;
+    w->job.points = w->points;
+    return w->format->end(&w->out, &w->job, w->state);
+}
+
 brio_status brio_row_writer_end(brio_row_writer *w, const brio_mesh *last) {
     brio_status status = BRIO_OK;
     brio_mesh cells = *last, shown;

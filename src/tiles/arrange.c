@@ -3,11 +3,14 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "order/order.h"
 #include "tiles/work.h"
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
+
+enum { POINTS_A_THREAD = 1 << 14, BLOCKS_A_THREAD = 1 << 8, KEY_BITS = 33 /* three digits of the sort. Chosen */ };
 
 /* --- one point for each position --- */
 
@@ -20,63 +23,130 @@ static int compare_rows(uint32_t i, uint32_t j, const void *user) {
     return p->name < q->name ? -1 : p->name > q->name;
 }
 
-_Static_assert(sizeof(brio_set_point) == 5 * sizeof(double), "rows of five doubles");
+typedef struct {
+    const brio_set_point *points;
+    uint64_t *key;
+    uint32_t *row;
+} keys;
+
+/* Sets keys that are equal at equal positions, and seldom at others. */
+static void set_keys(void *user, size_t begin, size_t end, int thread) {
+    const keys *k = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        uint64_t x[3];
+        memcpy(x, k->points[i].record, sizeof x);
+        k->key[i] = brio_mix(x[0] ^ brio_mix(x[1] ^ brio_mix(x[2]))) >> (64 - KEY_BITS);
+        k->row[i] = (uint32_t)i;
+    }
+}
+
+/* Marks the points of a run of equal keys that do not stand for their position. */
+static brio_status mark_twins(brio_tiles *t, const brio_set_point *points, uint32_t *row, size_t n, uint8_t *gone) {
+    BRIO_FORWARD(brio_sort_many_indices(t->ctx, row, n, compare_rows, points));
+    for (size_t i = 1; i < n; i++) {
+        gone[row[i]] = brio_same_position(points[row[i - 1]].record, points[row[i]].record);
+        t->stats.duplicates += gone[row[i]];
+    }
+    return BRIO_OK;
+}
 
 /* Drops the points that do not stand for their position. */
 static brio_status drop_twins(brio_tiles *t, brio_set_point *points, size_t *count) {
-    uint32_t *row = NULL;
-    uint8_t *stands = NULL;
+    uint8_t *gone = NULL;
     brio_status status = BRIO_OK;
     size_t n = *count, left = 0;
-    BRIO_TRY(BRIO_ALLOC(t->ctx, row, n + 1));
-    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, stands, n + 1));
-    for (size_t i = 0; i < n; i++) row[i] = (uint32_t)i;
-    BRIO_TRY(brio_sort_rows(t->ctx, &(brio_row_order){points->record, 5, compare_rows, points}, row, n));
-    for (size_t i = 0; i < n; i++)
-        stands[row[i]] = i == 0 || !brio_same_position(points[row[i - 1]].record, points[row[i]].record);
-    for (size_t i = 0; i < n; i++)
-        if (stands[i]) points[left++] = points[i];
-    t->stats.duplicates += n - left;
+    keys k = {.points = points};
+    BRIO_TRY(BRIO_ALLOC(t->ctx, k.key, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, k.row, n + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, gone, n + 1));
+    BRIO_TRY(brio_for(t->ctx, brio_threads(t->ctx, n, POINTS_A_THREAD), n, set_keys, &k));
+    BRIO_TRY(brio_radix_sort(t->ctx, k.key, k.row, n, KEY_BITS));
+    for (size_t begin = 0, end; begin < n; begin = end) {
+        for (end = begin + 1; end < n && k.key[end] == k.key[begin];) end++;
+        if (end - begin > 1) BRIO_TRY(mark_twins(t, points, k.row + begin, end - begin, gone));
+        BRIO_TRY(brio_look(t->ctx, end - begin));
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (gone[i]) continue;
+        if (left < i) points[left] = points[i];
+        left++;
+    }
     *count = left;
 done:
-    brio_release(t->ctx, row);
-    brio_release(t->ctx, stands);
+    brio_release(t->ctx, k.key);
+    brio_release(t->ctx, k.row);
+    brio_release(t->ctx, gone);
     return status;
 }
 
 /* --- places --- */
 
-static void shuffle_blocks(brio_set_point *points, size_t n, uint64_t seed) {
-    brio_rng rng = brio_rng_new(seed);
-    for (size_t begin = 0; begin < n; begin += TILE_BLOCK) {
-        size_t size = n - begin < TILE_BLOCK ? n - begin : TILE_BLOCK;
+typedef struct {
+    brio_set_point *points;
+    size_t count;
+    uint64_t seed;
+} shuffle;
+
+/* Shuffles some blocks, each by itself. */
+static void shuffle_blocks(void *user, size_t begin, size_t end, int thread) {
+    const shuffle *s = user;
+    (void)thread;
+    for (size_t block = begin; block < end; block++) {
+        brio_set_point *points = s->points + block * TILE_BLOCK;
+        size_t left = s->count - block * TILE_BLOCK, size = left < TILE_BLOCK ? left : TILE_BLOCK;
+        brio_rng rng = brio_rng_new(brio_hash(s->seed, block));
         for (size_t i = size; i > 1; i--) {
             size_t j = brio_rng_below(&rng, (uint32_t)i);
-            brio_set_point swap = points[begin + i - 1];
-            points[begin + i - 1] = points[begin + j], points[begin + j] = swap;
+            brio_set_point swap = points[i - 1];
+            points[i - 1] = points[j], points[j] = swap;
         }
     }
 }
 
-/* Brings points into the order of a Hilbert curve. */
-static brio_status follow_curve(brio_tiles *t, brio_set_point **points, size_t n) {
-    double *positions = NULL;
+typedef struct {
+    const brio_set_point *from;
+    brio_set_point *to;
+    double *positions;
+    const uint32_t *order;
+} copying;
+
+static void copy_positions(void *user, size_t begin, size_t end, int thread) {
+    const copying *c = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) memcpy(c->positions + 3 * i, c->from[i].record, 3 * sizeof *c->positions);
+}
+
+static void copy_in_order(void *user, size_t begin, size_t end, int thread) {
+    const copying *c = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) c->to[i] = c->from[c->order[i]];
+}
+
+/* Brings points into the order of a Hilbert curve, and shuffles each block. */
+static brio_status follow_curve(brio_tiles *t, brio_set_point **points, size_t n, uint64_t seed) {
     uint32_t *order = NULL;
-    brio_set_point *sorted = NULL;
+    copying c = {.from = *points};
     brio_status status = BRIO_OK;
     brio_delaunay_options o = {.size = sizeof o, .order = BRIO_ORDER_HILBERT, .seed = BRIO_SEED};
-    BRIO_TRY(BRIO_ALLOC(t->ctx, positions, 3 * n + 1));
+    int threads = brio_threads(t->ctx, n, POINTS_A_THREAD);
+    size_t blocks = (n + TILE_BLOCK - 1) / TILE_BLOCK;
+    BRIO_TRY(BRIO_ALLOC(t->ctx, c.positions, 3 * n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, order, n + 1));
-    BRIO_TRY(BRIO_ALLOC(t->ctx, sorted, n + 1));
-    for (size_t i = 0; i < n; i++) memcpy(positions + 3 * i, (*points)[i].record, 3 * sizeof *positions);
-    BRIO_TRY(brio_order_points(t->ctx, &(brio_input){positions, NULL, n}, &o, order, NULL, NULL, NULL));
-    for (size_t i = 0; i < n; i++) sorted[i] = (*points)[order[i]];
-    brio_set_point *swap = *points;
-    *points = sorted, sorted = swap;
+    c.order = order;
+    BRIO_TRY(brio_for(t->ctx, threads, n, copy_positions, &c));
+    BRIO_TRY(brio_order_points(t->ctx, &(brio_input){c.positions, NULL, n}, &o, order, NULL, NULL, NULL));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, c.to, n + 1));
+    BRIO_TRY(brio_for(t->ctx, threads, n, copy_in_order, &c));
+    brio_release(t->ctx, *points);
+    *points = c.to;
+    c.to = NULL;
+    shuffle s = {*points, n, seed};
+    status = brio_for(t->ctx, brio_threads(t->ctx, blocks, BLOCKS_A_THREAD), blocks, shuffle_blocks, &s);
 done:
-    brio_release(t->ctx, positions);
+    brio_release(t->ctx, c.positions);
     brio_release(t->ctx, order);
-    brio_release(t->ctx, sorted);
+    brio_release(t->ctx, c.to);
     return status;
 }
 
@@ -117,19 +187,13 @@ void brio_tiles_note(brio_tiles *t, brio_filter *f, const brio_set_point *p) {
 
 /* Notes the extreme ones of the points of a block. In most directions its box tells that it has none: the sums are
  * monotone, also as they are rounded. The point at the first place of this process is compared with none. */
-static void note_extremes(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++) {
-            double x = points[i].record[k];
-            low[k] = x < low[k] ? x : low[k];
-            high[k] = x > high[k] ? x : high[k];
-        }
+static void note_extremes(brio_tiles *t, const brio_set_point *points, const brio_tile_node *block) {
+    uint64_t place = block->place;
     for (int d = 0; d < TILE_DIRECTIONS; d++) {
         double corner[3];
-        for (int k = 0; k < 3; k++) corner[k] = sign_along(d, k) < 0 ? low[k] : high[k];
+        for (int k = 0; k < 3; k++) corner[k] = sign_along(d, k) < 0 ? block->box.low[k] : block->box.high[k];
         if (place > t->first_place && !(along(d, corner) > along(d, t->extreme[d].record))) continue;
-        for (size_t i = 0; i < n; i++)
+        for (size_t i = 0; i < block->points; i++)
             if (place + i == t->first_place || along(d, points[i].record) > along(d, t->extreme[d].record)) {
                 t->extreme[d] = points[i];
                 t->extreme[d].name = place + i;
@@ -137,15 +201,16 @@ static void note_extremes(brio_tiles *t, const brio_set_point *points, size_t n,
     }
 }
 
-static void note_points(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
+/* Notes the points of a tile.   first_node  of its blocks. */
+static void note_points(brio_tiles *t, const brio_tile *tile, const brio_set_point *points, size_t first_node) {
     brio_filter f;
     brio_tiles_filter(t, &f);
-    for (size_t i = 0; i < n; i += TILE_BLOCK)
-        note_extremes(t, points + i, n - i < TILE_BLOCK ? n - i : TILE_BLOCK, place + i);
-    for (size_t i = 0; i < n && t->num_basis < 4; i++) {
+    for (size_t i = 0; i < tile->points; i += TILE_BLOCK)
+        note_extremes(t, points + i, &t->node[first_node + i / TILE_BLOCK]);
+    for (size_t i = 0; i < tile->points && t->num_basis < 4; i++) {
         if (!spans_more(t, &f, points[i].record)) continue;
         t->basis[t->num_basis] = points[i];
-        t->basis[t->num_basis++].name = place + i;
+        t->basis[t->num_basis++].name = tile->place + i;
     }
 }
 
@@ -173,16 +238,15 @@ static brio_status arrange_tile(brio_tiles *t, uint32_t tile, brio_store_file *o
     brio_set_point *points = NULL;
     brio_status status = BRIO_OK;
     brio_tile *facts = &t->tile[tile];
-    size_t n = facts->raw;
+    size_t n = facts->raw, first_node = t->num_nodes;
     BRIO_TRY(read_divided(t, tile, &points));
     BRIO_TRY(drop_twins(t, points, &n));
-    BRIO_TRY(follow_curve(t, &points, n));
-    shuffle_blocks(points, n, tile);
+    BRIO_TRY(follow_curve(t, &points, n, tile));
     facts->place = *place;
     facts->points = (uint32_t)n;
-    note_points(t, points, n, *place);
-    BRIO_TRY(brio_store_append(out, points, n * sizeof *points));
     BRIO_TRY(brio_tile_tree_add(t, tile, points));
+    note_points(t, facts, points, first_node);
+    BRIO_TRY(brio_store_append(out, points, n * sizeof *points));
     t->stats.tiles += n > 0;
     *place += n;
 done:

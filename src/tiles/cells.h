@@ -8,6 +8,8 @@
 
 /* --- slabs --- */
 
+enum { BRIO_SLAB_SITES = 1 << 14 }; /* Chosen: a fifth of its tetrahedra are of other slabs, too */
+
 /** A tile, and one of its slabs. */
 typedef struct {
     brio_tiles *t;
@@ -54,6 +56,9 @@ brio_status brio_tiles_run_cells(brio_tiles *t, const brio_cells_options *option
 /** Computes the same, but hands them on in ascending order of the sites. No vertices. */
 brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options,
                                          const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats);
+
+/** Returns the bytes that wait for the files into which brio_tiles_run_ordered_cells divides. */
+double brio_ordered_cells_buffers(size_t tiles);
 
 /** Adds cells to the counts and to the sum of volumes, whose rounding errors go to *lost [Neumaier 1974]. */
 void brio_tile_cells_count(const brio_cells *cells, brio_tiles_cells_stats *stats, double *lost);

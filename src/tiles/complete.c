@@ -245,7 +245,8 @@ static brio_status begin(brio_tile_work *w, const brio_found *more) {
                                  .home = &w->seen,
                                  .final = t->stars ? take_stars : take,
                                  .final_user = w,
-                                 .least_only = !t->stars};
+                                 .least_only = !t->stars,
+                                 .any_order = true};
     status = brio_completion_new(t->ctx, &task, &w->completion);
 done:
     brio_release(t->ctx, list.point);

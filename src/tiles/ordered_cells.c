@@ -84,10 +84,20 @@ static void name_of(const char *kind, size_t part, char name[32]) {
     snprintf(name, 32, "%s-%zu", kind, part);
 }
 
+/* Returns the bytes that wait for each of the files. */
+static size_t room_of_tray(size_t num_parts) {
+    size_t share = ALL_BUFFERS / (2 * num_parts);
+    return share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
+}
+
+double brio_ordered_cells_buffers(size_t tiles) {
+    size_t num_parts = (size_t)PARTS * tiles;
+    return 2.0 * (double)num_parts * (double)room_of_tray(num_parts);
+}
+
 static brio_status open_tray(ordering *o, const char *kind, size_t part, tray *f) {
     char name[32];
-    size_t share = ALL_BUFFERS / (2 * o->num_parts);
-    f->room = share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
+    f->room = room_of_tray(o->num_parts);
     name_of(kind, part, name);
     BRIO_FORWARD(brio_store_create(&o->t->folder, name, &f->file));
     brio_store_shut(&f->file);

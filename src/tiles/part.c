@@ -1,9 +1,12 @@
-/* The tetrahedra of one tile for the caller: their vertices, with positions and indices. */
+/* The tetrahedra of one tile for the caller: their vertices, with positions and indices. In the tile's file they are in
+ * an order that depends on the threads; here they are sorted by their first three vertices, which no two of them share
+ * in this order, for they are positive. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/versioned.h"
 #include "tiles/work.h"
+#include "triangulation/canonical_turn.h"
 #include <string.h>
 
 static int compare_places(uint32_t i, uint32_t j, const void *user) {
@@ -54,6 +57,54 @@ static size_t number_vertices(brio_tile_result *r, size_t num_tetrahedra, size_t
     return used;
 }
 
+/* The tetrahedra of one first vertex while they are sorted. */
+typedef struct {
+    uint64_t *key;
+    uint32_t *row, *sorted;
+    size_t capacity[3];
+} bucket;
+
+/* Writes the tetrahedra whose rows are listed in b->row by their second and third vertex. */
+static void write_bucket(bucket *b, uint32_t (*from)[4], size_t n, uint32_t (*to)[4]) {
+    for (size_t i = 0; i < n; i++) b->key[i] = (uint64_t)from[b->row[i]][1] << 32 | from[b->row[i]][2];
+    brio_sort_names(b->key, b->row, n, b->sorted);
+    for (size_t i = 0; i < n; i++) memcpy(to[i], from[b->sorted[i]], sizeof *to);
+}
+
+/* Sorts the tetrahedra of a part. */
+static brio_status sort_tetrahedra(brio_context *ctx, brio_tile_part *p) {
+    brio_status status = BRIO_OK;
+    bucket b = {0};
+    size_t n = p->num_tetrahedra;
+    uint32_t(*sorted)[4] = NULL, *end = NULL, *order = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, sorted, n + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, order, n + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, end, p->num_vertices + 1));
+    for (size_t i = 0; i < n; i++) end[p->tetrahedra[i][0] + 1]++;
+    for (size_t v = 0; v < p->num_vertices; v++) end[v + 1] += end[v]; /* where the next vertex begins */
+    for (size_t i = 0; i < n; i++) order[end[p->tetrahedra[i][0]]++] = (uint32_t)i;
+    for (size_t v = 0, begin = 0; v < p->num_vertices; begin = end[v++]) {
+        size_t some = end[v] - begin;
+        BRIO_TRY(BRIO_RESERVE(ctx, b.key, b.capacity[0], some));
+        BRIO_TRY(BRIO_RESERVE(ctx, b.row, b.capacity[1], some));
+        BRIO_TRY(BRIO_RESERVE(ctx, b.sorted, b.capacity[2], some));
+        memcpy(b.row, order + begin, some * sizeof *b.row);
+        write_bucket(&b, p->tetrahedra, some, sorted + begin);
+        BRIO_TRY(brio_look(ctx, some));
+    }
+    brio_release(ctx, p->tetrahedra);
+    p->tetrahedra = sorted;
+    sorted = NULL;
+done:
+    brio_release(ctx, sorted);
+    brio_release(ctx, end);
+    brio_release(ctx, order);
+    brio_release(ctx, b.key);
+    brio_release(ctx, b.row);
+    brio_release(ctx, b.sorted);
+    return status;
+}
+
 static brio_status fill(brio_tiles *t, const brio_set_point *points, const uint32_t *number, size_t n,
                         brio_tile_part *p) {
     BRIO_FORWARD(BRIO_ALLOC(t->ctx, p->points, 3 * p->num_vertices + 1));
@@ -91,6 +142,7 @@ brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_
     BRIO_TRY(fill(t, points, number, n, p));
     p->tetrahedra = result.tetrahedra;
     result.tetrahedra = NULL;
+    status = sort_tetrahedra(t->ctx, p);
 done:
     brio_tile_result_free(t, &result);
     brio_release(t->ctx, points);

@@ -10,7 +10,7 @@
 #include <assert.h>
 #include <string.h>
 
-enum { SITES = 1 << 14 }; /* of a slab. Chosen: a fifth of its tetrahedra are of other slabs, too */
+enum { SITES = BRIO_SLAB_SITES };
 
 /* --- a tile --- */
 

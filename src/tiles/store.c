@@ -2,6 +2,7 @@
 #include "tiles/store.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "platform/disk.h"
 #include "platform/file.h"
 #include "platform/folder.h"
@@ -10,7 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { AT_ONCE = 1 << 22, FOLDER_TRIES = 100 };
+/* Bytes: in one call of the system, that are worth a thread to read, and to hash. Chosen. */
+enum { AT_ONCE = 1 << 22, READ_A_THREAD = 1 << 22, HASHED_A_THREAD = 1 << 18, FOLDER_TRIES = 100 };
 
 static const char LOCK[] = "lock";
 
@@ -152,34 +154,77 @@ brio_status brio_store_write(brio_store_file *f, uint64_t offset, const void *by
     return status;
 }
 
-/* Returns the hash of a piece of a file: a sum over its words, so that it does not matter where pieces end. */
-static uint64_t hash_of(uint64_t offset, const void *bytes, size_t size) {
-    uint64_t hash = 0, word = 0;
-    const char *from = bytes;
-    assert(offset % sizeof word == 0);
-    for (; size >= sizeof word; size -= sizeof word, from += sizeof word, offset += sizeof word) {
-        memcpy(&word, from, sizeof word);
-        hash += brio_mix(word ^ offset * UINT64_C(0x9e3779b97f4a7c15));
+/* Bytes of a file in memory. */
+typedef struct {
+    const brio_store_file *f;
+    char *bytes;
+    uint64_t offset;    /* of the first */
+    int file;           /* descriptor */
+    uint64_t hash;      /* atomic */
+    brio_status status; /* atomic */
+} piece;
+
+static inline uint64_t hash_word(uint64_t word, uint64_t offset) {
+    return brio_mix(word ^ offset * UINT64_C(0x9e3779b97f4a7c15));
+}
+
+/* Adds the hash of some words: a sum, so that it does not matter where pieces end. */
+static void hash_words(void *user, size_t begin, size_t end, int thread) {
+    piece *p = user;
+    uint64_t hash = 0, word;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        memcpy(&word, p->bytes + i * sizeof word, sizeof word);
+        hash += hash_word(word, p->offset + i * sizeof word);
     }
-    word = 0;
-    if (size) memcpy(&word, from, size);
-    return size ? hash + brio_mix(word ^ offset * UINT64_C(0x9e3779b97f4a7c15)) : hash;
+    __atomic_add_fetch(&p->hash, hash, __ATOMIC_RELAXED);
+}
+
+/* Adds the hash of bytes from an offset on. */
+static brio_status add_hash(brio_context *ctx, uint64_t offset, const void *bytes, size_t size, uint64_t *hash) {
+    piece p = {.bytes = (char *)bytes, .offset = offset};
+    uint64_t word = 0;
+    size_t words = size / sizeof word, rest = size % sizeof word;
+    assert(offset % sizeof word == 0);
+    BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, size, HASHED_A_THREAD), words, hash_words, &p));
+    if (rest) {
+        memcpy(&word, p.bytes + size - rest, rest);
+        p.hash += hash_word(word, offset + size - rest);
+    }
+    *hash += p.hash;
+    return BRIO_OK;
 }
 
 brio_status brio_store_append(brio_store_file *f, const void *bytes, size_t size) {
-    if (f->hashes) f->hash += hash_of(f->size, bytes, size);
+    if (f->hashes) BRIO_FORWARD(add_hash(f->folder->ctx, f->size, bytes, size, &f->hash));
     return brio_store_write(f, f->size, bytes, size);
 }
 
-static brio_status read_bytes(const brio_store_file *f, int file, uint64_t offset, void *bytes, size_t size) {
-    char *to = bytes;
-    while (size > 0) {
-        int64_t n = brio_read_bytes_at(file, to, size < AT_ONCE ? size : AT_ONCE, offset);
+/* Reads the bytes [begin, end) of a piece. */
+static void read_part(void *user, size_t begin, size_t end, int thread) {
+    piece *p = user;
+    (void)thread;
+    while (begin < end) {
+        size_t some = end - begin < AT_ONCE ? end - begin : AT_ONCE;
+        int64_t n = brio_read_bytes_at(p->file, p->bytes + begin, some, p->offset + begin);
         if (n < 0 && errno == EINTR) continue;
-        if (n <= 0) return fail_file(f, BRIO_ERR_OPEN, "read", n < 0 ? errno : 0);
-        to += n, size -= (size_t)n, offset += (uint64_t)n;
+        if (n <= 0) {
+            brio_report(&p->status, fail_file(p->f, BRIO_ERR_OPEN, "read", n < 0 ? errno : 0));
+            return;
+        }
+        begin += (size_t)n;
     }
-    return BRIO_OK;
+}
+
+/* Reads bytes: large pieces by all threads, for the copy out of the system's memory takes as long as a sort. */
+static brio_status read_bytes(const brio_store_file *f, int file, uint64_t offset, void *bytes, size_t size) {
+    piece p = {.f = f, .bytes = bytes, .offset = offset, .file = file, .status = BRIO_OK};
+    int threads = size < 2 * READ_A_THREAD ? 1 : brio_threads(f->folder->ctx, size, READ_A_THREAD);
+    if (threads > 1)
+        BRIO_FORWARD(brio_for_parts(f->folder->ctx, threads, size, read_part, &p));
+    else
+        read_part(&p, 0, size, 0);
+    return p.status;
 }
 
 brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *bytes, size_t size) {
@@ -194,20 +239,20 @@ brio_status brio_store_read(const brio_store_file *f, uint64_t offset, void *byt
 }
 
 brio_status brio_store_check(const brio_store_file *f, uint64_t offset, uint64_t hash, bool *same) {
-    enum { PIECE = 1 << 17 };
+    enum { PIECE = 1 << 20 };
     brio_context *ctx = f->folder->ctx;
     brio_status status = BRIO_OK;
-    char *piece = NULL;
+    char *some = NULL;
     uint64_t sum = 0;
-    BRIO_TRY(BRIO_ALLOC(ctx, piece, PIECE));
+    BRIO_TRY(BRIO_ALLOC(ctx, some, PIECE));
     for (size_t n; offset < f->size; offset += n) {
         n = f->size - offset < PIECE ? (size_t)(f->size - offset) : PIECE;
-        BRIO_TRY(brio_store_read(f, offset, piece, n));
-        sum += hash_of(offset, piece, n);
+        BRIO_TRY(brio_store_read(f, offset, some, n));
+        BRIO_TRY(add_hash(ctx, offset, some, n, &sum));
         BRIO_TRY(brio_look(ctx, n / 1024 + 1));
     }
     *same = sum == hash;
 done:
-    brio_release(ctx, piece);
+    brio_release(ctx, some);
     return status;
 }

@@ -1,11 +1,13 @@
 /* Triangulations in tiles: the public functions, and the order of the stages. */
 #include "brio/tiles.h"
 #include "base/float_state.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/versioned.h"
 #include "platform/folder.h"
 #include "platform/thread.h"
+#include "tiles/cells.h"
 #include "tiles/work.h"
 #include <inttypes.h>
 #include <stdio.h>
@@ -13,10 +15,12 @@
 
 enum { TILES = 8, MOST_TILES = 1 << 16 };
 
-/* Bytes of memory for each point of the largest tile: its triangulation with a halo. Measured: tiles.md. */
-static const double BYTES_A_POINT = 520;
-/* Bytes of the disk for each point, when the ranks are made: points, tetrahedra, runs. Measured: tiles.md. */
-static const double DISK_A_POINT = 195;
+/* Bytes of memory for each point of the largest tile: its triangulation with a halo. For its cells: of each point, and
+ * of each site of a slab. All measured: tiles.md. */
+static const double BYTES_A_POINT = 520, CELLS_A_POINT = 300, SLAB_A_SITE = 3600;
+/* Bytes of the disk for each point, when the ranks are made: points, tetrahedra, runs; and when cells with faces are
+ * sorted: points, tetrahedra, cells. Measured: tiles.md. */
+static const double DISK_A_POINT = 195, DISK_A_CELL = 850;
 
 /* --- life --- */
 
@@ -38,6 +42,7 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_tiles_options, options, &o));
     BRIO_REQUIRE(ctx, o.scratch, BRIO_ERR_ARGUMENT, "tiles need a scratch folder");
+    BRIO_REQUIRE(ctx, o.stars >= 0 && o.stars <= 2, BRIO_ERR_ARGUMENT, "brio_tiles_options.stars is %d", o.stars);
     BRIO_REQUIRE(ctx, o.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles; at most %d", o.tiles, MOST_TILES);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
@@ -45,6 +50,7 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     t->folder.lock = -1;
     t->num_tiles = o.tiles ? o.tiles : TILES;
     t->stars = o.stars != 0;
+    t->sorts_cells = o.stars == 1;
     t->key = o.key ? brio_hash(o.key, t->num_tiles) : 0;
     t->stats.size = sizeof t->stats;
     t->cells.size = sizeof t->cells;
@@ -257,24 +263,35 @@ void brio_tiles_leave(brio_tiles *t) {
 
 /* --- all stages --- */
 
+/* Returns the bytes for tiles of at most `points`, of which there are about `tiles`. */
+static double bytes_of_tiles(const brio_tiles *t, double points, double tiles, int at_once) {
+    double triangulating = at_once * points * BYTES_A_POINT;
+    if (!t->stars) return triangulating;
+    double cells = points * CELLS_A_POINT + fmin(points, BRIO_SLAB_SITES) * SLAB_A_SITE;
+    if (t->sorts_cells) cells += brio_ordered_cells_buffers((size_t)tiles);
+    return fmax(triangulating, cells);
+}
+
 brio_status brio_tiles_require_memory(brio_tiles *t, int at_once) {
     double most = 0, index = (double)t->num_nodes * (sizeof *t->node + 8), limit = (double)brio_memory_limit(t->ctx);
+    double tiles = t->num_tiles;
     for (uint32_t i = 0; i < t->num_tiles; i++) most = fmax(most, t->tile[i].points);
-    most *= at_once;
-    double need = most * BYTES_A_POINT + index;
-    BRIO_EXPECT(
-        t->ctx, need <= limit, BRIO_ERR_NO_MEMORY,
+    double need = bytes_of_tiles(t, most, tiles, at_once) + index;
+    if (need <= limit) return BRIO_OK;
+    for (double all = 1.2 * most * tiles; tiles < MOST_TILES; tiles = ceil(tiles * 1.02))
+        if (bytes_of_tiles(t, all / tiles, tiles, at_once) + index <= limit) break;
+    return brio_fail(
+        t->ctx, BRIO_ERR_NO_MEMORY,
         "the largest of %u tiles has %.0f points, and needs about %.0f MB of the %.0f MB that are allowed: take "
         "about %.0f tiles",
-        t->num_tiles, most / at_once, need / 1e6, limit / 1e6,
-        limit > index ? ceil(1.2 * t->num_tiles * most * BYTES_A_POINT / (limit - index)) : MOST_TILES);
-    return BRIO_OK;
+        t->num_tiles, most, need / 1e6, limit / 1e6, fmin(tiles, MOST_TILES));
 }
 
 /* Refuses points for which the disk has no room: before the work, not hours after. */
 static brio_status require_disk(brio_tiles *t) {
     uint64_t room;
-    double n = (double)t->stats.points, need = n * (DISK_A_POINT - sizeof(brio_set_point));
+    double n = (double)t->stats.points, each = t->sorts_cells ? DISK_A_CELL : DISK_A_POINT;
+    double need = n * (each - sizeof(brio_set_point));
     if (!brio_free_bytes(t->folder.path, &room)) return BRIO_OK;
     BRIO_EXPECT(t->ctx, need <= (double)room, BRIO_ERR_WRITE,
                 "%s: %.0f points need about %.0f MB more on this disk, which has room for %.0f MB", t->folder.path, n,
@@ -323,6 +340,7 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     brio_status status = BRIO_OK;
     brio_bar bar = brio_progress_bar(ctx);
     double start = brio_seconds();
+    brio_keep_begin(ctx); /* a tile takes the memory of the tile before it */
     BRIO_REQUIRE(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_REQUIRE(ctx, !t->has_result, BRIO_ERR_ARGUMENT, "the tiles are triangulated already");
     BRIO_REQUIRE(ctx, !t->torn, BRIO_ERR_ARGUMENT, "an earlier run ended while it divided the points: add them anew");
@@ -349,6 +367,7 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     t->has_result = true;
     t->stats.triangulate_seconds = brio_seconds() - start;
 done:
+    brio_keep_end(ctx);
     brio_progress_part(ctx, bar, 0, 1);
     return status;
 }
@@ -358,7 +377,9 @@ brio_status brio_tiles_checksum(brio_context *ctx, brio_tiles *t, uint64_t *chec
     double start = brio_seconds();
     BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    brio_keep_begin(ctx);
     brio_status status = brio_tiles_sum(t, checksum);
+    brio_keep_end(ctx);
     t->stats.scratch_bytes = t->folder.most;
     t->stats.rank_seconds = brio_seconds() - start;
     return status;

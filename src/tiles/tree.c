@@ -2,9 +2,12 @@
  * and the last node is the root. */
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "tiles/work.h"
 #include <assert.h>
 #include <string.h>
+
+enum { BLOCKS_A_THREAD = 1 << 8 };
 
 static const brio_ball_box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, -INFINITY};
 
@@ -23,15 +26,39 @@ static brio_status append(brio_tiles *t, const brio_tile_node *node) {
     return BRIO_OK;
 }
 
-static brio_status append_block(brio_tiles *t, const brio_set_point *points, size_t n, uint64_t place) {
-    brio_tile_node node = {
-        .box = NOTHING, .sample = points[0], .place = place, .points = (uint32_t)n, .tile = TILE_NONE};
-    node.sample.name = place;
-    for (size_t i = 0; i < n; i++) {
-        const double *r = points[i].record;
-        extend(&node.box, &(brio_ball_box){{r[0], r[1], r[2]}, {r[0], r[1], r[2]}, r[3]});
+typedef struct {
+    const brio_tile *tile;
+    const brio_set_point *points;
+    brio_tile_node *node;
+} blocks;
+
+/* Sets the nodes of some blocks of a tile. */
+static void set_blocks(void *user, size_t begin, size_t end, int thread) {
+    const blocks *b = user;
+    (void)thread;
+    for (size_t block = begin; block < end; block++) {
+        size_t first = block * TILE_BLOCK, left = b->tile->points - first, n = left < TILE_BLOCK ? left : TILE_BLOCK;
+        brio_tile_node *node = &b->node[block];
+        *node = (brio_tile_node){.box = NOTHING,
+                                 .sample = b->points[first],
+                                 .place = b->tile->place + first,
+                                 .points = (uint32_t)n,
+                                 .tile = TILE_NONE};
+        node->sample.name = node->place;
+        for (size_t i = first; i < first + n; i++) {
+            const double *r = b->points[i].record;
+            extend(&node->box, &(brio_ball_box){{r[0], r[1], r[2]}, {r[0], r[1], r[2]}, r[3]});
+        }
     }
-    return append(t, &node);
+}
+
+static brio_status append_blocks(brio_tiles *t, const brio_tile *tile, const brio_set_point *points) {
+    size_t n = ((size_t)tile->points + TILE_BLOCK - 1) / TILE_BLOCK;
+    BRIO_EXPECT(t->ctx, t->num_nodes + n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "more than 2^32 - 17 blocks of points");
+    BRIO_FORWARD(BRIO_RESERVE(t->ctx, t->node, t->node_capacity, t->num_nodes + n));
+    blocks b = {tile, points, t->node + t->num_nodes};
+    t->num_nodes += n;
+    return brio_for(t->ctx, brio_threads(t->ctx, n, BLOCKS_A_THREAD), n, set_blocks, &b);
 }
 
 /* Appends nodes over the nodes from `begin` on, level by level, up to one. */
@@ -50,11 +77,10 @@ static brio_status append_levels(brio_tiles *t, size_t begin) {
 
 brio_status brio_tile_tree_add(brio_tiles *t, uint32_t tile, const brio_set_point *points) {
     brio_tile *facts = &t->tile[tile];
-    size_t begin = t->num_nodes, n = facts->points;
+    size_t begin = t->num_nodes;
     facts->root = TILE_NONE;
-    if (!n) return BRIO_OK;
-    for (size_t i = 0; i < n; i += TILE_BLOCK)
-        BRIO_FORWARD(append_block(t, points + i, n - i < TILE_BLOCK ? n - i : TILE_BLOCK, facts->place + i));
+    if (!facts->points) return BRIO_OK;
+    BRIO_FORWARD(append_blocks(t, facts, points));
     BRIO_FORWARD(append_levels(t, begin));
     facts->root = (uint32_t)t->num_nodes - 1;
     return BRIO_OK;

@@ -35,15 +35,6 @@ done:
     return status;
 }
 
-uint64_t brio_tetrahedron_hash(uint64_t r[4]) {
-    for (int i = 1; i < 4; i++)
-        for (int j = i; j > 0 && r[j] < r[j - 1]; j--) {
-            uint64_t swap = r[j];
-            r[j] = r[j - 1], r[j - 1] = swap;
-        }
-    return brio_mix(brio_mix(r[0] << 32 ^ r[1]) + (r[2] << 32 ^ r[3]));
-}
-
 brio_status brio_triangulation_checksum(brio_context *ctx, const brio_triangulation *t, const double *points,
                                         uint64_t *checksum) {
     BRIO_DOOR;

@@ -6,8 +6,10 @@
 #include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "base/versioned.h"
 #include "triangulation/canonical_order.h"
+#include "triangulation/canonical_turn.h"
 #include "triangulation/insert.h"
 #include "triangulation/insertion_part.h"
 #include "triangulation/parallel.h"
@@ -15,8 +17,9 @@
 #include "triangulation/start.h"
 #include "triangulation/triangulation.h"
 #include <assert.h>
+#include <string.h>
 
-enum { PROGRESS_EVERY = 8192, MOST_TETRAHEDRA = 1 << 30 };
+enum { PROGRESS_EVERY = 8192, MOST_TETRAHEDRA = 1 << 30, NAMES_A_THREAD = 1 << 14 };
 
 static brio_status check_count(brio_context *ctx, size_t n) {
     BRIO_EXPECT(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
@@ -101,15 +104,61 @@ done:
 
 /* --- result --- */
 
+/* Fills the unused slots before `live` with the tetrahedra behind it. */
+static void close_gaps(brio_store *s, size_t live) {
+    for (size_t gap = 0, from = live; gap < live; gap++) {
+        if (s->state[gap] != TET_UNUSED) continue;
+        while (s->state[from] == TET_UNUSED) from++;
+        assert(from < s->t.count); /* as many are behind `live` as gaps before it */
+        s->t.tet[gap] = s->t.tet[from++];
+    }
+    s->t.count = live;
+}
+
+typedef struct {
+    brio_store *store;
+    size_t finite; /* atomic */
+} naming;
+
+/* Turns some tetrahedra as the canonical order turns them, and gives their vertices the caller's names. */
+static void name_some(void *user, size_t begin, size_t end, int thread) {
+    naming *n = user;
+    const brio_store *s = n->store;
+    size_t finite = 0;
+    (void)thread;
+    for (size_t t = begin; t < end; t++) {
+        uint32_t *v = s->t.tet[t].vertex, old[4];
+        uint8_t turn;
+        memcpy(old, v, sizeof old);
+        brio_turn_key(old, s->t.infinite, &turn);
+        finite += old[3] != s->t.infinite;
+        for (int i = 0; i < 4; i++) {
+            uint32_t record = old[BRIO_TURNED[turn][i]];
+            v[i] = record == s->t.infinite ? BRIO_INFINITE : s->caller[record];
+        }
+    }
+    __atomic_add_fetch(&n->finite, finite, __ATOMIC_RELAXED);
+}
+
+/* Leaves the tetrahedra in the order of their slots. Mates are lost. */
+static brio_status leave_order(brio_store *s, size_t live, size_t *finite) {
+    naming n = {.store = s};
+    close_gaps(s, live);
+    brio_status status = brio_for(s->ctx, brio_threads(s->ctx, live, NAMES_A_THREAD), live, name_some, &n);
+    *finite = n.finite;
+    return status;
+}
+
 /* Brings the tetrahedra into their order and counts them. Only names of records matter from here on. */
-static brio_status sort_result(brio_inserter *ins) {
+static brio_status sort_result(brio_inserter *ins, bool any_order) {
     brio_store *s = ins->store;
     brio_delaunay_stats *stats = &ins->stats;
     assert(ins->num_unused <= s->t.count && ins->next_slot == ins->end_slot); /* N3, N4 */
     size_t live = s->t.count - ins->num_unused, finite = 0;
+    brio_status status = BRIO_OK;
     brio_store_drop_records(s);
     if (s->dimension < 3) s->t.count = live = 0;
-    brio_status status = live > 0 ? brio_canonical_order(s, live, &finite) : BRIO_OK;
+    if (live > 0) status = any_order ? leave_order(s, live, &finite) : brio_canonical_order(s, live, &finite);
     assert(status != BRIO_OK || finite <= live);
     stats->tetrahedra = finite;
     stats->hull_facets = live - finite;
@@ -155,7 +204,7 @@ static brio_status rename_representatives(const brio_store *s, uint32_t **out) {
     return BRIO_OK;
 }
 
-static brio_status triangulation_new(brio_inserter *ins, brio_triangulation **out) {
+static brio_status triangulation_new(brio_inserter *ins, bool any_order, brio_triangulation **out) {
     brio_store *s = ins->store;
     brio_triangulation *t = NULL;
     brio_status status = BRIO_OK;
@@ -172,7 +221,8 @@ static brio_status triangulation_new(brio_inserter *ins, brio_triangulation **ou
     t->stats = ins->stats;
     t->points_hash = s->points_hash;
     s->t.tet = NULL;
-    assert(result_is_valid(t));
+    assert(any_order || result_is_valid(t));
+    (void)any_order;
     *out = t;
     t = NULL;
 done:
@@ -182,7 +232,7 @@ done:
 
 /* Makes the triangulation of a store without tetrahedra.   rounds  of its order. */
 static brio_status construct(brio_store *store, const brio_delaunay_options *options, double order_seconds,
-                             const brio_round_ends *rounds, brio_triangulation **out) {
+                             const brio_round_ends *rounds, bool any_order, brio_triangulation **out) {
     const struct brio_insertion_part *part = BRIO_PART(store->ctx, insertion);
     brio_inserter *ins = NULL;
     brio_status status = BRIO_OK;
@@ -195,12 +245,31 @@ static brio_status construct(brio_store *store, const brio_delaunay_options *opt
     if (part) part->start(part->user, ins, options, rounds, start);
     BRIO_TRY(insert_all(ins, part));
     BRIO_TRY(brio_represent(ins, options->leave_hidden != 0));
-    BRIO_TRY(sort_result(ins));
+    BRIO_TRY(sort_result(ins, any_order));
     ins->stats.insert_seconds = brio_seconds() - start;
-    BRIO_TRY(triangulation_new(ins, out));
+    BRIO_TRY(triangulation_new(ins, any_order, out));
     (*out)->leaves_hidden = options->leave_hidden != 0;
 done:
     brio_inserter_free(ins);
+    return status;
+}
+
+static brio_status triangulate(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
+                               bool any_order, brio_triangulation **out) {
+    brio_delaunay_options o = *options;
+    brio_store *store = NULL;
+    brio_round_ends rounds;
+    brio_status status = BRIO_OK;
+    brio_keep_begin(ctx);
+    BRIO_TRY(check_count(ctx, input->count));
+    BRIO_TRY(brio_delaunay_begin(ctx, input->count, &o));
+    settle(&o);
+    double start = brio_seconds();
+    BRIO_TRY(brio_store_new(ctx, input, &o, &rounds, &store));
+    BRIO_TRY(construct(store, &o, brio_seconds() - start, &rounds, any_order, out));
+done:
+    brio_store_free(store);
+    brio_keep_end(ctx);
     return status;
 }
 
@@ -208,22 +277,15 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
                           const brio_delaunay_options *options, brio_triangulation **out) {
     BRIO_DOOR;
     brio_delaunay_options o = {0};
-    brio_store *store = NULL;
-    brio_round_ends rounds;
-    brio_status status = BRIO_OK;
     *out = NULL;
-    brio_keep_begin(ctx);
-    BRIO_TRY(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
-    BRIO_TRY(check_count(ctx, num_points));
-    BRIO_TRY(brio_delaunay_begin(ctx, num_points, &o));
-    settle(&o);
-    double start = brio_seconds();
-    BRIO_TRY(brio_store_new(ctx, &(brio_input){points, weights, num_points}, &o, &rounds, &store));
-    BRIO_TRY(construct(store, &o, brio_seconds() - start, &rounds, out));
-done:
-    brio_store_free(store);
-    brio_keep_end(ctx);
-    return status;
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
+    return triangulate(ctx, &(brio_input){points, weights, num_points}, &o, false, out);
+}
+
+brio_status brio_delaunay_any_order(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                    const brio_delaunay_options *options, brio_triangulation **out) {
+    *out = NULL;
+    return triangulate(ctx, &(brio_input){points, weights, num_points}, options, true, out);
 }
 
 /* --- tetrahedra that are known --- */
@@ -266,8 +328,8 @@ brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, cons
     BRIO_TRY(brio_inserter_new(store, &ins));
     ins->reports = true;
     BRIO_TRY(brio_represent(ins, false));
-    BRIO_TRY(sort_result(ins));
-    BRIO_TRY(triangulation_new(ins, out));
+    BRIO_TRY(sort_result(ins, false));
+    BRIO_TRY(triangulation_new(ins, false, out));
 done:
     brio_inserter_free(ins);
     brio_store_free(store);

@@ -2,6 +2,7 @@
 #ifndef BRIO_TRIANGULATION_TRIANGULATION_H
 #define BRIO_TRIANGULATION_TRIANGULATION_H
 
+#include "base/rng.h"
 #include "order/order.h"
 
 struct brio_triangulation {
@@ -17,8 +18,22 @@ struct brio_triangulation {
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT. */
 brio_status brio_delaunay_begin(brio_context *ctx, size_t num_points, const brio_delaunay_options *options);
 
-/** Returns the hash of a tetrahedron, of which the checksum is the sum.   rank  of its vertices; sorted afterwards. */
-uint64_t brio_tetrahedron_hash(uint64_t rank[4]);
+/** Makes what brio_delaunay makes, but its tetrahedra come in an order that depends on the threads, finite and infinite
+ *  ones mixed, and their mates mean nothing. Each is turned as in the canonical order, a sixth of whose time this
+ *  saves.   options  complete.
+ *  Returns what brio_delaunay returns. */
+brio_status brio_delaunay_any_order(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                    const brio_delaunay_options *options, brio_triangulation **out);
+
+/** Returns the hash of a tetrahedron, of which the checksum is the sum.   rank  of its vertices. */
+static inline uint64_t brio_tetrahedron_hash(const uint64_t rank[4]) {
+    uint64_t a = rank[0], b = rank[1], c = rank[2], d = rank[3];
+    /* a network sorts them without a branch, which would be foreseen half of the time only */
+    uint64_t ab = a < b ? a : b, ba = a < b ? b : a, cd = c < d ? c : d, dc = c < d ? d : c;
+    uint64_t least = ab < cd ? ab : cd, x = ab < cd ? cd : ab, y = ba < dc ? ba : dc, most = ba < dc ? dc : ba;
+    uint64_t second = x < y ? x : y, third = x < y ? y : x;
+    return brio_mix(brio_mix(least << 32 ^ second) + (third << 32 ^ most));
+}
 
 /** The tetrahedra of the perturbed regular triangulation of points of dimension 3, as brio_delaunay returns them, but
  *  in any order. */

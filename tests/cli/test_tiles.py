@@ -6,6 +6,7 @@ import random
 import re
 import resource
 import signal
+import struct
 import subprocess
 import time
 import xml.etree.ElementTree
@@ -114,6 +115,34 @@ class Tiles(CliTest):
         self.assertEqual(pieces, ["out/%d.vtu" % i for i in range(3)])
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.vtu", "1.vtu", "2.vtu"])
         self.assertEqual(sum(self.facts("info", self.path(piece))["tetrahedra"] for piece in pieces), facts["tetrahedra"])
+
+    def read_ply(self, name):
+        """The head, the rows of the points, and the tetrahedra, each with its vertices sorted."""
+        head, _, rows = self.bytes_of(name).partition(b"end_header\n")
+        count = int(re.search(rb"element tetrahedron (\d+)", head).group(1))
+        tetrahedra = struct.iter_unpack("<B4I", rows[len(rows) - 17 * count:])
+        return head, rows[:len(rows) - 17 * count], sorted(sorted(t[1:]) for t in tetrahedra)
+
+    def test_one_file_for_all_tiles(self):
+        self.facts("generate", "scan", "-n", "1500", "-o", self.path("scan.ply"))
+        for weights in [], ["--weights-mod", "-20"]:
+            with self.subTest(weights):
+                command = ["delaunay", self.path("scan.ply"), *weights, "-o"]
+                whole = self.facts(*command, self.path("whole.ply"))
+                self.assertEqual((whole["hidden"], whole["duplicates"]), (0, 0))
+                tiles = self.facts(*command, self.path("tiles.ply"), "--tiles", "4", "--scratch", self.scratch())
+                self.assertEqual(tiles["checksum"], whole["checksum"])
+                self.assertEqual(self.read_ply("tiles.ply"), self.read_ply("whole.ply"))
+                self.assertEqual(os.listdir(self.scratch()), [])
+        piped = subprocess.run([BRIO, *command, "-", "--format", "ply", "--tiles", "4", "--scratch", self.scratch(),
+                                "--quiet"], stdout=subprocess.PIPE, check=True).stdout
+        self.assertEqual(piped, self.bytes_of("tiles.ply"))
+
+    def test_one_file_needs_an_input_that_is_read_twice(self):
+        run = subprocess.run([BRIO, "delaunay", "-", "--tiles", "2", "--scratch", self.scratch(), "-o",
+                              self.path("x.ply")], input=b"", stderr=subprocess.PIPE, check=False)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("read twice", run.stderr.decode())
 
     def test_an_older_output_was_lost_when_a_run_failed(self):
         cloud, index = self.rows("a.csv", 800), self.path("a&b.pvtu")
@@ -310,12 +339,16 @@ class Tiles(CliTest):
 
     def test_too_small_a_disk_is_said_before_the_work(self):
         cloud, disk = self.rows("a.csv", 20000), self.scratch()
-        line = 'mount -t tmpfs -o size=2m none "$1" && exec "$0" delaunay "$2" --tiles 2 --scratch "$1" --quiet'
-        run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, cloud], stderr=subprocess.PIPE, check=False)
-        if run.returncode in (1, 32, 126, 127):
-            self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
-        self.assertEqual(run.returncode, 6, run.stderr)
-        self.assertRegex(run.stderr.decode(), r"20000 points need about 3 MB more on this disk, which has room for \d MB")
+        line = 'mount -t tmpfs -o size=$3 none "$1" && shift 3 && exec "$0" "$@"'
+        for size, need, command in (("2m", 3, ["delaunay"]), ("9m", 16, ["voronoi", "-o", self.path("c.npy")])):
+            with self.subTest(command[0]):
+                run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, cloud, size, *command, cloud,
+                                      "--tiles", "2", "--scratch", disk, "--quiet"], stderr=subprocess.PIPE, check=False)
+                if run.returncode in (1, 32, 126, 127):
+                    self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
+                self.assertEqual(run.returncode, 6, run.stderr)
+                self.assertRegex(run.stderr.decode(), r"20000 points need about %d MB more on this disk, which has room "
+                                 r"for \d MB" % need)
 
     def test_an_interrupted_run_leaves_nothing(self):
         cloud = self.rows("a.csv", 20000)
@@ -332,6 +365,15 @@ class Tiles(CliTest):
         self.assertRegex(run.err, r"the largest of 2 tiles has \d+ points.*take about \d+ tiles")
         self.assertEqual(os.listdir(self.scratch()), [])
 
+    def test_cells_are_counted_before_the_work(self):
+        cloud = self.rows("a.csv", 20000)
+        limits = ["--scratch", self.scratch(), "--max-memory", "24M"]
+        self.expect(0, "delaunay", cloud, "--tiles", "2", *limits)
+        run = self.expect(4, "voronoi", cloud, "--tiles", "2", *limits, "-o", self.path("c.npy"))
+        tiles = re.search(r"the largest of 2 tiles has \d+ points.*take about (\d+) tiles", run.err).group(1)
+        facts = self.facts("voronoi", cloud, "--tiles", tiles, *limits, "-o", self.path("c.npy"))
+        self.assertEqual(facts["cells"], 20000)
+
     def test_flat_points(self):
         with open(self.path("flat.xyz"), "w", encoding="ascii") as f:
             f.writelines("%d %d 2\n" % (i % 20, i // 20) for i in range(400))
@@ -346,8 +388,8 @@ class Usage(CliTest):
         cloud, folder = self.cloud("a.xyz", 50), self.folder
         self.usage("--tiles needs --scratch", "delaunay", cloud, "--tiles", "2")
         self.usage("not with --weights FILE", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--weights", "w")
-        self.usage("writes .pvtu", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path("x.vtu"))
-        self.usage("writes .pvtu", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path(".pvtu"))
+        self.usage("writes .ply, and .pvtu", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path("x.vtu"))
+        self.usage("writes .ply, and .pvtu", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path(".pvtu"))
         self.usage("--tiles goes with", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--verify")
         self.usage("--tiles goes with", "delaunay", cloud, "--tiles", "2", "--scratch", folder, "--plane", "xy")
         self.usage("70000", "delaunay", cloud, "--tiles", "70000", "--scratch", folder)

@@ -235,7 +235,7 @@ static void complete_once(brio_rng *rng, int kind, bool weighted, way how) {
     collect_whole(t, own);
     size_t count = list_points(rng, own, list, &num_own);
     brio_completion_task task = {list,      num_own, count,   weighted, set.box, in_box ? &home : NULL,
-                                 conflicts, &set,    collect, &ours,    false};
+                                 conflicts, &set,    collect, &ours,    false,   brio_rng_below(rng, 2)};
     ours.count = 0;
     EXPECT(brio_complete(ctx, &task, is_vertex, &s) == BRIO_OK, "%s", brio_message(ctx));
     qsort(ours.tet, ours.count, sizeof *ours.tet, compare_tets);
@@ -292,7 +292,8 @@ static void begin_members(brio_context *ctx, brio_rng *rng, member *m) {
         size_t num_own, n;
         for (size_t p = 0; p < set.count; p++) own[p] = brio_mix(p) % MANY == (uint64_t)i;
         n = list_points(rng, own, list, &num_own);
-        brio_completion_task task = {list, num_own, n, set.weighted, set.box, NULL, NULL, NULL, trace, &m[i], false};
+        brio_completion_task task = {list, num_own, n,     set.weighted, set.box, NULL,
+                                     NULL, NULL,    trace, &m[i],        false,   false};
         m[i] = (member){.goes_on = true};
         EXPECT(brio_completion_new(ctx, &task, &m[i].c) == BRIO_OK);
     }
@@ -391,7 +392,7 @@ static void an_error_of_the_source_ends_it(void) {
     char text[] = "the source is gone";
     brio_rng rng = brio_rng_new(1);
     set_up(&rng, 50, 0, false);
-    brio_completion_task task = {set.point, 20, 50, false, set.box, NULL, failing, text, collect, &ours, false};
+    brio_completion_task task = {set.point, 20, 50, false, set.box, NULL, failing, text, collect, &ours, false, false};
     EXPECT(brio_complete(ctx, &task, NULL, &s) == BRIO_ERR_OPEN && !strcmp(brio_message(ctx), text));
     EXPECT(brio_context_memory(ctx) == 0);
     brio_context_free(ctx);

@@ -269,6 +269,97 @@ static void rows_are_checked(void) {
                     "point 0: z is infinite (1 such point in all)");
 }
 
+/* --- part by part --- */
+
+enum { PARTS_POINTS = 7, PARTS_TETRAHEDRA = 4 };
+
+static brio_mesh *mesh_of_tetrahedra(void) {
+    static const uint32_t tetrahedra[PARTS_TETRAHEDRA][4] = {{0, 1, 2, 3}, {1, 2, 3, 4}, {2, 3, 4, 5}, {3, 4, 5, 6}};
+    double x[3 * PARTS_POINTS];
+    brio_mesh *m;
+    void *data;
+    for (int i = 0; i < 3 * PARTS_POINTS; i++) x[i] = i * i % 11 + 1.0 / 3;
+    EXPECT(brio_mesh_new(io_ctx, &m) == BRIO_OK && brio_mesh_set_vertices(m, x, PARTS_POINTS) == BRIO_OK);
+    EXPECT(brio_mesh_set_tetrahedra(m, *tetrahedra, 4, PARTS_TETRAHEDRA) == BRIO_OK);
+    EXPECT(brio_mesh_add_property(m, "a name", BRIO_SCALAR_UINT16, &data) == BRIO_OK);
+    for (int i = 0; i < PARTS_POINTS; i++) ((uint16_t *)data)[i] = (uint16_t)(i + 500);
+    return m;
+}
+
+/* Hands over the points [begin, end) of a mesh. */
+static brio_status put_points(brio_mesh_parts *p, const brio_mesh *m, size_t begin, size_t end) {
+    brio_mesh block = *m;
+    brio_property property = m->properties[0];
+    property.data = (uint16_t *)property.data + begin;
+    block.properties = &property;
+    block.vertices += 3 * begin;
+    block.num_vertices = end - begin;
+    return brio_mesh_parts_vertices(io_ctx, p, &block);
+}
+
+static void write_parts(const brio_mesh *m, const brio_write_options *o, const char *path) {
+    brio_mesh_parts *p;
+    EXPECT(brio_mesh_parts_new(io_ctx, path, o, PARTS_POINTS, PARTS_TETRAHEDRA, &p) == BRIO_OK);
+    EXPECT(put_points(p, m, 0, 3) == BRIO_OK);
+    EXPECT(put_points(p, m, 3, PARTS_POINTS) == BRIO_OK);
+    EXPECT(brio_mesh_parts_tetrahedra(io_ctx, p, m->tetrahedra, 1) == BRIO_OK);
+    EXPECT(brio_mesh_parts_tetrahedra(io_ctx, p, m->tetrahedra + 4, 0) == BRIO_OK);
+    EXPECT(brio_mesh_parts_tetrahedra(io_ctx, p, m->tetrahedra + 4, PARTS_TETRAHEDRA - 1) == BRIO_OK);
+    EXPECT(io_count_files("parts.ply") == 0); /* no name before the end */
+    EXPECT(brio_mesh_parts_finish(io_ctx, p) == BRIO_OK, "%s", brio_message(io_ctx));
+    brio_mesh_parts_free(p);
+}
+
+static bool same_bytes(const char *a, const char *b) {
+    FILE *f = fopen(a, "rb"), *g = fopen(b, "rb");
+    int c = 0, d = 0;
+    while (f && g && c == d && c != EOF) c = fgetc(f), d = fgetc(g);
+    if (f) fclose(f);
+    if (g) fclose(g);
+    return f && g && c == d;
+}
+
+static void parts_make_the_file_of_the_whole(void) {
+    brio_mesh *m = mesh_of_tetrahedra();
+    for (int way = 0; way < 4; way++) {
+        brio_write_options o = {.size = sizeof o, .ascii = way & 1, .float32 = way >> 1, .comment = "in parts"};
+        io_empty_folder();
+        write_parts(m, &o, io_path("parts.ply"));
+        EXPECT(brio_write(io_ctx, io_path("whole.ply"), m, &o) == BRIO_OK, "%s", brio_message(io_ctx));
+        EXPECT(same_bytes(io_path("parts.ply"), io_path("whole.ply")), "way %d", way);
+    }
+    brio_mesh_free(m);
+    io_empty_folder();
+}
+
+static void wrong_parts_are_refused(void) {
+    brio_mesh *m = mesh_of_tetrahedra();
+    brio_mesh_parts *p;
+    const uint32_t wrong[4] = {0, 1, 2, PARTS_POINTS};
+    EXPECT(brio_mesh_parts_new(io_ctx, io_path("parts.vtu"), NULL, 1, 0, &p) == BRIO_ERR_ARGUMENT && !p);
+    EXPECT(brio_mesh_parts_new(io_ctx, io_path("parts.xyz"), NULL, 1, 0, &p) == BRIO_ERR_ARGUMENT && !p);
+    EXPECT(brio_mesh_parts_new(io_ctx, io_path("parts.ply"), NULL, UINT64_C(1) << 32, 0, &p) == BRIO_ERR_TOO_LARGE);
+    EXPECT(brio_mesh_parts_new(io_ctx, io_path("parts.ply"), NULL, PARTS_POINTS, 2, &p) == BRIO_OK);
+    EXPECT(put_points(p, m, 0, 4) == BRIO_OK);
+    EXPECT(brio_mesh_parts_tetrahedra(io_ctx, p, m->tetrahedra, 1) == BRIO_ERR_ARGUMENT); /* points are missing */
+    EXPECT(put_points(p, m, 3, PARTS_POINTS) == BRIO_ERR_ARGUMENT);                       /* one too many */
+    EXPECT(put_points(p, m, 4, PARTS_POINTS) == BRIO_OK);
+    EXPECT(brio_mesh_parts_tetrahedra(io_ctx, p, wrong, 1) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_mesh_parts_tetrahedra(io_ctx, p, m->tetrahedra, 3) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_mesh_parts_tetrahedra(io_ctx, p, m->tetrahedra, 1) == BRIO_OK);
+    EXPECT(put_points(p, m, 0, 0) == BRIO_ERR_ARGUMENT); /* behind a tetrahedron */
+    EXPECT(brio_mesh_parts_finish(io_ctx, p) == BRIO_ERR_ARGUMENT && strstr(brio_message(io_ctx), "announced"));
+    brio_mesh_parts_free(p);
+    EXPECT(io_count_files("parts") == 0);
+    EXPECT(brio_mesh_parts_new(io_ctx, io_path("none.ply"), NULL, 0, 0, &p) == BRIO_OK);
+    EXPECT(brio_mesh_parts_finish(io_ctx, p) == BRIO_OK, "%s", brio_message(io_ctx));
+    brio_mesh_parts_free(p);
+    EXPECT(io_count_files("none.ply") == 1);
+    brio_mesh_parts_free(NULL);
+    brio_mesh_free(m);
+    io_empty_folder();
+}
+
 SUITE(test_io_ply) {
     io_begin();
     RUN(false_promises_of_a_pipe);
@@ -281,5 +372,7 @@ SUITE(test_io_ply) {
     RUN(false_promises_allocate_nothing);
     RUN(truncation_names_place_and_row);
     RUN(rows_are_checked);
+    RUN(parts_make_the_file_of_the_whole);
+    RUN(wrong_parts_are_refused);
     return io_end();
 }

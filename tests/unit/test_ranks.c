@@ -131,12 +131,19 @@ static brio_status add_share(brio_context *ctx, brio_ranks *r, const member *m) 
     return BRIO_OK;
 }
 
+/* Leaves no memory from the moment when a tile is triangulated, as a brio_progress_fn. */
+static int starve(const char *stage, double fraction, void *user) {
+    (void)fraction;
+    if (!strcmp(stage, "insert")) brio_context_set_memory_limit(user, brio_context_memory(user) + 1000);
+    return 0;
+}
+
 static brio_status run_member(brio_context *ctx, member *m, brio_ranks *r) {
     const plan *p = m->plan;
     brio_status status = BRIO_OK;
     m->had_points = brio_ranks_has_points(r);
     if (!m->had_points) BRIO_TRY(brio_ranks_agree(ctx, r, add_share(ctx, r, m), NULL));
-    if (p->fails == m->man.rank) brio_context_set_memory_limit(ctx, brio_context_memory(ctx) + 300000);
+    if (p->fails == m->man.rank) brio_context_set_progress(ctx, starve, ctx);
     BRIO_TRY(brio_ranks_run(ctx, r));
     BRIO_TRY(brio_ranks_checksum(ctx, r, &m->checksum));
     for (uint32_t i = 0; p->parts && i < p->tiles; i++) {

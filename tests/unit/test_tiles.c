@@ -223,6 +223,36 @@ static void parts_are_the_whole(void) {
     brio_context_free(ctx);
 }
 
+/* Hashes the parts of all tiles, every byte of them. */
+static uint64_t hash_parts(size_t n, int threads) {
+    brio_context *ctx = new_context();
+    uint64_t hash = 0;
+    brio_context_set_threads(ctx, threads);
+    brio_tiles *t = tiles_of(ctx, 2, n, false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    for (uint32_t i = 0; i < 2; i++) {
+        brio_tile_part p = {.size = sizeof p};
+        EXPECT(brio_tiles_part(ctx, t, i, &p) == BRIO_OK, "%s", brio_message(ctx));
+        const uint32_t *v = *p.tetrahedra;
+        for (size_t k = 0; k < p.num_vertices; k++) hash = brio_hash(hash, p.index[k]);
+        for (size_t k = 0; k < 4 * p.num_tetrahedra; k++) hash = brio_hash(hash, v[k]);
+        brio_tile_part_free(ctx, &p);
+    }
+    EXPECT(brio_tiles_facts(t)->asked > 0);
+    hash = brio_hash(hash, brio_tiles_facts(t)->asked ^ brio_tiles_facts(t)->found << 32);
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+    return hash;
+}
+
+/* The file of a tile is the same for every number of threads. */
+static void parts_do_not_depend_on_threads(void) {
+    size_t n = make_points(5, MOST, 0);
+    uint64_t one = hash_parts(n, 1);
+    EXPECT(hash_parts(n, 4) == one);
+    EXPECT(hash_parts(n, 3) == one);
+}
+
 /* --- cells --- */
 
 /* Cells of all points, which those of tiles are compared with. */
@@ -476,6 +506,7 @@ SUITE(test_tiles) {
     RUN(points_nearly_on_a_sphere);
     RUN(a_run_is_resumed);
     RUN(parts_are_the_whole);
+    RUN(parts_do_not_depend_on_threads);
     RUN(cells_are_those_of_the_whole);
     RUN(wrong_calls_for_cells_are_refused);
     RUN(wrong_calls_are_refused);
