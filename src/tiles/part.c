@@ -1,6 +1,7 @@
 /* The tetrahedra of one tile for the caller: their vertices, with positions and indices. In the tile's file they are in
- * an order that depends on the threads; here they are sorted by their first three vertices, which no two of them share
- * in this order, for they are positive. */
+ * an order that depends on the threads, and so are the points that were found to complete them; here these are sorted
+ * by their places, and the tetrahedra by their first three vertices, which no two of them share in this order, for they
+ * are positive. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -45,16 +46,41 @@ brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *h
     return read_halo(t, halo, facts->halo, points + facts->points);
 }
 
-/* Gives the vertices of the tetrahedra consecutive numbers, in the order of the points. Returns how many there are. */
-static size_t number_vertices(brio_tile_result *r, size_t num_tetrahedra, size_t n, uint32_t *number) {
-    size_t used = 0;
-    memset(number, 0, n * sizeof *number);
-    for (size_t i = 0; i < num_tetrahedra; i++)
+/* Numbers the points that are marked in `number` consecutively: those of the tile, then those of the halo by their
+ * places, for they were met in an order that depends on the threads. The others get UINT32_MAX. */
+static brio_status number_points(brio_context *ctx, const brio_tile *facts, const uint64_t *halo, uint32_t *number,
+                                 size_t *num_vertices) {
+    uint32_t *order = NULL, used = 0;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(ctx, order, facts->halo + 1));
+    for (uint32_t i = 0; i < facts->halo; i++) order[i] = i;
+    BRIO_TRY(brio_sort_many_indices(ctx, order, facts->halo, compare_places, halo));
+    for (size_t p = 0; p < facts->points; p++) number[p] = number[p] ? used++ : UINT32_MAX;
+    for (size_t i = 0; i < facts->halo; i++) {
+        uint32_t *of_point = &number[facts->points + order[i]];
+        *of_point = *of_point ? used++ : UINT32_MAX;
+    }
+    *num_vertices = used;
+done:
+    brio_release(ctx, order);
+    return status;
+}
+
+/* Gives the vertices of the tetrahedra consecutive numbers, and turns each tetrahedron as these tell. */
+static brio_status number_vertices(brio_context *ctx, const brio_tile *facts, brio_tile_result *r, uint32_t *number,
+                                   size_t *num_vertices) {
+    memset(number, 0, (facts->points + facts->halo) * sizeof *number);
+    for (size_t i = 0; i < facts->tetrahedra; i++)
         for (int k = 0; k < 4; k++) number[r->tetrahedra[i][k]] = 1;
-    for (size_t p = 0; p < n; p++) number[p] = number[p] ? (uint32_t)used++ : UINT32_MAX;
-    for (size_t i = 0; i < num_tetrahedra; i++)
-        for (int k = 0; k < 4; k++) r->tetrahedra[i][k] = number[r->tetrahedra[i][k]];
-    return used;
+    BRIO_FORWARD(number_points(ctx, facts, r->halo, number, num_vertices));
+    for (size_t i = 0; i < facts->tetrahedra; i++) {
+        uint32_t *v = r->tetrahedra[i], old[4];
+        uint8_t turn;
+        for (int k = 0; k < 4; k++) old[k] = number[v[k]];
+        brio_turn_key(old, BRIO_INFINITE, &turn);
+        for (int k = 0; k < 4; k++) v[k] = old[BRIO_TURNED[turn][k]];
+    }
+    return BRIO_OK;
 }
 
 /* The tetrahedra of one first vertex while they are sorted. */
@@ -138,7 +164,7 @@ brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_
     BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
     BRIO_TRY(halo_of(user, result.halo, facts->halo, points + facts->points));
     p->num_tetrahedra = facts->tetrahedra;
-    p->num_vertices = number_vertices(&result, facts->tetrahedra, n, number);
+    BRIO_TRY(number_vertices(t->ctx, facts, &result, number, &p->num_vertices));
     BRIO_TRY(fill(t, points, number, n, p));
     p->tetrahedra = result.tetrahedra;
     result.tetrahedra = NULL;
