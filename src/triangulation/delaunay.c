@@ -10,7 +10,6 @@
 #include "triangulation/canonical_order.h"
 #include "triangulation/insert.h"
 #include "triangulation/insertion_part.h"
-#include "triangulation/parallel.h"
 #include "triangulation/represent.h"
 #include "triangulation/start.h"
 #include "triangulation/triangulation.h"
