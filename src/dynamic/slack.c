@@ -18,8 +18,8 @@ enum { LEAST = 1 << 14 }; /* slots that are worth a thread */
 
 void brio_slack_end(brio_dynamic *d) {
     const brio_hole *h = &d->hole;
-    for (size_t i = 0; i < h->num_tets; i++) d->until[h->tet[i]] = -1;
-    for (size_t b = 0; b < h->num_border; b++) d->until[brio_tet_of(h->border[b])] = -1;
+    for (size_t i = 0; i < h->num_tets; i++) brio_end_time(d, h->tet[i]);
+    for (size_t b = 0; b < h->num_border; b++) brio_end_time(d, brio_tet_of(h->border[b]));
 }
 
 void brio_slack_end_all(brio_dynamic *d) {
