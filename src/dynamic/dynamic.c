@@ -92,7 +92,7 @@ static brio_status insert_anew(brio_dynamic *d, const double *points, const doub
         if (list.weight) list.weight[list.count] = record[3];
         list.name[list.count++] = (uint32_t)(d->num_names + i);
     }
-    status = brio_live_build(d, &list, d->num_names + n);
+    status = brio_live_build(d, &list, d->num_names + n, true);
     brio_live_list_free(d->ctx, &list);
     return status;
 }
@@ -189,7 +189,7 @@ static brio_status remove_anew(brio_dynamic *d, const uint32_t *indices, size_t 
         list.name[kept++] = list.name[i];
     }
     list.count = kept;
-    status = brio_live_build(d, &list, d->num_names);
+    status = brio_live_build(d, &list, d->num_names, true);
 done:
     brio_release(d->ctx, gone);
     brio_live_list_free(d->ctx, &list);
@@ -236,7 +236,7 @@ static brio_status move_anew(brio_dynamic *d, const brio_moves *m) {
         memcpy(list.point + 3 * at, record, 3 * sizeof *record);
         if (list.weight) list.weight[at] = record[3];
     }
-    status = brio_live_build(d, &list, d->num_names);
+    status = brio_live_build(d, &list, d->num_names, false);
 done:
     brio_release(d->ctx, place);
     brio_live_list_free(d->ctx, &list);

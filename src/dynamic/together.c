@@ -18,7 +18,7 @@
 
 enum {
     LEAST = 64, /* changes that are worth a thread */
-    TRIES = 64 /* between two looks */
+    TRIES = 64  /* between two looks */
 };
 
 typedef struct {
