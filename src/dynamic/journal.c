@@ -110,7 +110,7 @@ static void forget_more(brio_dynamic *d) {
 brio_status brio_live_end(brio_dynamic *d, brio_status status) {
     assert(d->in_transaction);
     d->in_transaction = false;
-    if (status != BRIO_ERR_INTERNAL) d->needs_anew = false; /* a call that was cancelled has failed */
+    if (status != BRIO_ERR_INTERNAL) d->needs_anew = false;
     if (status == BRIO_OK) {
         assert(d->num_loose == 0 && d->hole.num_tets == 0);
         for (const brio_journal *j = &d->journal; j; j = j->more) {

@@ -170,7 +170,8 @@ static const uint8_t BRIO_OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2
 
 /** Begins a transaction. */
 void brio_live_begin(brio_dynamic *d);
-/** Ends it: keeps the changes if the status is BRIO_OK, else takes all of them back. Returns the status. */
+/** Ends it: keeps the changes if the status is BRIO_OK, else takes all of them back. Returns the status. After another
+ *  failure than BRIO_ERR_INTERNAL needs_anew is false: a call that was cancelled, say, has failed. */
 brio_status brio_live_end(brio_dynamic *d, brio_status status);
 /** Makes room in the journal for a number of slots and rows. */
 brio_status brio_journal_reserve(brio_dynamic *d, size_t slots, size_t rows);

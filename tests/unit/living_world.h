@@ -5,6 +5,7 @@
 
 #include "harness.h"
 
+#include "base/context.h"
 #include "dynamic/live.h"
 #include <math.h>
 #include <string.h>
@@ -60,6 +61,7 @@ typedef struct {
     uint8_t *alive;
     uint32_t *index; /* of those that are there, in any order */
     size_t num_indices, num_points;
+    size_t looks; /* until a call is told to stop; 0: never */
 } world;
 
 static inline world world_new(shape s, int weighted, size_t most) {

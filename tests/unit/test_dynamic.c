@@ -271,7 +271,63 @@ static void a_folded_hole_is_filled_well_or_not_at_all(void) {
     EXPECT(mended > 20 && kept > 20, "%zu and %zu", mended, kept);
 }
 
+/* Two tetrahedra of a hole, of which the first has come to hold the second: their borders are facets of the triangulation
+ * of all eight vertices, and bound what lies between them from both sides. Filled, the hole would have tetrahedra whose
+ * mates have other mates. */
+static void a_hole_that_covers_a_place_twice_stays(void) {
+    static const double CORNER[4][3] = {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}};
+    size_t tried = 0;
+    for (int trial = 0; trial < 40; trial++) {
+        world w = world_new(UNIFORM, 0, 64);
+        bool filled = false;
+        EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+        insert_some(&w, 50);
+        brio_live_begin(w.d);
+        brio_hole *h = &w.d->hole;
+        uint32_t pair[2] = {(uint32_t)draw_below(w.d->t.count), (uint32_t)draw_below(w.d->t.count)};
+        int apart = !brio_is_infinite(&w.d->t, pair[0]) && !brio_is_infinite(&w.d->t, pair[1]);
+        for (int k = 0; k < 4; k++)
+            apart &= brio_slot_of_vertex(w.d->t.tet[pair[1]].vertex, w.d->t.tet[pair[0]].vertex[k]) == 4;
+        for (int i = 0; i < 2 && apart; i++) {
+            h->tet[h->num_tets++] = pair[i];
+            w.d->state[pair[i]] |= SLOT_HOLE;
+            for (int k = 0; k < 4; k++) {
+                double *r = w.d->record[w.d->t.tet[pair[i]].vertex[k]];
+                for (int c = 0; c < 3; c++) r[c] = i ? 1.5 + CORNER[k][c] / 18 : CORNER[k][c];
+                h->border[h->num_border++] = w.d->t.tet[pair[i]].mate[k];
+            }
+        }
+        if (apart) {
+            EXPECT(brio_hole_reserve_fresh(w.d, h->num_border) == BRIO_OK);
+            EXPECT(brio_hole_mend(w.d, &filled) == BRIO_OK);
+            EXPECT(!filled && mates_agree(w.d), "trial %d", trial);
+        }
+        tried += (size_t)apart;
+        EXPECT(brio_live_end(w.d, BRIO_ERR_INTERNAL) == BRIO_ERR_INTERNAL);
+        world_free(&w);
+    }
+    EXPECT(tried > 5, "%zu", tried);
+}
+
 /* --- what fails leaves all as it was --- */
+
+/* A change that was about to be made by building anew when it failed otherwise: it has failed. */
+static void only_one_failure_asks_for_building_anew(void) {
+    static const brio_status FAILURE[] = {BRIO_ERR_CANCELLED, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE};
+    world w = world_new(UNIFORM, 0, 64);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+    insert_some(&w, 20);
+    for (size_t i = 0; i < sizeof FAILURE / sizeof *FAILURE; i++) {
+        brio_live_begin(w.d);
+        w.d->needs_anew = true;
+        EXPECT(brio_live_end(w.d, FAILURE[i]) == FAILURE[i] && !w.d->needs_anew);
+    }
+    brio_live_begin(w.d);
+    w.d->needs_anew = true;
+    EXPECT(brio_live_end(w.d, BRIO_ERR_INTERNAL) == BRIO_ERR_INTERNAL && w.d->needs_anew);
+    EXPECT(is_as_built(&w));
+    world_free(&w);
+}
 
 /* A world of about 70 points, some of them coincident or hidden. */
 static world small_world(brio_context *ctx, int weighted) {
@@ -359,24 +415,31 @@ static void cancelled_changes_leave_all(void) {
 }
 
 /* A call that was told to stop has failed, wherever it was: one that was about to build anew did so, and succeeded. */
+static int stop_at_a_look(const char *stage, double fraction, void *user) {
+    world *w = user;
+    (void)stage, (void)fraction;
+    w->ctx->unlooked = BRIO_LOOK_EVERY; /* the next look asks, too */
+    return w->looks > 0 && --w->looks == 0;
+}
+
 static void cancelled_moves_of_all_leave_all(void) {
     static const double SHARE[] = {0.01, 0.03, 0.06};
     size_t n = 1200, cancelled = 0;
     double *p = calloc(3 * n, sizeof *p);
     for (int s = 0; s < 3; s++) {
         world w = world_new(UNIFORM, 0, n + 1);
-        size_t left = 0;
         brio_status status = BRIO_ERR_CANCELLED;
         EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
         insert_many(&w, n);
-        brio_context_set_progress(w.ctx, stop_at, &left);
-        for (size_t k = 1; k < 400 && status != BRIO_OK; k += BRIEF_TESTS ? 5 : 1) {
+        brio_context_set_progress(w.ctx, stop_at_a_look, &w);
+        for (size_t k = 1; k < 1000000 && status != BRIO_OK; k += 1 + k / (BRIEF_TESTS ? 4 : 60)) {
             for (size_t i = 0; i < 3 * n; i++) p[i] = w.point[i] + SHARE[s] / cbrt((double)n) * (2 * draw() - 1);
-            left = k;
+            w.looks = k;
+            w.ctx->unlooked = BRIO_LOOK_EVERY;
             status = brio_dynamic_move(w.d, NULL, p, NULL, n);
-            EXPECT((status == BRIO_OK) == (left > 0) && (status == BRIO_OK || status == BRIO_ERR_CANCELLED),
-                   "%s, %zu are left", brio_message(w.ctx), left);
-            left = 0;
+            EXPECT((status == BRIO_OK) == (w.looks > 0) && (status == BRIO_OK || status == BRIO_ERR_CANCELLED),
+                   "%s, %zu are left", brio_message(w.ctx), w.looks);
+            w.looks = 0;
             cancelled += status != BRIO_OK;
             if (status == BRIO_OK) memcpy(w.point, p, 3 * n * sizeof *p);
             EXPECT(is_as_built(&w), "share %g, stopped at %zu", SHARE[s], k);
@@ -464,6 +527,8 @@ SUITE(test_dynamic) {
     RUN(coordinates_may_be_huge_or_tiny);
     RUN(centres_of_spheres_go);
     RUN(a_folded_hole_is_filled_well_or_not_at_all);
+    RUN(a_hole_that_covers_a_place_twice_stays);
+    RUN(only_one_failure_asks_for_building_anew);
     RUN(failing_memory_leaves_all);
     RUN(cancelled_changes_leave_all);
     RUN(cancelled_moves_of_all_leave_all);
