@@ -1,8 +1,9 @@
 /* Built anew: from a list of points, as brio_delaunay does it. The canonical order of the tetrahedra, a sixth
- * of its work, is left out where all points move far: they will soon do so again. Else it is worth its time: changes take
- * a seventh more where near tetrahedra are not near in memory.
+ * of its work, is left out where all points move far: they will soon do so again. Else it is worth its time: changes
+ * take a seventh more where near tetrahedra are not near in memory.
  *
- * Rows are the records of the insertion, which follow a curve in each of its rounds, so that near points have near rows. */
+ * Rows are the records of the insertion, which follow a curve in each of its rounds, so that near points have near
+ * rows. */
 #include "base/memory.h"
 #include "dynamic/live.h"
 #include "triangulation/canonical_order.h"
@@ -68,8 +69,8 @@ static void name_vertices(brio_store *store) {
     }
 }
 
-/* Takes the tetrahedra of a store, whose records are rows, with their vertices' names.   sorted  brings near ones near to
- * each other first. */
+/* Takes the tetrahedra of a store, whose records are rows, with their vertices' names.   sorted  brings near ones
+ * near to each other first. */
 static brio_status take_tetrahedra(brio_dynamic *d, brio_store *store, brio_inserter *ins, bool sorted) {
     if (sorted)
         BRIO_FORWARD(sort_slots(store, ins));

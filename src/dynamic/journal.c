@@ -1,10 +1,10 @@
 /* The journal of a transaction: what slots and rows were before it, to be written back when it fails.
  *
  * The tetrahedra behind the border of a hole get other mates, and are not copied. Let T and W share a facet before the
- * transaction, and let T be copied while it still has W as its mate there: that holds for the one of them that is copied
- * first, since only the change of one gives the other another mate. So copies are written back from the last to the
- * first, and each makes itself the mate of its mates. What W's copy, a later one, says of the facet is overwritten then.
- * Slots that were reused meanwhile were copied before that, and are written after it.
+ * transaction, and let T be copied while it still has W as its mate there: that holds for the one of them that is
+ * copied first, since only the change of one gives the other another mate. So copies are written back from the last
+ * to the first, and each makes itself the mate of its mates. What W's copy, a later one, says of the facet is
+ * overwritten then. Slots that were reused meanwhile were copied before that, and are written after it.
  *
  * Homes of vertices change with every tetrahedron and are not noted. When slots are written back, each of their
  * vertices gets one of them as its home: a vertex whose home has changed lost a tetrahedron that it had before. The

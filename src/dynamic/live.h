@@ -22,10 +22,10 @@
  *     facet that it shares with a finite tetrahedron of higher number is in conflict with it. until[s] is below 0
  *     where a test has to say so (slack.c).
  *
- * In a pass (together.c) each thread has a hand: a brio_dynamic with hole, lists, journal, filter and counts of its own,
- * which shares the arrays of rows and slots. A hand holds a zone (zone.h):
- * L6  The hand that holds all finite vertices of a tetrahedron writes its slot, state and list; the mate at a facet, the
- *     hand that destroys the tetrahedron on one of its sides.
+ * In a pass (together.c) each thread has a hand: a brio_dynamic with hole, lists, journal, filter and counts of its
+ * own, which shares the arrays of rows and slots. A hand holds a zone (zone.h):
+ * L6  The hand that holds all finite vertices of a tetrahedron writes its slot, state and list. The mate at a facet is
+ *     written by the hand that destroys the tetrahedron on one of its sides.
  * L7  The hand that holds a vertex writes its home, number, kind and row; its record, if it also holds all finite
  *     vertices of its star. Decision 030 is the proof that no other hand reads it then.
  * L8  Hidden rows, twins, holes that are large and rows that are no vertices any more are left to one thread.
@@ -175,7 +175,8 @@ void brio_live_begin(brio_dynamic *d);
 brio_status brio_live_end(brio_dynamic *d, brio_status status);
 /** Makes room in the journal for a number of slots and rows. */
 brio_status brio_journal_reserve(brio_dynamic *d, size_t slots, size_t rows);
-/** Begins a hole: what is noted from now on has a later stamp than what other hands noted in holes that this one meets. */
+/** Begins a hole: what is noted from now on has a later stamp than what other hands noted in holes that this one
+ *  meets. */
 void brio_journal_stamp(brio_dynamic *d);
 /** Gives the journal of a hand to d, whose change it is part of. `node` is empty, and d's then. */
 void brio_journal_give(brio_dynamic *d, brio_journal *hand, brio_journal *node);
