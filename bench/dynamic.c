@@ -50,8 +50,8 @@ static void one_by_one(brio_context *ctx, brio_dynamic *d, size_t n, size_t chan
     }
     printf("insert one: median %.2f us, mean %.2f us\n", 1e6 * median(took, changes), 1e6 * sum / (double)changes);
     sum = 0;
-    for (size_t i = 0, index = 1; i < changes; i++) {
-        do index = (index * 2654435761u + 12345) % n;
+    for (size_t i = 0, index; i < changes; i++) {
+        do index = (size_t)(draw() * (double)n);
         while (brio_dynamic_point(d, (uint32_t)index, NULL) == BRIO_DYNAMIC_NONE);
         double start = seconds(CLOCK_MONOTONIC);
         check(ctx, brio_dynamic_remove(d, &(uint32_t){(uint32_t)index}, 1));
