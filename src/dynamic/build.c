@@ -79,10 +79,10 @@ static brio_status take_tetrahedra(brio_dynamic *d, brio_store *store, brio_inse
     size_t count = store->t.count;
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, store->t.tet, count));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, store->state, count));
-    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->hidden, count));
+    if (d->weighted) BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->hidden, count));
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->unused, count));
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->until, count));
-    memset(d->hidden, 0xff, count * sizeof *d->hidden);
+    if (d->weighted) memset(d->hidden, 0xff, count * sizeof *d->hidden);
     if (ins->num_unused) memcpy(d->unused, ins->unused, ins->num_unused * sizeof *d->unused);
     d->num_unused = ins->num_unused;
     d->t.tet = store->t.tet, d->state = store->state;

@@ -62,7 +62,7 @@ static void restore_rows(brio_dynamic *d) {
 
 /* Writes a copy of a slot back. */
 static void restore_slot(brio_dynamic *d, const brio_old_slot *old) {
-    d->hidden[old->slot] = old->hidden;
+    brio_set_first_hidden(d, old->slot, old->hidden);
     d->state[old->slot] = old->state;
     if (old->state != SLOT_PLAIN) return;
     d->t.tet[old->slot] = old->tet;

@@ -12,8 +12,8 @@
  * Between changes:
  * L1  home[r] is a tetrahedron of vertex r; of a hidden row, the finite tetrahedron that holds it and that it does not
  *     conflict with; of a twin, the vertex at its position.
- * L2  hidden[s] is the first of the hidden rows whose home is slot s; `twins` of a vertex' row is the first of its
- *     twins; next and prev lead through such a list.
+ * L2  hidden[s], with weights, is the first of the hidden rows whose home is slot s; `twins` of a vertex' row is the
+ *     first of its twins; next and prev lead through such a list.
  * L3  A vertex is at least as heavy as each of its twins, and has the least name among those of its weight. So the
  *     vertices are those that brio_delaunay would choose.
  * L4  In an input of dimension 2 or less there are no tetrahedra, and every row that is alive is loose.
@@ -136,6 +136,7 @@ struct brio_dynamic {
     uint8_t *state;
     uint32_t *hidden;
     float *until; /* of each slot: L5 */
+    bool timed;   /* some may be 0 or above */
     double travelled;
     size_t capacity;
     uint32_t *unused;
@@ -184,7 +185,17 @@ void brio_journal_give(brio_dynamic *d, brio_journal *hand, brio_journal *node);
 /** Ends the time (L5) of a tetrahedron. In a pass several threads may do that at once. */
 static inline void brio_end_time(brio_dynamic *d, uint32_t slot) {
     static const float OVER = -1;
+    if (!d->timed) return;
     __atomic_store(&d->until[slot], &OVER, __ATOMIC_RELAXED);
+}
+
+/** Returns the first hidden row of a slot. Without weights there are none, and no array. */
+static inline uint32_t brio_first_hidden(const brio_dynamic *d, uint32_t slot) {
+    return d->hidden ? d->hidden[slot] : BRIO_NONE;
+}
+static inline void brio_set_first_hidden(brio_dynamic *d, uint32_t slot, uint32_t row) {
+    assert(d->hidden || row == BRIO_NONE);
+    if (d->hidden) d->hidden[slot] = row;
 }
 
 /** Notes a slot, or a row, before it is written; room was reserved. */
@@ -193,8 +204,8 @@ static inline void brio_note_slot(brio_dynamic *d, uint32_t slot) {
     brio_end_time(d, slot);
     if (slot >= j->slots_before || d->state[slot] & SLOT_NOTED) return;
     assert(j->num_slots < j->slot_capacity);
-    j->slot[j->num_slots++] =
-        (brio_old_slot){d->t.tet[slot], slot, d->hidden[slot], j->stamp, d->state[slot] & (uint8_t)~SLOT_HOLE};
+    j->slot[j->num_slots++] = (brio_old_slot){d->t.tet[slot], slot, brio_first_hidden(d, slot), j->stamp,
+                                              d->state[slot] & (uint8_t)~SLOT_HOLE};
     d->state[slot] |= SLOT_NOTED;
 }
 static inline void brio_note_row(brio_dynamic *d, uint32_t row) {

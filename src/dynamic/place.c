@@ -248,6 +248,7 @@ brio_status brio_live_place(brio_dynamic *d, uint32_t row) {
     const double *p = d->record[row];
     size_t base = d->num_loose;
     assert(brio_row_kind(d, row) == ROW_LOOSE && d->dimension == 3);
+    assert(!d->zone || brio_zone_holds(d->zone, row)); /* L7 */
     brio_live_approach(d, p);
     uint32_t tet = d->attempt ? BRIO_NO_TET : walk_to(d, p);
     if (tet == BRIO_NO_TET) return brio_give_up(d, BRIO_TRY_LATER);

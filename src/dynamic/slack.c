@@ -23,6 +23,7 @@ void brio_slack_end(brio_dynamic *d) {
 }
 
 void brio_slack_end_all(brio_dynamic *d) {
+    d->timed = false;
     for (size_t s = 0; s < d->t.count; s++) d->until[s] = -1;
 }
 
@@ -125,6 +126,7 @@ brio_status brio_slack_test(brio_dynamic *d, brio_slot_list *open, brio_slot_lis
     test_pass own = {.d = d, .status = BRIO_OK};
     brio_status status = BRIO_OK;
     *open = *infinite = (brio_slot_list){0};
+    d->timed = true;
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, own.open, 2 * (size_t)threads));
     own.infinite = own.open + threads;
     BRIO_TRY(brio_for(d->ctx, threads, d->t.count, test_part, &own));

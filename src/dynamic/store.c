@@ -44,7 +44,7 @@ brio_status brio_live_reserve_slots(brio_dynamic *d, size_t more) {
     if (capacity > MOST) capacity = MOST;
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->t.tet, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->state, capacity));
-    BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->hidden, capacity));
+    if (d->weighted) BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->hidden, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->until, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->unused, capacity));
     d->capacity = d->unused_capacity = capacity;
@@ -70,6 +70,7 @@ brio_status brio_hole_reserve_fresh(brio_dynamic *d, size_t count) {
 }
 
 brio_status brio_live_reserve_loose(brio_dynamic *d, size_t more) {
+    assert(!d->zone); /* L8 */
     return BRIO_RESERVE(d->ctx, d->loose, d->loose_capacity, d->num_loose + more);
 }
 
@@ -269,6 +270,7 @@ static double square_distance(const double *p, const double *q) {
 void brio_live_approach(brio_dynamic *d, const double *x) {
     uint32_t hint = hint_near(d, x);
     if (d->walk.start != BRIO_NO_TET) {
+        assert(!(d->state[d->walk.start] & SLOT_UNUSED) && brio_zone_holds_tet(&d->t, d->zone, d->walk.start));
         uint32_t start = brio_walk_begin(&d->t, &d->walk), near = d->t.tet[start].vertex[0];
         if (!d->zone) d->walk.start = start; /* a hand holds walk.start, perhaps not the tetrahedron next to it */
         if (hint == BRIO_NONE || square_distance(d->record[hint], x) >= square_distance(d->record[near], x)) return;
@@ -372,7 +374,7 @@ uint32_t brio_edges_find(const brio_dynamic *d, uint32_t x, uint32_t y) {
 static brio_status set_loose(brio_dynamic *d) {
     const brio_hole *h = &d->hole;
     for (size_t i = 0; i < h->num_tets; i++)
-        for (uint32_t r = d->hidden[h->tet[i]], next; r != BRIO_NONE; r = next) {
+        for (uint32_t r = brio_first_hidden(d, h->tet[i]), next; r != BRIO_NONE; r = next) {
             next = d->row[r].next;
             BRIO_FORWARD(brio_live_reserve_loose(d, 1));
             BRIO_FORWARD(brio_journal_reserve(d, 0, 1));
@@ -401,7 +403,7 @@ brio_status brio_hole_take_slots(brio_dynamic *d, size_t count) {
         brio_note_slot(d, slot);
         d->counts.infinite -= infinite;
         d->counts.finite -= 1 - infinite;
-        d->hidden[slot] = BRIO_NONE;
+        brio_set_first_hidden(d, slot, BRIO_NONE);
         d->state[slot] &= SLOT_NOTED;
         if (n < count) {
             h->fresh[n++] = slot;
@@ -412,10 +414,10 @@ brio_status brio_hole_take_slots(brio_dynamic *d, size_t count) {
     }
     while (n < count) {
         uint32_t slot = d->num_unused ? d->unused[--d->num_unused] : (uint32_t)d->t.count++;
-        if (slot >= d->journal.slots_before) d->state[slot] = SLOT_UNUSED;
+        if (slot >= d->journal.slots_before) d->state[slot] = SLOT_UNUSED, d->until[slot] = -1;
         brio_note_slot(d, slot);
         d->state[slot] &= SLOT_NOTED;
-        d->hidden[slot] = BRIO_NONE;
+        brio_set_first_hidden(d, slot, BRIO_NONE);
         h->fresh[n++] = slot;
     }
     return BRIO_OK;

@@ -28,8 +28,19 @@ typedef struct {
 enum { LAST_SHIFT = 6, LAST_BITS = (1 << LAST_SHIFT) - 1 };
 static const uint32_t ON_BORDER = UINT32_C(1) << 31; /* of a mate: what follows is a facet of the border */
 
+/* Calls for what a change of a tetrahedron will read. */
+static inline void expect_change(const brio_dynamic *d, uint32_t slot) {
+    const uint32_t *v = d->t.tet[slot].vertex;
+    for (int k = 0; k < 4; k++) {
+        __builtin_prefetch(d->record[v[k]]);
+        __builtin_prefetch(&d->number[v[k]], 1);
+        __builtin_prefetch(&d->home[v[k]], 1);
+    }
+}
+
 brio_status brio_live_star(brio_dynamic *d, uint32_t row) {
     brio_hole *h = &d->hole;
+    assert(!d->zone || brio_zone_holds(d->zone, row)); /* L7 */
     h->tet[0] = d->home[row];
     h->num_tets = 1;
     h->num_border = 0;
@@ -42,6 +53,7 @@ brio_status brio_live_star(brio_dynamic *d, uint32_t row) {
         const brio_tetrahedron *t = &d->t.tet[h->tet[n]];
         int slot = brio_slot_of_vertex(t->vertex, row);
         assert(slot < 4); /* L1 */
+        expect_change(d, h->tet[n]);
         for (int i = 0; i < 4; i++) {
             uint32_t mate = t->mate[i], tet = brio_tet_of(mate);
             if (i == slot) {
@@ -274,7 +286,7 @@ static bool is_all(const brio_dynamic *d) {
 }
 
 bool brio_hole_has_hidden(const brio_dynamic *d) {
-    for (size_t i = 0; i < d->hole.num_tets; i++)
+    for (size_t i = 0; i < d->hole.num_tets && d->hidden; i++)
         if (d->hidden[d->hole.tet[i]] != BRIO_NONE) return true;
     return false;
 }

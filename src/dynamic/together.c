@@ -91,7 +91,7 @@ static brio_status prepare(void *user, size_t count, int threads) {
     BRIO_FORWARD(brio_live_reserve_slots(d, need));
     for (size_t slot = d->t.count + need; slot-- > d->t.count;) {
         d->state[slot] = SLOT_UNUSED;
-        d->hidden[slot] = BRIO_NONE;
+        brio_set_first_hidden(d, slot, BRIO_NONE);
         d->until[slot] = -1;
         d->unused[d->num_unused++] = (uint32_t)slot;
     }
