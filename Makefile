@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak analyze targets wheels integrations release npm page mpi
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak operations analyze targets wheels integrations release npm page mpi
 
 all:
 	@sh scripts/setup.sh build
@@ -89,6 +89,13 @@ soak:
 	cmake --preset release
 	cmake --build build -j $(JOBS) --target soak
 	build/soak $(MINUTES)
+
+# A million random operations on living triangulations, compared with building anew.
+operations:
+	@BRIO_SETUP=1 sh scripts/setup.sh build
+	cmake --preset release
+	cmake --build build -j $(JOBS) --target operations
+	build/operations 1000000
 
 # Every command in 2, 3 and 8 threads under the thread sanitizer, on larger inputs than make check has.
 threads:

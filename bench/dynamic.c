@@ -1,7 +1,10 @@
-/* How long changes of a living triangulation take, in uniform points, with one thread.
- *   bench_dynamic [POINTS [CHANGES]]
- * Prints medians of microseconds for one insertion at a random place and for one removal, and seconds for steps that
- * move all points by shares of their spacing beside those of building anew. Processor time where many calls are added up. */
+/* How long changes of a living triangulation take, in uniform points.
+ *   bench_dynamic [POINTS [CHANGES [THREADS [PARTS]]]]
+ * PARTS are letters of what to measure, all of them where there are none:
+ *   o  medians and means of microseconds for one insertion at a random place, and for one removal;
+ *   b  batches of 1 % of the points: wall and processor time, beside that of building anew;
+ *   m  seconds for steps that move all points by shares of their spacing, beside building anew (processor time).
+ * THREADS: 1 if not given. */
 #include "brio/brio.h"
 #include <math.h>
 #include <stdio.h>
@@ -47,8 +50,8 @@ static void one_by_one(brio_context *ctx, brio_dynamic *d, size_t n, size_t chan
     }
     printf("insert one: median %.2f us, mean %.2f us\n", 1e6 * median(took, changes), 1e6 * sum / (double)changes);
     sum = 0;
-    for (size_t i = 0, index = 1; i < changes; i++) {
-        do index = (index * 2654435761u + 12345) % n;
+    for (size_t i = 0, index; i < changes; i++) {
+        do index = (size_t)(draw() * (double)n);
         while (brio_dynamic_point(d, (uint32_t)index, NULL) == BRIO_DYNAMIC_NONE);
         double start = seconds(CLOCK_MONOTONIC);
         check(ctx, brio_dynamic_remove(d, &(uint32_t){(uint32_t)index}, 1));
@@ -58,18 +61,53 @@ static void one_by_one(brio_context *ctx, brio_dynamic *d, size_t n, size_t chan
     free(took);
 }
 
-static void batches(brio_context *ctx, brio_dynamic *d, size_t n) {
+/* A time that runs in both clocks. */
+typedef struct {
+    double wall, processor;
+} stopwatch;
+
+static stopwatch start_watch(void) {
+    return (stopwatch){seconds(CLOCK_MONOTONIC), seconds(CLOCK_PROCESS_CPUTIME_ID)};
+}
+
+static void show_batch(const char *what, stopwatch since, double anew) {
+    double wall = seconds(CLOCK_MONOTONIC) - since.wall,
+           processor = seconds(CLOCK_PROCESS_CPUTIME_ID) - since.processor;
+    printf("%s 1 %%: wall %.4f s, processor %.4f s", what, wall, processor);
+    printf(anew > 0 ? "; building anew takes %.2f x the wall time\n" : "\n", anew / wall);
+}
+
+static double time_anew(brio_context *ctx, const double *points, size_t n) {
+    brio_triangulation *t;
+    double start = seconds(CLOCK_MONOTONIC);
+    check(ctx, brio_delaunay(ctx, points, NULL, n, NULL, &t));
+    brio_triangulation_free(t);
+    return seconds(CLOCK_MONOTONIC) - start;
+}
+
+static void batches(brio_context *ctx, brio_dynamic *d, const double *points, size_t n) {
+    enum { ROUNDS = 3 };
     size_t some = n / 100;
-    double *p = malloc(3 * some * sizeof *p), start;
+    double *p = malloc(3 * some * sizeof *p), anew = time_anew(ctx, points, n), spacing = 1 / cbrt((double)n);
     uint32_t first, *index = malloc(some * sizeof *index);
-    for (size_t i = 0; i < 3 * some; i++) p[i] = draw();
-    start = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    check(ctx, brio_dynamic_insert(d, p, NULL, some, &first));
-    printf("insert 1 %%: %.4f s\n", seconds(CLOCK_PROCESS_CPUTIME_ID) - start);
-    for (size_t i = 0; i < some; i++) index[i] = first + (uint32_t)i;
-    start = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    check(ctx, brio_dynamic_remove(d, index, some));
-    printf("remove 1 %%: %.4f s\n", seconds(CLOCK_PROCESS_CPUTIME_ID) - start);
+    for (int round = 0; round < ROUNDS; round++) {
+        for (size_t i = 0; i < 3 * some; i++) p[i] = draw();
+        stopwatch start = start_watch();
+        check(ctx, brio_dynamic_insert(d, p, NULL, some, &first));
+        show_batch("insert", start, anew);
+        for (size_t i = 0; i < some; i++) index[i] = first + (uint32_t)i;
+        for (size_t i = 0; i < 3 * some; i++) p[i] += 0.5 * spacing * (draw() - 0.5);
+        start = start_watch();
+        check(ctx, brio_dynamic_move(d, index, p, NULL, some));
+        show_batch("move near", start, anew);
+        for (size_t i = 0; i < 3 * some; i++) p[i] = draw();
+        start = start_watch();
+        check(ctx, brio_dynamic_move(d, index, p, NULL, some));
+        show_batch("move anywhere", start, anew);
+        start = start_watch();
+        check(ctx, brio_dynamic_remove(d, index, some));
+        show_batch("remove", start, anew);
+    }
     free(p), free(index);
 }
 
@@ -87,7 +125,7 @@ static void step_all(double *p, size_t n, double step) {
 
 /* Moves all points of a new triangulation some times. The first step tests all tetrahedra, the others fewer. */
 static void move_all(brio_context *ctx, const double *points, size_t n, double share) {
-    enum { STEPS = 10 };
+    enum { STEPS = 6 };
     double *p = malloc(3 * n * sizeof *p), took[STEPS], sum = 0;
     brio_dynamic *d;
     brio_triangulation *t;
@@ -118,21 +156,22 @@ static void move_all(brio_context *ctx, const double *points, size_t n, double s
 }
 
 int main(int argc, char **argv) {
+    static const double SHARE[] = {1e-4, 1e-3, 5e-3, 2e-2, 0.1, 0.5, 5};
     size_t n = argc > 1 ? (size_t)atoll(argv[1]) : 100000, changes = argc > 2 ? (size_t)atoll(argv[2]) : n / 10;
-    static const double SHARE[] = {1e-4, 1e-3, 5e-3, 2e-2, 0.1};
+    const char *parts = argc > 4 ? argv[4] : "obm";
     double *points = malloc(3 * n * sizeof *points);
     brio_context *ctx;
     brio_dynamic *d;
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return 1;
-    brio_context_set_threads(ctx, 1);
+    brio_context_set_threads(ctx, argc > 3 ? atoi(argv[3]) : 1);
     for (size_t i = 0; i < 3 * n; i++) points[i] = draw();
     double start = seconds(CLOCK_PROCESS_CPUTIME_ID);
     check(ctx, brio_dynamic_new(ctx, points, NULL, n, 0, &d));
     printf("build %zu points: %.3f s\n", n, seconds(CLOCK_PROCESS_CPUTIME_ID) - start);
-    one_by_one(ctx, d, n, changes);
-    batches(ctx, d, n);
+    if (strchr(parts, 'o')) one_by_one(ctx, d, n, changes);
+    if (strchr(parts, 'b')) batches(ctx, d, points, n);
     brio_dynamic_free(d);
-    for (size_t i = 0; i < sizeof SHARE / sizeof *SHARE; i++) move_all(ctx, points, n, SHARE[i]);
+    for (size_t i = 0; i < sizeof SHARE / sizeof *SHARE && strchr(parts, 'm'); i++) move_all(ctx, points, n, SHARE[i]);
     brio_context_free(ctx);
     free(points);
     return 0;

@@ -47,8 +47,8 @@ typedef enum brio_dynamic_state {
  *  weighted  1 if points will have weights, those without one having 0; 0 with weights is BRIO_ERR_ARGUMENT.
  *  out       owned by the caller, freed with brio_dynamic_free before the context; NULL on error. All later calls work
  *            with this context.
- *  Memory: 45 bytes a tetrahedron and 70 a point, and up to a quarter more for growth. A change takes 44 bytes for each
- *  tetrahedron that it touches, until it ends.
+ *  Memory: 41 bytes a tetrahedron (45 with weights) and 74 a point, and up to a quarter more for growth. A change
+ *  takes 48 bytes for each tetrahedron that it takes out, until it ends.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_dynamic_new(brio_context *ctx, const double *points, const double *weights, size_t num_points,
@@ -59,7 +59,8 @@ BRIO_API void brio_dynamic_free(brio_dynamic *d);
 
 /* The functions that change a triangulation return BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NOT_FINITE,
  * BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. On failure all is as it was before the call. Where a
- * call changes so much that building anew is faster, it builds anew. */
+ * call changes so much that building anew is faster, it builds anew. Calls that change at least 128 points use all
+ * threads; what they make does not depend on the number of threads. */
 
 /** Inserts points; they get the next indices, in their order.
  *  points  #P by 3.   weights  #P, or NULL for 0; weights other than NULL need `weighted`.

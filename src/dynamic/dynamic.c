@@ -39,32 +39,32 @@ void brio_dynamic_free(brio_dynamic *d) {
     brio_release(d->ctx, d);
 }
 
-/* Returns how many changes of a cost, one by one, take as long as building a triangulation of `left` points. */
-static size_t most_changes(const brio_dynamic *d, double cost, size_t left) {
+/* Returns how many changes of a cost take as long as building a triangulation of `left` points, which all threads
+ * share, as they share the changes. */
+static size_t most_changes(double cost, size_t left) {
     enum { FEW = 32 };
-    int threads = brio_context_threads(d->ctx);
-    double speed = 0.35 + 0.65 * (threads > 1 && left > 4096 ? threads : 1); /* of building, by threads */
-    return FEW + (size_t)((double)left / (speed * cost));
+    return FEW + (size_t)((double)left / cost);
 }
 
-/* Returns whether changing `count` points one by one takes longer than building a triangulation of `left` points. */
+/* Returns whether making `count` changes takes longer than building a triangulation of `left` points. */
 static bool anew_is_faster(const brio_dynamic *d, size_t count, double cost, size_t left) {
-    return d->dimension < 3 || left < 8 || count > most_changes(d, cost, left);
+    return d->dimension < 3 || left < 8 || count > most_changes(cost, left);
 }
 
 enum { SORTED = 8 }; /* changes in a call that are worth an order */
 
-/* Lists points by their rows, so that near ones follow each other: the places in `indices` are the low halves. NULL for
- * few. */
-static brio_status order_by_row(brio_dynamic *d, const uint32_t *indices, size_t n, uint64_t **order) {
-    if (n < SORTED || !indices) return BRIO_OK;
-    BRIO_FORWARD(BRIO_ALLOC(d->ctx, *order, n));
-    for (size_t i = 0; i < n; i++) (*order)[i] = (uint64_t)d->row_of[indices[i]] << 32 | i;
-    return brio_sort_many_keys(d->ctx, *order, n);
-}
-
-static size_t at_place(const uint64_t *order, size_t i) {
-    return order ? (size_t)(order[i] & UINT32_MAX) : i;
+/* Lists places 0 to n - 1 of `indices` by the points' rows, so that near points follow each other. */
+static brio_status order_by_row(brio_dynamic *d, const uint32_t *indices, size_t n, uint32_t **place) {
+    brio_status status = BRIO_OK;
+    uint64_t *key = NULL;
+    BRIO_TRY(BRIO_ALLOC(d->ctx, *place, n));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, key, n));
+    for (size_t i = 0; i < n; i++) key[i] = (uint64_t)d->row_of[indices[i]] << 32 | i;
+    if (n >= SORTED) BRIO_TRY(brio_sort_many_keys(d->ctx, key, n));
+    for (size_t i = 0; i < n; i++) (*place)[i] = (uint32_t)(key[i] & UINT32_MAX);
+done:
+    brio_release(d->ctx, key);
+    return status;
 }
 
 /* --- insert --- */
@@ -92,37 +92,44 @@ static brio_status insert_anew(brio_dynamic *d, const double *points, const doub
         if (list.weight) list.weight[list.count] = record[3];
         list.name[list.count++] = (uint32_t)(d->num_names + i);
     }
-    status = brio_live_build(d, &list, d->num_names + n);
+    status = brio_live_build(d, &list, d->num_names + n, true);
     brio_live_list_free(d->ctx, &list);
     return status;
 }
 
-/* Inserts in the order of the curve. */
-static brio_status insert_each(brio_dynamic *d, const double *points, const double *weights, size_t n) {
-    brio_status status = BRIO_OK;
-    uint32_t *order = NULL, first = (uint32_t)d->num_names;
-    BRIO_TRY(brio_live_reserve_rows(d, n));
-    BRIO_TRY(brio_live_reserve_names(d, n));
-    BRIO_TRY(brio_journal_reserve(d, 0, n));
+/* Adds loose rows for points, in the order of the curve. Lists their names. */
+static brio_status add_rows(brio_dynamic *d, const double *points, const double *weights, size_t n, uint32_t *name) {
+    uint32_t first = (uint32_t)d->num_names;
+    BRIO_FORWARD(brio_live_reserve_rows(d, n));
+    BRIO_FORWARD(brio_live_reserve_names(d, n));
+    BRIO_FORWARD(brio_journal_reserve(d, 0, n));
+    for (size_t i = 0; i < n; i++) name[i] = (uint32_t)i;
     if (n >= SORTED) {
         brio_delaunay_options options = {.seed = 1};
-        BRIO_TRY(BRIO_ALLOC(d->ctx, order, n));
-        BRIO_TRY(brio_order_points(d->ctx, &(brio_input){points, weights, n}, &options, order, NULL, NULL, NULL));
+        BRIO_FORWARD(brio_order_points(d->ctx, &(brio_input){points, weights, n}, &options, name, NULL, NULL, NULL));
     }
     d->num_names += n;
     for (size_t i = 0; i < n; i++) d->row_of[first + i] = BRIO_NONE;
     for (size_t i = 0; i < n; i++) {
-        size_t at = order ? order[i] : i;
+        size_t at = name[i];
         double record[4];
         read_record(record, points, weights, at);
-        BRIO_REQUIRE(d->ctx, brio_all_finite(record, 4), BRIO_ERR_NOT_FINITE, "point %zu is not finite", at);
+        BRIO_EXPECT(d->ctx, brio_all_finite(record, 4), BRIO_ERR_NOT_FINITE, "point %zu is not finite", at);
         brio_live_admit(d, record);
-        BRIO_TRY(brio_journal_reserve(d, 0, 1));
-        BRIO_TRY(brio_live_place(d, brio_live_add_row(d, record, first + (uint32_t)at)));
-        BRIO_TRY(brio_look(d->ctx, 4));
+        name[i] = first + (uint32_t)at;
+        brio_live_rank(d, brio_live_add_row(d, record, name[i]));
     }
+    return BRIO_OK;
+}
+
+static brio_status insert_each(brio_dynamic *d, const double *points, const double *weights, size_t n) {
+    brio_status status = BRIO_OK;
+    uint32_t *name = NULL;
+    BRIO_TRY(BRIO_ALLOC(d->ctx, name, n));
+    BRIO_TRY(add_rows(d, points, weights, n, name));
+    status = brio_live_together(d, &(brio_batch){.kind = BRIO_BATCH_INSERT, .name = name, .count = n, .most = n});
 done:
-    brio_release(d->ctx, order);
+    brio_release(d->ctx, name);
     return status;
 }
 
@@ -182,7 +189,7 @@ static brio_status remove_anew(brio_dynamic *d, const uint32_t *indices, size_t 
         list.name[kept++] = list.name[i];
     }
     list.count = kept;
-    status = brio_live_build(d, &list, d->num_names);
+    status = brio_live_build(d, &list, d->num_names, true);
 done:
     brio_release(d->ctx, gone);
     brio_live_list_free(d->ctx, &list);
@@ -191,16 +198,13 @@ done:
 
 static brio_status remove_each(brio_dynamic *d, const uint32_t *indices, size_t n) {
     brio_status status = BRIO_OK;
-    uint64_t *order = NULL;
-    BRIO_TRY(order_by_row(d, indices, n, &order));
-    for (size_t i = 0; i < n; i++) {
-        uint32_t row = d->row_of[indices[at_place(order, i)]];
-        BRIO_TRY(brio_live_take(d, &row));
-        BRIO_TRY(brio_live_drop_row(d, row));
-        BRIO_TRY(brio_look(d->ctx, 4));
-    }
+    uint32_t *name = NULL;
+    BRIO_TRY(order_by_row(d, indices, n, &name));
+    for (size_t i = 0; i < n; i++) name[i] = indices[name[i]];
+    BRIO_TRY(brio_live_together(d, &(brio_batch){.kind = BRIO_BATCH_REMOVE, .name = name, .count = n, .most = n}));
+    for (size_t i = 0; i < n; i++) BRIO_TRY(brio_live_drop_row(d, d->row_of[name[i]]));
 done:
-    brio_release(d->ctx, order);
+    brio_release(d->ctx, name);
     return status;
 }
 
@@ -232,36 +236,52 @@ static brio_status move_anew(brio_dynamic *d, const brio_moves *m) {
         memcpy(list.point + 3 * at, record, 3 * sizeof *record);
         if (list.weight) list.weight[at] = record[3];
     }
-    status = brio_live_build(d, &list, d->num_names);
+    status = brio_live_build(d, &list, d->num_names, false);
 done:
     brio_release(d->ctx, place);
     brio_live_list_free(d->ctx, &list);
     return status;
 }
 
-/* Moves one by one. Asks for building anew where that is faster than to take out all that have to be. */
+/* Lists the names of all points. */
+static brio_status list_names(const brio_dynamic *d, uint32_t **name) {
+    size_t n = 0;
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, *name, d->counts.alive));
+    for (size_t i = 0; i < d->num_names; i++)
+        if (d->row_of[i] != BRIO_NONE) (*name)[n++] = (uint32_t)i;
+    return BRIO_OK;
+}
+
+/* Gives rows the rank of what is near them now. */
+static void rank_moved(brio_dynamic *d, const uint32_t *name, size_t n) {
+    for (size_t i = 0; i < n; i++) brio_live_rank(d, d->row_of[name[i]]);
+}
+
+/* Moves point by point. Asks for building anew where that is faster than to take out all that have to be. */
 static brio_status move_each(brio_dynamic *d, const brio_moves *m) {
-    uint64_t before = d->replaced, *order = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(order_by_row(d, m->indices, m->count, &order));
-    for (size_t i = 0, name = 0; i < m->count; i++, name++) {
-        size_t at = at_place(order, i);
+    uint32_t *all = NULL, *at = NULL, *name = NULL;
+    if (!m->indices) BRIO_TRY(list_names(d, &all));
+    const uint32_t *indices = m->indices ? m->indices : all;
+    BRIO_TRY(order_by_row(d, indices, m->count, &at));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, name, m->count));
+    for (size_t i = 0; i < m->count; i++) {
         double record[4];
-        if (m->indices)
-            name = m->indices[at];
-        else
-            while (d->row_of[name] == BRIO_NONE) name++;
-        BRIO_TRY(brio_new_record(d, m, at, (uint32_t)name, record));
-        BRIO_TRY(brio_live_move(d, (uint32_t)name, record));
-        BRIO_TRY(brio_look(d->ctx, 4));
-        if (i % 256 != 255) continue;
-        if (!anew_is_faster(d, (size_t)(d->replaced - before), REPLACE_COST, d->counts.alive)) continue;
-        d->needs_anew = true;
-        status = BRIO_ERR_INTERNAL; /* the caller takes the change back and builds anew */
-        goto done;
+        name[i] = indices[at[i]];
+        BRIO_TRY(brio_new_record(d, m, at[i], name[i], record));
+        brio_live_admit(d, record);
     }
+    BRIO_TRY(brio_live_together(d, &(brio_batch){.kind = BRIO_BATCH_MOVE,
+                                                 .name = name,
+                                                 .at = at,
+                                                 .moves = m,
+                                                 .count = m->count,
+                                                 .most = most_changes(REPLACE_COST, d->counts.alive)}));
+    rank_moved(d, name, m->count);
 done:
-    brio_release(d->ctx, order);
+    brio_release(d->ctx, all);
+    brio_release(d->ctx, at);
+    brio_release(d->ctx, name);
     return status;
 }
 
@@ -272,11 +292,18 @@ static bool are_many(const brio_dynamic *d, const brio_moves *m) {
     return d->counts.alive >= MANY && d->counts.alive == d->counts.vertices && m->count > d->counts.alive / 8;
 }
 
+/* Returns how many rows may be taken out and put in again, by one thread, before building anew by all is faster. */
+static size_t most_repairs(const brio_dynamic *d) {
+    int threads = brio_context_threads(d->ctx);
+    double speed = 0.35 + 0.65 * (threads > 1 && d->counts.alive > 4096 ? threads : 1); /* of building, by threads */
+    return most_changes(speed * REPLACE_COST, d->counts.alive);
+}
+
 static brio_status move_together(brio_dynamic *d, const brio_moves *m) {
     brio_paths paths;
     brio_status status = brio_paths_new(d, m, &paths);
     if (status != BRIO_OK) return status;
-    status = brio_live_move_many(d, &paths, most_changes(d, REPLACE_COST, d->counts.alive));
+    status = brio_live_move_many(d, &paths, most_repairs(d));
     brio_paths_free(d->ctx, &paths);
     return status;
 }

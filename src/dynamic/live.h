@@ -12,8 +12,8 @@
  * Between changes:
  * L1  home[r] is a tetrahedron of vertex r; of a hidden row, the finite tetrahedron that holds it and that it does not
  *     conflict with; of a twin, the vertex at its position.
- * L2  hidden[s] is the first of the hidden rows whose home is slot s; `twins` of a vertex' row is the first of its
- *     twins; next and prev lead through such a list.
+ * L2  hidden[s], with weights, is the first of the hidden rows whose home is slot s; `twins` of a vertex' row is the
+ *     first of its twins; next and prev lead through such a list.
  * L3  A vertex is at least as heavy as each of its twins, and has the least name among those of its weight. So the
  *     vertices are those that brio_delaunay would choose.
  * L4  In an input of dimension 2 or less there are no tetrahedra, and every row that is alive is loose.
@@ -22,14 +22,25 @@
  *     facet that it shares with a finite tetrahedron of higher number is in conflict with it. until[s] is below 0
  *     where a test has to say so (slack.c).
  *
- * A change is a transaction: every slot and every row is copied into the journal before it is first written. Where
- * memory runs out, the caller cancels, or a change needs another way, the journal is written back (journal.c). So no
- * step of a change needs to know whether a later one can fail. */
+ * In a pass (together.c) each thread has a hand: a brio_dynamic with hole, lists, journal, filter and counts of its
+ * own, which shares the arrays of rows and slots. A hand holds a zone (zone.h):
+ * L6  The hand that holds all finite vertices of a tetrahedron writes its slot, state and list. The mate at a facet is
+ *     written by the hand that destroys the tetrahedron on one of its sides.
+ * L7  The hand that holds a vertex writes its home, number, kind and row; its record, if it also holds all finite
+ *     vertices of its star. Decision 030 is the proof that no other hand reads it then.
+ * L8  Hidden rows, twins, holes that are large and rows that are no vertices any more are left to one thread.
+ * L9  Times (until) and hints are written by any hand, atomically: times that are over, and hints that may be stale.
+ *
+ * A change is a transaction: every slot is copied into the journal before its tetrahedron or its list is first changed,
+ * every row before it is first written; mates across the border of a hole are not (journal.c). Where memory runs out,
+ * the caller cancels, or a change needs another way, the journal is written back. So no step of a change needs to know
+ * whether a later one can fail. */
 #ifndef BRIO_DYNAMIC_LIVE_H
 #define BRIO_DYNAMIC_LIVE_H
 
 #include "brio/dynamic.h"
 #include "triangulation/engine.h"
+#include "triangulation/passes.h"
 #include "triangulation/tetrahedra.h"
 
 enum { BRIO_NONE = UINT32_MAX };
@@ -48,8 +59,9 @@ typedef struct {
 
 /** A slot and a row, as they were before the transaction. */
 typedef struct {
-    brio_tetrahedron tet;
+    brio_tetrahedron tet; /* mates: as when it was copied */
     uint32_t slot, hidden;
+    uint32_t stamp; /* of the hole that it was in */
     uint8_t state;
 } brio_old_slot;
 
@@ -65,12 +77,15 @@ typedef struct {
     size_t alive, vertices, finite, infinite;
 } brio_live_counts;
 
-typedef struct {
+typedef struct brio_journal {
     brio_old_slot *slot;
     brio_old_row *row;
     size_t num_slots, slot_capacity, num_rows, row_capacity;
     size_t slots_before, rows_before, names_before; /* numbers of them when the transaction began */
     brio_live_counts counts;
+    uint32_t stamp;            /* of the last hole */
+    uint32_t *time;            /* the last stamp that was given out; of all hands */
+    struct brio_journal *more; /* those of threads of a pass */
 } brio_journal;
 
 /** The tetrahedra that a change takes out, the outer sides of their border, and the rows of the border's vertices by
@@ -109,6 +124,7 @@ struct brio_dynamic {
     brio_record *record;
     brio_live_row *row;
     uint32_t *home, *number;
+    uint32_t *rank; /* of each row: near vertices have near ranks, whose segments threads hold */
     uint8_t *kind;
     size_t num_rows, row_capacity;
     uint32_t *free_row;
@@ -120,6 +136,7 @@ struct brio_dynamic {
     uint8_t *state;
     uint32_t *hidden;
     float *until; /* of each slot: L5 */
+    bool timed;   /* some may be 0 or above */
     double travelled;
     size_t capacity;
     uint32_t *unused;
@@ -141,6 +158,9 @@ struct brio_dynamic {
     brio_journal journal;
     bool in_transaction, needs_anew; /* needs_anew: the change can only be made by building anew */
     uint64_t in_place, replaced, anew;
+
+    brio_zone *zone;      /* of a hand (together.c); NULL: alone */
+    brio_attempt attempt; /* what a hand cannot do, and nothing has changed; BRIO_TRIED: it can, or it is alone */
 };
 
 /* OUT[s]: the slots other than s, so that (x, OUT[s]) is positive for x on the other side of facet s; slot 3, which
@@ -151,19 +171,41 @@ static const uint8_t BRIO_OUT[4][3] = {{2, 1, 3}, {0, 2, 3}, {1, 0, 3}, {0, 1, 2
 
 /** Begins a transaction. */
 void brio_live_begin(brio_dynamic *d);
-/** Ends it: keeps the changes if the status is BRIO_OK, else takes all of them back. Returns the status. */
+/** Ends it: keeps the changes if the status is BRIO_OK, else takes all of them back. Returns the status. After another
+ *  failure than BRIO_ERR_INTERNAL needs_anew is false: a call that was cancelled, say, has failed. */
 brio_status brio_live_end(brio_dynamic *d, brio_status status);
 /** Makes room in the journal for a number of slots and rows. */
 brio_status brio_journal_reserve(brio_dynamic *d, size_t slots, size_t rows);
+/** Begins a hole: what is noted from now on has a later stamp than what other hands noted in holes that this one
+ *  meets. */
+void brio_journal_stamp(brio_dynamic *d);
+/** Gives the journal of a hand to d, whose change it is part of. `node` is empty, and d's then. */
+void brio_journal_give(brio_dynamic *d, brio_journal *hand, brio_journal *node);
+
+/** Ends the time (L5) of a tetrahedron. In a pass several threads may do that at once. */
+static inline void brio_end_time(brio_dynamic *d, uint32_t slot) {
+    static const float OVER = -1;
+    if (!d->timed) return;
+    __atomic_store(&d->until[slot], &OVER, __ATOMIC_RELAXED);
+}
+
+/** Returns the first hidden row of a slot. Without weights there are none, and no array. */
+static inline uint32_t brio_first_hidden(const brio_dynamic *d, uint32_t slot) {
+    return d->hidden ? d->hidden[slot] : BRIO_NONE;
+}
+static inline void brio_set_first_hidden(brio_dynamic *d, uint32_t slot, uint32_t row) {
+    assert(d->hidden || row == BRIO_NONE);
+    if (d->hidden) d->hidden[slot] = row;
+}
 
 /** Notes a slot, or a row, before it is written; room was reserved. */
 static inline void brio_note_slot(brio_dynamic *d, uint32_t slot) {
     brio_journal *j = &d->journal;
-    d->until[slot] = -1;
+    brio_end_time(d, slot);
     if (slot >= j->slots_before || d->state[slot] & SLOT_NOTED) return;
     assert(j->num_slots < j->slot_capacity);
-    j->slot[j->num_slots++] =
-        (brio_old_slot){d->t.tet[slot], slot, d->hidden[slot], d->state[slot] & (uint8_t)~SLOT_HOLE};
+    j->slot[j->num_slots++] = (brio_old_slot){d->t.tet[slot], slot, brio_first_hidden(d, slot), j->stamp,
+                                              d->state[slot] & (uint8_t)~SLOT_HOLE};
     d->state[slot] |= SLOT_NOTED;
 }
 static inline void brio_note_row(brio_dynamic *d, uint32_t row) {
@@ -174,6 +216,18 @@ static inline void brio_note_row(brio_dynamic *d, uint32_t row) {
     *old = (brio_old_row){{0}, d->row[row], row, d->home[row], d->kind[row]};
     for (int c = 0; c < 4; c++) old->record[c] = d->record[row][c];
     d->kind[row] |= ROW_NOTED;
+}
+
+/** Asks whether to stop, as brio_look; a hand does not, since what it does is small. */
+static inline brio_status brio_live_look(brio_dynamic *d, size_t items) {
+    return d->zone ? BRIO_OK : brio_look(d->ctx, items);
+}
+
+/** Says that a hand cannot do what it is at. */
+static inline brio_status brio_give_up(brio_dynamic *d, brio_attempt why) {
+    assert(d->zone && why != BRIO_TRIED);
+    d->attempt = why;
+    return BRIO_OK;
 }
 
 static inline int brio_row_kind(const brio_dynamic *d, uint32_t row) {
@@ -213,8 +267,15 @@ brio_status brio_live_refresh_hints(brio_dynamic *d);
 void brio_live_hint(brio_dynamic *d, uint32_t row);
 /** Makes another vertex, which is near, the hint where it is a vertex that goes. */
 void brio_live_unhint(brio_dynamic *d, uint32_t row, uint32_t other);
-/** Sets the start of the next walk to a tetrahedron near x. */
+/** Sets the start of the next walk to a tetrahedron near x. A hand may find none that it holds (attempt). */
 void brio_live_approach(brio_dynamic *d, const double *x);
+/** Gives a row that is loose the rank of a vertex near its record (alone). */
+void brio_live_rank(brio_dynamic *d, uint32_t row);
+/** Makes the start of walks a tetrahedron, where that may be gone (alone). */
+void brio_live_start(brio_dynamic *d);
+/** Makes the workspace of changes; frees it. */
+brio_status brio_live_equip(brio_dynamic *d);
+void brio_live_strip(brio_dynamic *d);
 
 /** Numbers the vertices of the hole's border, and fills corner. */
 void brio_hole_number(brio_dynamic *d);
@@ -226,7 +287,8 @@ brio_status brio_edges_ready(brio_dynamic *d, size_t num_vertices, size_t num_ed
 void brio_edges_enter(brio_dynamic *d, uint32_t x, uint32_t y, uint32_t value);
 uint32_t brio_edges_find(const brio_dynamic *d, uint32_t x, uint32_t y);
 /** Lists `count` slots for new tetrahedra in hole.fresh, those of the hole first, and makes all that are left unused.
- *  Hidden rows of the hole become loose. The slots and those behind the border are in the journal afterwards. */
+ *  Hidden rows of the hole become loose. The slots are in the journal afterwards, and the time of the
+ *  tetrahedra behind the border is over. */
 brio_status brio_hole_take_slots(brio_dynamic *d, size_t count);
 
 /* --- place.c --- */
@@ -235,7 +297,8 @@ brio_status brio_hole_take_slots(brio_dynamic *d, size_t count);
 brio_status brio_live_hide(brio_dynamic *d, uint32_t row, uint32_t slot);
 brio_status brio_live_join(brio_dynamic *d, uint32_t row, uint32_t vertex);
 brio_status brio_live_unlink(brio_dynamic *d, uint32_t row);
-/** Finds its place for a loose row: it becomes a vertex, hidden, or a twin. */
+/** Finds its place for a loose row: it becomes a vertex, hidden, or a twin. Like the three functions that follow and
+ *  brio_live_move, it may be called of a hand, which looks at `attempt` afterwards. */
 brio_status brio_live_place(brio_dynamic *d, uint32_t row);
 
 /* --- take.c --- */
@@ -250,6 +313,9 @@ brio_status brio_live_star(brio_dynamic *d, uint32_t row);
 brio_status brio_hole_mend(brio_dynamic *d, bool *mended);
 /** Forgets the hole. */
 void brio_hole_forget(brio_dynamic *d);
+
+/** Returns whether some tetrahedron of the hole has hidden rows. */
+bool brio_hole_has_hidden(const brio_dynamic *d);
 
 /* --- slack.c --- */
 
@@ -312,6 +378,25 @@ enum { BRIO_LINK_MOST = 62, BRIO_LINK_TETS = 2048 }; /* finite vertices; tetrahe
 /** Gives a row another record: in place where its star stays valid, else out and in. */
 brio_status brio_live_move(brio_dynamic *d, uint32_t name, const double *record);
 
+/* --- together.c --- */
+
+/** What is done with many rows. */
+typedef enum { BRIO_BATCH_INSERT, BRIO_BATCH_REMOVE, BRIO_BATCH_MOVE } brio_batch_kind;
+
+typedef struct {
+    brio_batch_kind kind;
+    const uint32_t
+        *name;          /* of loose rows that are to be placed, of others to be taken out or moved; near ones in turn */
+    const uint32_t *at; /* of each that is to be moved: its place among the moves; NULL: the same */
+    const brio_moves *moves;
+    size_t count;
+    size_t most; /* rows that may be taken out and put in again before building anew is faster */
+} brio_batch;
+
+/** Makes the changes of a batch, with all threads of the context. Rows that were taken out are loose afterwards; the
+ *  filter's box holds the records of those that are placed or moved. Sets needs_anew, and fails, beyond `most`. */
+brio_status brio_live_together(brio_dynamic *d, const brio_batch *batch);
+
 /* --- move_many.c --- */
 
 /** Gives all rows, which are vertices, their new records; the array is exchanged with that of the store. Sets
@@ -330,8 +415,9 @@ typedef struct {
 /** Lists the points that are alive, by ascending name, with room for `more`. */
 brio_status brio_live_list(brio_context *ctx, const brio_dynamic *d, size_t more, brio_live_points *out);
 void brio_live_list_free(brio_context *ctx, brio_live_points *list);
-/** Builds all of it anew from these points, with num_names names given out. On failure d is as it was. */
-brio_status brio_live_build(brio_dynamic *d, const brio_live_points *list, size_t num_names);
+/** Builds all of it anew from these points, with num_names names given out. On failure d is as it was.
+ *  sorted  near tetrahedra shall be near in memory, for many changes: a sixth more work. */
+brio_status brio_live_build(brio_dynamic *d, const brio_live_points *list, size_t num_names, bool sorted);
 /** Frees what a store has, not the store. */
 void brio_live_clear(brio_dynamic *d);
 

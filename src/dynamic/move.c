@@ -51,20 +51,13 @@ static bool is_valid(brio_dynamic *d) {
     return true;
 }
 
-/* Returns whether some tetrahedron of the hole has hidden rows. */
-static bool has_hidden(const brio_dynamic *d) {
-    for (size_t i = 0; i < d->hole.num_tets; i++)
-        if (d->hidden[d->hole.tet[i]] != BRIO_NONE) return true;
-    return false;
-}
-
 /* Writes the record of a vertex in place; false, and nothing is changed, where its star would not be valid. */
 static brio_status in_place(brio_dynamic *d, uint32_t row, const double *record, bool *done) {
     double before[4];
     *done = false;
     if (brio_row_kind(d, row) != ROW_VERTEX || d->row[row].twins != BRIO_NONE) return BRIO_OK;
     BRIO_FORWARD(brio_live_star(d, row));
-    if (!has_hidden(d)) {
+    if (!d->attempt && !brio_hole_has_hidden(d)) {
         memcpy(before, d->record[row], sizeof before);
         memcpy(d->record[row], record, sizeof before);
         *done = is_valid(d);
@@ -80,6 +73,7 @@ static brio_status in_place(brio_dynamic *d, uint32_t row, const double *record,
 brio_status brio_live_move(brio_dynamic *d, uint32_t name, const double *record) {
     uint32_t row = d->row_of[name];
     bool done;
+    if (brio_row_kind(d, row) == ROW_LOOSE) return brio_live_place(d, row); /* a hand has taken it out */
     if (memcmp(d->record[row], record, sizeof(brio_record)) == 0) {
         d->in_place++;
         return BRIO_OK;
@@ -88,11 +82,10 @@ brio_status brio_live_move(brio_dynamic *d, uint32_t name, const double *record)
     brio_live_admit(d, record);
     brio_note_row(d, row);
     BRIO_FORWARD(in_place(d, row, record, &done));
-    if (done) {
-        d->in_place++;
-        return BRIO_OK;
-    }
+    d->in_place += done;
+    if (done || d->attempt) return BRIO_OK;
     BRIO_FORWARD(brio_live_take(d, &row));
+    if (d->attempt) return BRIO_OK;
     BRIO_FORWARD(brio_journal_reserve(d, 0, 1));
     brio_note_row(d, row);
     memcpy(d->record[row], record, sizeof(brio_record));

@@ -363,8 +363,8 @@ brio_status brio_live_move_many(brio_dynamic *d, brio_paths *paths, size_t most)
     if (status == BRIO_OK) status = move_back_again(&s);
     if (status == BRIO_OK) d->in_place += paths->moved - s.num_back;
     if (status != BRIO_OK) {
-        bool anew = d->needs_anew && status == BRIO_ERR_INTERNAL; /* no other failure becomes a success */
         status = brio_live_end(d, status); /* what moved one by one goes back first, then what moved together */
+        bool anew = d->needs_anew;
         exchange(d, &paths->record);
         brio_slack_end_all(d);
         brio_live_begin(d);

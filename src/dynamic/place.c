@@ -80,8 +80,28 @@ static inline size_t leave(brio_dynamic *d, uint32_t tet, size_t n) {
     return n;
 }
 
+/* Adds the tetrahedra of those facets that are in conflict to the hole, each once, and the other facets to the border.
+ * Returns false where the hand does not hold one of them. */
+static inline bool divide(brio_dynamic *d, const uint32_t *facet, size_t count, unsigned conflicts) {
+    brio_hole *h = &d->hole;
+    uint8_t *state = d->state;
+    for (size_t i = 0; i < count; i++) {
+        h->border[h->num_border] = facet[i];
+        h->num_border += !(conflicts >> i & 1);
+    }
+    for (; conflicts; conflicts &= conflicts - 1) {
+        uint32_t in = facet[__builtin_ctz(conflicts)], tet = brio_tet_of(in);
+        if (!brio_owns_beyond(&d->t, d->zone, in)) return false;
+        h->tet[h->num_tets] = tet;
+        h->num_tets += !(state[tet] & SLOT_HOLE);
+        state[tet] |= SLOT_HOLE;
+    }
+    return true;
+}
+
 /* Finds all tetrahedra in conflict with a record, from one of them, and their border. */
 static brio_status dig(brio_dynamic *d, uint32_t first, const double *p) {
+    enum { MOST_OF_HAND = 4096 };
     brio_hole *h = &d->hole;
     size_t expanded = 0, tested = 0, listed = 0;
     h->tet[0] = first;
@@ -95,22 +115,17 @@ static brio_status dig(brio_dynamic *d, uint32_t first, const double *p) {
         uint32_t *facet = h->outer + tested;
         for (size_t i = count; i < BRIO_BATCH; i++) facet[i] = facet[0];
         unsigned conflicts = d->engine->conflicts(&d->t, &d->filter, facet, count, p);
-        for (size_t i = 0; i < count; i++) {
-            uint32_t tet = brio_tet_of(facet[i]), in = conflicts >> i & 1;
-            h->border[h->num_border] = facet[i];
-            h->num_border += !in;
-            h->tet[h->num_tets] = tet;
-            h->num_tets += in & !brio_in_hole(d, tet);
-            d->state[tet] |= (uint8_t)(in ? SLOT_HOLE : 0);
-        }
+        if (!divide(d, facet, count, conflicts)) return brio_give_up(d, BRIO_TRY_LATER);
         tested += count;
         if (h->num_tets + 2 * BRIO_BATCH <= h->capacity) continue;
+        if (d->zone && h->num_tets > MOST_OF_HAND) return brio_give_up(d, BRIO_TRY_ALONE);
         BRIO_FORWARD(brio_hole_reserve(d, h->num_tets + 2 * BRIO_BATCH + 1));
-        BRIO_FORWARD(brio_look(d->ctx, h->num_tets));
+        BRIO_FORWARD(brio_live_look(d, h->num_tets));
     }
 }
 
-/* Lists the vertices of the hole that are not on its border as loose rows, where weights may leave some. */
+/* Lists the vertices of the hole that are not on its border as loose rows, where weights may leave some. A hand leaves
+ * such a hole. */
 static brio_status list_lost(brio_dynamic *d) {
     const brio_hole *h = &d->hole;
     for (size_t i = 0; i < h->num_tets; i++)
@@ -119,6 +134,7 @@ static brio_status list_lost(brio_dynamic *d) {
             if (v == 0 || (d->number[v] < h->num_vertices && h->vertex[d->number[v]] == v) ||
                 brio_row_kind(d, v) != ROW_VERTEX)
                 continue;
+            if (d->zone) return brio_give_up(d, BRIO_TRY_ALONE);
             BRIO_FORWARD(brio_live_reserve_loose(d, 1));
             BRIO_FORWARD(brio_journal_reserve(d, 0, 1));
             brio_note_row(d, v);
@@ -139,7 +155,8 @@ static void write_star(brio_dynamic *d, uint32_t row) {
         const uint32_t *c = h->corner + 3 * b;
         uint32_t *v = tets[slot].vertex;
         v[0] = row, v[1] = h->vertex[c[0]], v[2] = h->vertex[c[1]], v[3] = h->vertex[c[2]];
-        d->home[v[1]] = d->home[v[2]] = d->home[v[3]] = slot;
+        d->home[v[1]] = d->home[v[2]] = slot;
+        if (v[3]) d->home[v[3]] = slot; /* the infinite vertex is everybody's */
         infinite += v[3] == 0;
         tets[slot].mate[0] = facet;
         *brio_mate(&d->t, facet) = brio_facet_of(slot, 0);
@@ -180,7 +197,7 @@ static brio_status absorb(brio_dynamic *d, uint32_t row, uint32_t v) {
 }
 
 static uint32_t walk_to(brio_dynamic *d, const double *p) {
-    return d->engine->walk(&d->t, NULL, &d->filter, &d->walk, p, UINT64_MAX);
+    return d->engine->walk(&d->t, d->zone, &d->filter, &d->walk, p, UINT64_MAX);
 }
 
 /* Finds a place for a loose row that is no vertex: what hid it still does, or the star that was written last does. */
@@ -201,8 +218,29 @@ static brio_status settle_loose(brio_dynamic *d, size_t base) {
             BRIO_FORWARD(settle(d, twin));
         }
         BRIO_FORWARD(settle(d, row));
-        BRIO_FORWARD(brio_look(d->ctx, 16));
+        BRIO_FORWARD(brio_live_look(d, 16));
     }
+    return BRIO_OK;
+}
+
+/* Makes a loose row a vertex, whose record is in conflict with a tetrahedron. */
+static brio_status become_vertex(brio_dynamic *d, uint32_t row, uint32_t tet) {
+    brio_hole *h = &d->hole;
+    BRIO_FORWARD(dig(d, tet, d->record[row]));
+    if (d->attempt) return BRIO_OK;
+    if (d->zone && brio_hole_has_hidden(d)) return brio_give_up(d, BRIO_TRY_ALONE);
+    brio_hole_number(d);
+    BRIO_FORWARD(brio_edges_ready(d, h->num_vertices, 3 * h->num_border));
+    BRIO_FORWARD(brio_journal_reserve(d, 0, 1));
+    if (d->weighted) BRIO_FORWARD(list_lost(d));
+    if (!d->attempt) BRIO_FORWARD(brio_hole_take_slots(d, h->num_border));
+    if (d->attempt) return BRIO_OK;
+    brio_note_row(d, row);
+    write_star(d, row);
+    h->num_tets = h->num_border = 0;
+    brio_set_kind(d, row, ROW_VERTEX);
+    d->counts.vertices++;
+    brio_live_hint(d, row);
     return BRIO_OK;
 }
 
@@ -210,25 +248,19 @@ brio_status brio_live_place(brio_dynamic *d, uint32_t row) {
     const double *p = d->record[row];
     size_t base = d->num_loose;
     assert(brio_row_kind(d, row) == ROW_LOOSE && d->dimension == 3);
+    assert(!d->zone || brio_zone_holds(d->zone, row)); /* L7 */
     brio_live_approach(d, p);
-    uint32_t tet = walk_to(d, p);
+    uint32_t tet = d->attempt ? BRIO_NO_TET : walk_to(d, p);
+    if (tet == BRIO_NO_TET) return brio_give_up(d, BRIO_TRY_LATER);
     if (!brio_is_infinite(&d->t, tet)) {
         uint32_t v = vertex_at(d, tet, p);
+        bool hidden = !v && d->weighted && !brio_in_conflict(&d->t, &d->filter, tet, p, true);
+        if (d->zone && (v || hidden)) return brio_give_up(d, BRIO_TRY_ALONE);
         d->walk.start = tet;
         if (v && !(d->weighted && p[3] > d->record[v][3])) return absorb(d, row, v);
-        if (d->weighted && !brio_in_conflict(&d->t, &d->filter, tet, p, true)) return brio_live_hide(d, row, tet);
+        if (hidden) return brio_live_hide(d, row, tet);
     }
-    BRIO_FORWARD(dig(d, tet, p));
-    brio_hole_number(d);
-    BRIO_FORWARD(brio_edges_ready(d, d->hole.num_vertices, 3 * d->hole.num_border));
-    BRIO_FORWARD(brio_journal_reserve(d, 0, 1));
-    if (d->weighted) BRIO_FORWARD(list_lost(d));
-    BRIO_FORWARD(brio_hole_take_slots(d, d->hole.num_border));
-    brio_note_row(d, row);
-    write_star(d, row);
-    d->hole.num_tets = d->hole.num_border = 0;
-    brio_set_kind(d, row, ROW_VERTEX);
-    d->counts.vertices++;
-    brio_live_hint(d, row);
+    BRIO_FORWARD(become_vertex(d, row, tet));
+    if (d->attempt) brio_hole_forget(d);
     return settle_loose(d, base);
 }

@@ -18,11 +18,12 @@ enum { LEAST = 1 << 14 }; /* slots that are worth a thread */
 
 void brio_slack_end(brio_dynamic *d) {
     const brio_hole *h = &d->hole;
-    for (size_t i = 0; i < h->num_tets; i++) d->until[h->tet[i]] = -1;
-    for (size_t b = 0; b < h->num_border; b++) d->until[brio_tet_of(h->border[b])] = -1;
+    for (size_t i = 0; i < h->num_tets; i++) brio_end_time(d, h->tet[i]);
+    for (size_t b = 0; b < h->num_border; b++) brio_end_time(d, brio_tet_of(h->border[b]));
 }
 
 void brio_slack_end_all(brio_dynamic *d) {
+    d->timed = false;
     for (size_t s = 0; s < d->t.count; s++) d->until[s] = -1;
 }
 
@@ -125,6 +126,7 @@ brio_status brio_slack_test(brio_dynamic *d, brio_slot_list *open, brio_slot_lis
     test_pass own = {.d = d, .status = BRIO_OK};
     brio_status status = BRIO_OK;
     *open = *infinite = (brio_slot_list){0};
+    d->timed = true;
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, own.open, 2 * (size_t)threads));
     own.infinite = own.open + threads;
     BRIO_TRY(brio_for(d->ctx, threads, d->t.count, test_part, &own));

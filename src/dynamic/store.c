@@ -21,6 +21,8 @@ brio_status brio_live_reserve_rows(brio_dynamic *d, size_t more) {
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->row, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->home, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->number, capacity));
+    BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->rank, capacity));
+    for (size_t r = d->row_capacity; r < capacity; r++) d->rank[r] = (uint32_t)r;
     memset(d->number + d->row_capacity, 0, (capacity - d->row_capacity) * sizeof *d->number);
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->kind, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->free_row, capacity));
@@ -42,7 +44,7 @@ brio_status brio_live_reserve_slots(brio_dynamic *d, size_t more) {
     if (capacity > MOST) capacity = MOST;
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->t.tet, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->state, capacity));
-    BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->hidden, capacity));
+    if (d->weighted) BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->hidden, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->until, capacity));
     BRIO_FORWARD(BRIO_RESIZE(d->ctx, d->unused, capacity));
     d->capacity = d->unused_capacity = capacity;
@@ -68,11 +70,12 @@ brio_status brio_hole_reserve_fresh(brio_dynamic *d, size_t count) {
 }
 
 brio_status brio_live_reserve_loose(brio_dynamic *d, size_t more) {
+    assert(!d->zone); /* L8 */
     return BRIO_RESERVE(d->ctx, d->loose, d->loose_capacity, d->num_loose + more);
 }
 
 brio_status brio_live_new(brio_context *ctx, bool weighted, brio_dynamic **out) {
-    enum { FIRST_ROWS = 64, FIRST_TETS = 64 };
+    enum { FIRST_ROWS = 64 };
     brio_dynamic *d = NULL;
     brio_status status = BRIO_OK;
     *out = NULL;
@@ -82,6 +85,7 @@ brio_status brio_live_new(brio_context *ctx, bool weighted, brio_dynamic **out) 
     d->dimension = -1;
     d->engine = brio_engine_choose(weighted);
     d->num_rows = 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d->journal.time, 1));
     BRIO_TRY(brio_live_reserve_rows(d, FIRST_ROWS));
     d->num_rows = 1;
     d->record[0][0] = d->record[0][1] = d->record[0][2] = 0;
@@ -89,9 +93,7 @@ brio_status brio_live_new(brio_context *ctx, bool weighted, brio_dynamic **out) 
     d->row[0] = (brio_live_row){BRIO_NONE, BRIO_NONE, BRIO_NONE, BRIO_NONE};
     d->kind[0] = ROW_VERTEX;
     d->home[0] = 0;
-    BRIO_TRY(brio_hole_reserve(d, FIRST_TETS));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d->edges.direct, DIRECT * DIRECT));
-    BRIO_TRY(brio_link_new(ctx, &d->link));
+    BRIO_TRY(brio_live_equip(d));
     *out = d;
     d = NULL;
 done:
@@ -99,14 +101,29 @@ done:
     return status;
 }
 
+brio_status brio_live_equip(brio_dynamic *d) {
+    enum { FIRST_TETS = 64 };
+    BRIO_FORWARD(brio_hole_reserve(d, FIRST_TETS));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(d->ctx, d->edges.direct, DIRECT * DIRECT));
+    return brio_link_new(d->ctx, &d->link);
+}
+
+static void release_all(brio_context *ctx, void *const *blocks, size_t count) {
+    for (size_t i = 0; i < count; i++) brio_release(ctx, blocks[i]);
+}
+
+void brio_live_strip(brio_dynamic *d) {
+    void *blocks[] = {d->hole.tet,    d->hole.border,  d->hole.outer,   d->hole.fresh,  d->hole.vertex,
+                      d->hole.corner, d->edges.direct, d->edges.key,    d->edges.value, d->link,
+                      d->loose,       d->unused,       d->journal.slot, d->journal.row};
+    release_all(d->ctx, blocks, sizeof blocks / sizeof *blocks);
+}
+
 void brio_live_clear(brio_dynamic *d) {
-    brio_context *ctx = d->ctx;
-    void *blocks[] = {d->record,       d->row,          d->home,        d->number,      d->kind,       d->free_row,
-                      d->row_of,       d->t.tet,        d->state,       d->hidden,      d->until,      d->unused,
-                      d->hints.row,    d->hole.tet,     d->hole.border, d->hole.outer,  d->hole.fresh, d->hole.vertex,
-                      d->hole.corner,  d->edges.direct, d->edges.key,   d->edges.value, d->link,       d->loose,
-                      d->journal.slot, d->journal.row};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) brio_release(ctx, blocks[i]);
+    void *blocks[] = {d->record, d->row,   d->home,  d->number, d->rank,  d->kind,      d->free_row,
+                      d->row_of, d->t.tet, d->state, d->hidden, d->until, d->hints.row, d->journal.time};
+    brio_live_strip(d);
+    release_all(d->ctx, blocks, sizeof blocks / sizeof *blocks);
 }
 
 /* --- rows --- */
@@ -228,13 +245,21 @@ brio_status brio_live_refresh_hints(brio_dynamic *d) {
 }
 
 void brio_live_hint(brio_dynamic *d, uint32_t row) {
-    if (d->hints.row) d->hints.row[cell_of(&d->hints, d->record[row])] = row;
+    if (d->hints.row) __atomic_store_n(&d->hints.row[cell_of(&d->hints, d->record[row])], row, __ATOMIC_RELAXED);
 }
 
 void brio_live_unhint(brio_dynamic *d, uint32_t row, uint32_t other) {
     if (!d->hints.row) return;
     uint32_t *hint = &d->hints.row[cell_of(&d->hints, d->record[row])];
-    if (*hint == row) *hint = other;
+    if (__atomic_load_n(hint, __ATOMIC_RELAXED) == row) __atomic_store_n(hint, other, __ATOMIC_RELAXED);
+}
+
+/* Returns a vertex near x, or BRIO_NONE. A hand then holds it. */
+static uint32_t hint_near(brio_dynamic *d, const double *x) {
+    if (!d->hints.row) return BRIO_NONE;
+    uint32_t hint = __atomic_load_n(&d->hints.row[cell_of(&d->hints, x)], __ATOMIC_RELAXED);
+    if (hint == BRIO_NONE || hint >= d->num_rows || (d->zone && !brio_zone_has(d->zone, hint))) return BRIO_NONE;
+    return brio_row_kind(d, hint) == ROW_VERTEX ? hint : BRIO_NONE;
 }
 
 static double square_distance(const double *p, const double *q) {
@@ -243,12 +268,27 @@ static double square_distance(const double *p, const double *q) {
 }
 
 void brio_live_approach(brio_dynamic *d, const double *x) {
-    uint32_t start = brio_walk_begin(&d->t, &d->walk), near = d->t.tet[start].vertex[0];
-    d->walk.start = start;
-    if (!d->hints.row) return;
-    uint32_t hint = d->hints.row[cell_of(&d->hints, x)];
-    if (hint == BRIO_NONE || hint >= d->num_rows || brio_row_kind(d, hint) != ROW_VERTEX) return;
-    if (square_distance(d->record[hint], x) < square_distance(d->record[near], x)) d->walk.start = d->home[hint];
+    uint32_t hint = hint_near(d, x);
+    if (d->walk.start != BRIO_NO_TET) {
+        assert(!(d->state[d->walk.start] & SLOT_UNUSED) && brio_zone_holds_tet(&d->t, d->zone, d->walk.start));
+        uint32_t start = brio_walk_begin(&d->t, &d->walk), near = d->t.tet[start].vertex[0];
+        if (!d->zone) d->walk.start = start; /* a hand holds walk.start, perhaps not the tetrahedron next to it */
+        if (hint == BRIO_NONE || square_distance(d->record[hint], x) >= square_distance(d->record[near], x)) return;
+    }
+    if (hint != BRIO_NONE && brio_owns(&d->t, d->zone, d->home[hint])) d->walk.start = d->home[hint];
+    if (d->walk.start == BRIO_NO_TET) d->attempt = BRIO_TRY_LATER;
+}
+
+void brio_live_rank(brio_dynamic *d, uint32_t row) {
+    uint32_t hint = hint_near(d, d->record[row]);
+    assert(!d->zone);
+    if (hint != BRIO_NONE) d->rank[row] = d->rank[hint];
+}
+
+void brio_live_start(brio_dynamic *d) {
+    assert(!d->zone && d->dimension == 3);
+    for (uint32_t r = 1; d->state[d->walk.start] & SLOT_UNUSED; r++)
+        if (brio_row_kind(d, r) == ROW_VERTEX) d->walk.start = d->home[r];
 }
 
 /* --- holes --- */
@@ -262,7 +302,7 @@ void brio_hole_forget(brio_dynamic *d) {
 void brio_hole_number(brio_dynamic *d) {
     brio_hole *h = &d->hole;
     uint32_t *number = d->number, *vertex = h->vertex, n = 1;
-    vertex[0] = number[0] = 0;
+    vertex[0] = 0; /* and number[0] is 0 */
     for (size_t b = 0; b < h->num_border; b++) {
         const uint32_t *v = d->t.tet[brio_tet_of(h->border[b])].vertex;
         const uint8_t *out = BRIO_OUT[brio_slot_of(h->border[b])];
@@ -334,7 +374,7 @@ uint32_t brio_edges_find(const brio_dynamic *d, uint32_t x, uint32_t y) {
 static brio_status set_loose(brio_dynamic *d) {
     const brio_hole *h = &d->hole;
     for (size_t i = 0; i < h->num_tets; i++)
-        for (uint32_t r = d->hidden[h->tet[i]], next; r != BRIO_NONE; r = next) {
+        for (uint32_t r = brio_first_hidden(d, h->tet[i]), next; r != BRIO_NONE; r = next) {
             next = d->row[r].next;
             BRIO_FORWARD(brio_live_reserve_loose(d, 1));
             BRIO_FORWARD(brio_journal_reserve(d, 0, 1));
@@ -349,18 +389,21 @@ static brio_status set_loose(brio_dynamic *d) {
 brio_status brio_hole_take_slots(brio_dynamic *d, size_t count) {
     brio_hole *h = &d->hole;
     size_t n = 0, have = h->num_tets + d->num_unused;
+    if (count > have && d->zone) return brio_give_up(d, BRIO_TRY_ALONE);
     if (count > have) BRIO_FORWARD(brio_live_reserve_slots(d, count - have));
+    if (d->zone) BRIO_FORWARD(BRIO_RESERVE(d->ctx, d->unused, d->unused_capacity, have));
     BRIO_FORWARD(brio_hole_reserve_fresh(d, count));
-    BRIO_FORWARD(brio_journal_reserve(d, h->num_tets + h->num_border + count, 0));
+    BRIO_FORWARD(brio_journal_reserve(d, h->num_tets + count, 0));
     BRIO_FORWARD(set_loose(d));
-    for (size_t b = 0; b < h->num_border; b++) brio_note_slot(d, brio_tet_of(h->border[b]));
+    brio_journal_stamp(d);
+    for (size_t b = 0; b < h->num_border; b++) brio_end_time(d, brio_tet_of(h->border[b]));
     for (size_t i = 0; i < h->num_tets; i++) {
         uint32_t slot = h->tet[i];
         size_t infinite = brio_is_infinite(&d->t, slot);
         brio_note_slot(d, slot);
         d->counts.infinite -= infinite;
         d->counts.finite -= 1 - infinite;
-        d->hidden[slot] = BRIO_NONE;
+        brio_set_first_hidden(d, slot, BRIO_NONE);
         d->state[slot] &= SLOT_NOTED;
         if (n < count) {
             h->fresh[n++] = slot;
@@ -371,10 +414,10 @@ brio_status brio_hole_take_slots(brio_dynamic *d, size_t count) {
     }
     while (n < count) {
         uint32_t slot = d->num_unused ? d->unused[--d->num_unused] : (uint32_t)d->t.count++;
-        if (slot >= d->journal.slots_before) d->state[slot] = SLOT_UNUSED;
+        if (slot >= d->journal.slots_before) d->state[slot] = SLOT_UNUSED, d->until[slot] = -1;
         brio_note_slot(d, slot);
         d->state[slot] &= SLOT_NOTED;
-        d->hidden[slot] = BRIO_NONE;
+        brio_set_first_hidden(d, slot, BRIO_NONE);
         h->fresh[n++] = slot;
     }
     return BRIO_OK;

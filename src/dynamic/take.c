@@ -28,29 +28,46 @@ typedef struct {
 enum { LAST_SHIFT = 6, LAST_BITS = (1 << LAST_SHIFT) - 1 };
 static const uint32_t ON_BORDER = UINT32_C(1) << 31; /* of a mate: what follows is a facet of the border */
 
+/* Calls for what a change of a tetrahedron will read. */
+static inline void expect_change(const brio_dynamic *d, uint32_t slot) {
+    const uint32_t *v = d->t.tet[slot].vertex;
+    for (int k = 0; k < 4; k++) {
+        __builtin_prefetch(d->record[v[k]]);
+        __builtin_prefetch(&d->number[v[k]], 1);
+        __builtin_prefetch(&d->home[v[k]], 1);
+    }
+}
+
 brio_status brio_live_star(brio_dynamic *d, uint32_t row) {
     brio_hole *h = &d->hole;
+    assert(!d->zone || brio_zone_holds(d->zone, row)); /* L7 */
     h->tet[0] = d->home[row];
     h->num_tets = 1;
     h->num_border = 0;
+    if (!brio_owns(&d->t, d->zone, h->tet[0])) {
+        h->num_tets = 0;
+        return brio_give_up(d, BRIO_TRY_LATER);
+    }
     d->state[h->tet[0]] |= SLOT_HOLE;
     for (size_t n = 0; n < h->num_tets; n++) {
         const brio_tetrahedron *t = &d->t.tet[h->tet[n]];
         int slot = brio_slot_of_vertex(t->vertex, row);
         assert(slot < 4); /* L1 */
+        expect_change(d, h->tet[n]);
         for (int i = 0; i < 4; i++) {
             uint32_t mate = t->mate[i], tet = brio_tet_of(mate);
             if (i == slot) {
                 h->border[h->num_border++] = mate;
                 __builtin_prefetch(&d->t.tet[tet]);
             } else if (!brio_in_hole(d, tet)) {
+                if (!brio_owns_beyond(&d->t, d->zone, mate)) return brio_give_up(d, BRIO_TRY_LATER);
                 h->tet[h->num_tets++] = tet;
                 d->state[tet] |= SLOT_HOLE;
             }
         }
         if (h->num_tets + 4 <= h->capacity) continue;
         BRIO_FORWARD(brio_hole_reserve(d, h->num_tets + 4));
-        BRIO_FORWARD(brio_look(d->ctx, h->num_tets));
+        BRIO_FORWARD(brio_live_look(d, h->num_tets));
     }
     return BRIO_OK;
 }
@@ -197,7 +214,7 @@ static void glue(brio_dynamic *d, const filling *f, size_t n) {
         for (int k = 0; k < 4; k++) {
             uint32_t mate = from->mate[k], row = h->vertex[from->vertex[k]];
             to->vertex[k] = row;
-            d->home[row] = slot;
+            if (row) d->home[row] = slot; /* the infinite vertex is everybody's */
             if (mate & ON_BORDER) {
                 uint32_t facet = h->border[mate & ~ON_BORDER];
                 to->mate[k] = facet;
@@ -222,6 +239,7 @@ static brio_status fill(brio_dynamic *d, filling *f) {
                 "a vertex with %zu tetrahedra; at most 2^26 can be taken away", h->num_border);
     brio_hole_number(d);
     n = h->num_vertices - 1;
+    if (d->zone && n > BRIO_LINK_MOST) return brio_give_up(d, BRIO_TRY_ALONE);
     BRIO_FORWARD(brio_edges_ready(d, h->num_vertices, 6 * h->num_border));
     if (n <= BRIO_LINK_MOST) {
         bool all = brio_link_few(d, &f->tet, &f->count, &flat);
@@ -235,7 +253,7 @@ static brio_status fill(brio_dynamic *d, filling *f) {
     BRIO_EXPECT(d->ctx, met == h->num_border, BRIO_ERR_INTERNAL, "a hole of %zu facets has %zu of them inside",
                 h->num_border, met);
     BRIO_FORWARD(brio_hole_take_slots(d, inside));
-    glue(d, f, inside);
+    if (!d->attempt) glue(d, f, inside);
     return BRIO_OK;
 }
 
@@ -267,18 +285,29 @@ static bool is_all(const brio_dynamic *d) {
     return finite == d->counts.finite;
 }
 
+bool brio_hole_has_hidden(const brio_dynamic *d) {
+    for (size_t i = 0; i < d->hole.num_tets && d->hidden; i++)
+        if (d->hidden[d->hole.tet[i]] != BRIO_NONE) return true;
+    return false;
+}
+
 /* Takes a vertex out; its twins stay with its row, which is loose then. */
 static brio_status take_vertex(brio_dynamic *d, uint32_t row) {
     filling f = {0};
     size_t base = d->num_loose;
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_live_star(d, row));
-    if (is_all(d)) {
+    if (d->zone && !d->attempt && brio_hole_has_hidden(d)) brio_give_up(d, BRIO_TRY_ALONE);
+    if (!d->zone && is_all(d)) {
         d->needs_anew = true;
         status = BRIO_ERR_INTERNAL; /* the caller takes the change back and builds anew */
         goto done;
     }
-    BRIO_TRY(fill(d, &f));
+    if (!d->attempt) BRIO_TRY(fill(d, &f));
+    if (d->attempt) {
+        brio_hole_forget(d);
+        goto done;
+    }
     brio_live_unhint(d, row, d->hole.vertex[1]);
     d->hole.num_tets = d->hole.num_border = 0;
     BRIO_TRY(brio_journal_reserve(d, 0, 1));
@@ -308,6 +337,8 @@ static uint32_t best_twin(const brio_dynamic *d, uint32_t row) {
 
 brio_status brio_live_take(brio_dynamic *d, uint32_t *row) {
     uint32_t r = *row, twin;
+    if (d->zone && (brio_row_kind(d, r) != ROW_VERTEX || d->row[r].twins != BRIO_NONE))
+        return brio_give_up(d, BRIO_TRY_ALONE);
     if (brio_row_kind(d, r) != ROW_VERTEX) return brio_live_unlink(d, r);
     if (d->row[r].twins == BRIO_NONE) return take_vertex(d, r);
     twin = best_twin(d, r);

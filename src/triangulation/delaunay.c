@@ -12,7 +12,6 @@
 #include "triangulation/canonical_turn.h"
 #include "triangulation/insert.h"
 #include "triangulation/insertion_part.h"
-#include "triangulation/parallel.h"
 #include "triangulation/represent.h"
 #include "triangulation/start.h"
 #include "triangulation/triangulation.h"
@@ -230,9 +229,9 @@ done:
     return status;
 }
 
-/* Makes the triangulation of a store without tetrahedra.   rounds  of its order. */
+/* Makes the tetrahedra of a store that has none.   rounds  of its order.   *out  NULL after a failure. */
 static brio_status construct(brio_store *store, const brio_delaunay_options *options, double order_seconds,
-                             const brio_round_ends *rounds, bool any_order, brio_triangulation **out) {
+                             const brio_round_ends *rounds, brio_inserter **out) {
     const struct brio_insertion_part *part = BRIO_PART(store->ctx, insertion);
     brio_inserter *ins = NULL;
     brio_status status = BRIO_OK;
@@ -245,29 +244,42 @@ static brio_status construct(brio_store *store, const brio_delaunay_options *opt
     if (part) part->start(part->user, ins, options, rounds, start);
     BRIO_TRY(insert_all(ins, part));
     BRIO_TRY(brio_represent(ins, options->leave_hidden != 0));
-    BRIO_TRY(sort_result(ins, any_order));
     ins->stats.insert_seconds = brio_seconds() - start;
-    BRIO_TRY(triangulation_new(ins, any_order, out));
-    (*out)->leaves_hidden = options->leave_hidden != 0;
+    *out = ins;
+    ins = NULL;
 done:
     brio_inserter_free(ins);
     return status;
 }
 
+/* Orders points and triangulates them.   Both results are the caller's; after a failure they may be NULL. */
+static brio_status make(brio_context *ctx, const brio_input *input, brio_delaunay_options *o, brio_store **store,
+                        brio_inserter **ins) {
+    brio_round_ends rounds;
+    BRIO_FORWARD(check_count(ctx, input->count));
+    BRIO_FORWARD(brio_delaunay_begin(ctx, input->count, o));
+    settle(o);
+    double start = brio_seconds();
+    BRIO_FORWARD(brio_store_new(ctx, input, o, &rounds, store));
+    return construct(*store, o, brio_seconds() - start, &rounds, ins);
+}
+
+/* Triangulates points, and brings the tetrahedra into their order, or leaves them in any. */
 static brio_status triangulate(brio_context *ctx, const brio_input *input, const brio_delaunay_options *options,
                                bool any_order, brio_triangulation **out) {
     brio_delaunay_options o = *options;
     brio_store *store = NULL;
-    brio_round_ends rounds;
+    brio_inserter *ins = NULL;
     brio_status status = BRIO_OK;
     brio_keep_begin(ctx);
-    BRIO_TRY(check_count(ctx, input->count));
-    BRIO_TRY(brio_delaunay_begin(ctx, input->count, &o));
-    settle(&o);
+    BRIO_TRY(make(ctx, input, &o, &store, &ins));
     double start = brio_seconds();
-    BRIO_TRY(brio_store_new(ctx, input, &o, &rounds, &store));
-    BRIO_TRY(construct(store, &o, brio_seconds() - start, &rounds, any_order, out));
+    BRIO_TRY(sort_result(ins, any_order));
+    ins->stats.insert_seconds += brio_seconds() - start;
+    BRIO_TRY(triangulation_new(ins, any_order, out));
+    (*out)->leaves_hidden = o.leave_hidden != 0;
 done:
+    brio_inserter_free(ins);
     brio_store_free(store);
     brio_keep_end(ctx);
     return status;
@@ -286,6 +298,17 @@ brio_status brio_delaunay_any_order(brio_context *ctx, const double *points, con
                                     const brio_delaunay_options *options, brio_triangulation **out) {
     *out = NULL;
     return triangulate(ctx, &(brio_input){points, weights, num_points}, options, true, out);
+}
+
+brio_status brio_delaunay_unordered(brio_context *ctx, const brio_input *input, brio_store **store,
+                                    brio_inserter **ins) {
+    brio_delaunay_options o = {0};
+    *store = NULL;
+    *ins = NULL;
+    brio_keep_begin(ctx);
+    brio_status status = make(ctx, input, &o, store, ins);
+    brio_keep_end(ctx);
+    return status;
 }
 
 /* --- tetrahedra that are known --- */

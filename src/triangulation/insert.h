@@ -1,4 +1,4 @@
-/* The insertion of one point. */
+/* The insertion of one point, and of many by all threads. */
 #ifndef BRIO_TRIANGULATION_INSERT_H
 #define BRIO_TRIANGULATION_INSERT_H
 
@@ -15,5 +15,9 @@ typedef enum {
 /** Inserts record p, which is not yet in. *outcome is set with BRIO_OK only. After a failure the store and the inserter
  *  are good for nothing but to be freed. */
 brio_status brio_insert(brio_inserter *ins, uint32_t p, brio_insertion *outcome);
+
+/** Inserts the records [begin, end), which follow the curve, by all threads of the context. The store has ranks; `ins`
+ *  works alone before and after, and locates by walks. */
+brio_status brio_insert_parallel(brio_inserter *ins, size_t begin, size_t end);
 
 #endif

@@ -67,6 +67,12 @@ brio_status brio_inserter_new(brio_store *store, brio_inserter **out);
 /** Frees the inserter and what its strategy of location keeps, not the zone; NULL is accepted. */
 void brio_inserter_free(brio_inserter *ins);
 
+/** Makes what brio_delaunay makes of these points, with defaults, before it brings the tetrahedra into their order:
+ *  those in the plain slots of a store, whose unused slots the inserter lists. The caller frees both, the inserter
+ *  first; after a failure, too, where they are not NULL.   Returns what brio_delaunay returns. */
+brio_status brio_delaunay_unordered(brio_context *ctx, const brio_input *input, brio_store **store,
+                                    brio_inserter **ins);
+
 /** Reserves `more` fresh slots. In a pass the rest of the stretch may become unused first, and *deferred becomes true
  *  when the store has no further stretch. Alone, exactly `more` slots are handed out, and the caller writes all of
  *  them. */

@@ -1,211 +1,120 @@
-/* Parallel insertion: each thread holds the part of the points where it works.
+/* Parallel insertion, in passes (passes.h): each thread has an inserter with a zone.
  *
- * A curve through the points is divided into segments, many more than threads. Each thread inserts a part of the points
- * that follow the curve. It walks through and destroys only tetrahedra all of whose finite vertices are in segments
- * that it holds, its zone: it takes a segment when it first meets a vertex there, and gives it back when it has moved
- * on. A point whose walk or cavity meets a segment of another thread is deferred, since that thread is at work there
- * now; later it will not be. The tetrahedra round a cavity share three vertices with it, so no other thread can destroy
- * them, and what is read of them does not change: their mates are written only through the facet that both share (P1 to
- * P4 in store.h, proved in docs/decisions/006-segments-held-by-threads.md). So threads never wait for each other, and
- * share nothing but the segments' marks and the count of slots, taken in large stretches. What is left when a thread
- * has tried all its points again goes into another pass, and at the end to one thread.
- *
- * The result is the one triangulation that exact predicates and the symbolic perturbation determine, whatever was
- * deferred.
- *
- * Based on: Marot, Pellerin, Remacle. One machine, one minute, three billion tetrahedra. IJNME 2019, for the ownership
- *           by vertices; Batista, Millman, Pion, Singler. Parallel geometric algorithms for multi-core computers. CGTA
- *           2010, for giving up instead of waiting.
- * Differs from both: zones of the curve are not fixed for a pass but follow the thread, and locks are neither of
- * tetrahedra nor of vertices but of segments, kept from one insertion to the next.
- */
-#include "triangulation/parallel.h"
+ * Threads share the store by P1 to P4 (store.h), and the count of slots, taken in large stretches. The result is the
+ * one triangulation that exact predicates and the symbolic perturbation determine, whatever was deferred. */
 #include "base/memory.h"
 #include "base/team.h"
 #include "triangulation/insert.h"
-#include "triangulation/zone.h"
+#include "triangulation/passes.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 enum {
     LEAST = 512, /* points to insert that are worth a thread */
-    CROWD = 256, /* points in all that are worth a thread */
-    PASSES = 4,  /* then one thread goes on */
-    RETRIES = 4, /* of a thread's deferred points in a pass */
-    STARTS = 32, /* places along a thread's part where it may begin */
-    SEGMENT = 4, /* vertices in a segment when a pass begins */
-    MOST_SEGMENTS = 1 << 16
+    STARTS = 32  /* places along a thread's part where it may begin */
 };
 
-/* What the threads of a pass share, beside the store. All but the last three fields are constant in a pass. */
+/* Insertion in passes. */
 typedef struct {
     brio_inserter *main; /* the one that works alone between passes, and rests in them */
     brio_store *store;
-    uint32_t first; /* the records to insert, along the curve: those of the turns from `first` on, or those listed */
-    uint32_t *list;
-    size_t count;
-    int shift; /* of ranks to segments */
-    size_t segments;
-    uint8_t *taken; /* of each segment; see brio_zone */
-    int stop;       /* some thread failed; only hastens the others' end */
-    int running;    /* threads at work */
-} pass;
+    uint32_t first; /* the records to insert, along the curve: those of the turns from `first` on */
+    size_t count;   /* of the records that are not in when the pass begins */
+    brio_passes passes;
+} insertion;
 
-/* One thread's work in a pass. Made by the calling thread before the pass, and read by it after the pass. */
+/* A thread's hand. */
 typedef struct {
-    pass *pass;
+    const insertion *own;
     brio_inserter *inserter;
-    brio_zone zone;
-    size_t begin, end; /* of the records to insert */
-    bool placed;       /* it has a tetrahedron to start from */
-    uint32_t *deferred;
-    size_t num_deferred, deferred_capacity;
-    brio_status status;
-} worker;
+    bool placed; /* it has a tetrahedron to start from */
+} hand;
 
-static inline uint32_t record_of(const pass *own, size_t i) {
-    assert(i < own->count);
-    return own->list ? own->list[i] : brio_record_at(own->store, own->first + i);
+static uint32_t record_of(const void *user, size_t i) {
+    const insertion *own = user;
+    return brio_record_at(own->store, own->first + i);
 }
 
 /* --- one thread --- */
 
-/* Inserts a record, or defers it. Where the next walk starts stays in the zone (N1). */
-static brio_status insert_in_zone(brio_inserter *ins, uint32_t p, brio_insertion *outcome) {
-    *outcome = BRIO_DEFERRED;
-    if (!brio_zone_has(ins->zone, p)) return BRIO_OK;
+/* Tries to insert a record. Where the next walk starts stays in the zone (N1). */
+static brio_status try_point(void *user, uint32_t p, brio_attempt *tried) {
+    hand *h = user;
+    brio_inserter *ins = h->inserter;
+    brio_insertion outcome = BRIO_DEFERRED;
+    *tried = BRIO_TRY_LATER;
+    if (!h->placed || !brio_zone_has(ins->zone, p)) return BRIO_OK;
     assert(brio_zone_holds(ins->zone, p)); /* P4 */
-    brio_status status = brio_insert(ins, p, outcome);
+    brio_status status = brio_insert(ins, p, &outcome);
     if (status != BRIO_OK) return status; /* the store is good for nothing but to be freed */
     brio_owns(&ins->store->t, ins->zone, ins->walk.start);
-    if (brio_zone_tidy(ins->zone) && *outcome != BRIO_INSERTED)
+    if (brio_zone_tidy(ins->zone) && outcome != BRIO_INSERTED)
         ins->cavity.num_created = 0; /* the last star is no longer held (N2) */
+    if (outcome != BRIO_DEFERRED) *tried = BRIO_TRIED;
     return BRIO_OK;
 }
 
-static brio_status try_point(worker *w, uint32_t p) {
-    brio_insertion outcome = BRIO_DEFERRED;
-    if (w->placed) BRIO_FORWARD(insert_in_zone(w->inserter, p, &outcome));
-    if (outcome != BRIO_DEFERRED) return BRIO_OK;
-    BRIO_FORWARD(BRIO_RESERVE(w->pass->store->ctx, w->deferred, w->deferred_capacity, w->num_deferred + 1));
-    w->deferred[w->num_deferred++] = p;
-    return BRIO_OK;
-}
-
-/* Reports progress: that of one thread stands for that of all. */
-static brio_status report(worker *w, size_t i) {
-    const pass *own = w->pass;
-    assert(w->begin < w->end && i <= w->end);
-    double done = (double)own->first + (double)(i - w->begin) / (double)(w->end - w->begin) * (double)own->count;
-    return brio_inserter_report(w->inserter, done / (double)own->store->num_points);
+static brio_status report(void *user, double share) {
+    const hand *h = user;
+    const insertion *own = h->own;
+    double done = (double)own->first + share * (double)own->count;
+    return brio_inserter_report(h->inserter, done / (double)own->store->num_points);
 }
 
 static bool is_report_due(const brio_inserter *ins) {
     return brio_inserter_work(ins) >= ins->report_at;
 }
 
-/* Tries the deferred points again. */
-static brio_status try_again(worker *w) {
-    size_t count = w->num_deferred;
-    w->num_deferred = 0;
-    for (size_t i = 0; i < count; i++) {
-        if (__atomic_load_n(&w->pass->stop, __ATOMIC_RELAXED)) break;
-        BRIO_FORWARD(try_point(w, w->deferred[i]));
-        if (is_report_due(w->inserter)) BRIO_FORWARD(report(w, w->end));
-    }
-    return BRIO_OK;
+static bool is_due(const void *user) {
+    return is_report_due(((const hand *)user)->inserter);
 }
 
-/* Reports progress, in the calling thread, from when it is done with its part until the other threads are. It sleeps
- * for a share of the time that it has waited, so that it is late by no more than that share. */
-static brio_status wait_for_others(worker *w) {
-    const double SHARE = 1.0 / 16, LEAST_SLEEP = 2e-5, MOST_SLEEP = 1e-2, BETWEEN = 0.05;
-    double start = brio_seconds(), told = start, now = start;
-    while (__atomic_load_n(&w->pass->running, __ATOMIC_ACQUIRE) > 0) {
-        double sleep = fmin(fmax(SHARE * (now - start), LEAST_SLEEP), MOST_SLEEP);
-        brio_sleep(sleep);
-        now = brio_seconds();
-        if (now - told < BETWEEN) continue;
-        told = now;
-        BRIO_FORWARD(report(w, w->end));
-    }
-    return BRIO_OK;
-}
+/* --- hands --- */
 
-/* Does a thread's part of a pass. A failed insertion may have left its cavity half filled: then the thread's segments
- * stay taken. */
-static brio_status work(worker *w) {
-    brio_inserter *ins = w->inserter;
-    pass *own = w->pass;
-    brio_status status = BRIO_OK;
-    for (size_t i = w->begin; i < w->end && !__atomic_load_n(&own->stop, __ATOMIC_RELAXED); i++) {
-        BRIO_TRY(try_point(w, record_of(own, i)));
-        if (is_report_due(ins)) BRIO_TRY(report(w, i));
-    }
-    ins->stats.deferred = w->num_deferred;
-    for (int i = 0; i < RETRIES && w->num_deferred && w->placed; i++) BRIO_TRY(try_again(w));
-done:
-    if (status == BRIO_OK) brio_zone_leave(&w->zone);
-    __atomic_sub_fetch(&own->running, 1, __ATOMIC_RELEASE);
-    if (status == BRIO_OK && ins->reports && own->store->ctx->progress) status = wait_for_others(w);
-    if (status != BRIO_OK) __atomic_store_n(&own->stop, 1, __ATOMIC_RELAXED);
-    return status;
-}
-
-static void work_as_member(void *user, const brio_member *m) {
-    worker *w = (worker *)user + m->thread;
-    w->status = work(w);
-}
-
-/* --- workers --- */
-
-/* Finds a tetrahedron along the worker's part that the worker can hold. Returns whether there is one. */
-static bool place_worker(worker *w) {
-    brio_inserter *ins = w->inserter, *main = w->pass->main;
-    const brio_store *store = w->pass->store;
-    size_t n = w->end - w->begin;
+/* Finds a tetrahedron along the part that the hand can hold. Returns whether there is one. */
+static bool place_hand(hand *h, const brio_pass_part *part) {
+    brio_inserter *ins = h->inserter, *main = h->own->main;
+    const brio_store *store = h->own->store;
+    size_t n = part->end - part->begin;
     for (size_t i = 0; i < STARTS && n; i++) {
-        const double *p = store->record[record_of(w->pass, w->begin + i * n / STARTS)];
+        const double *p = store->record[brio_pass_item(part->passes, part->begin + i * n / STARTS)];
         ins->walk.start = main->walk.start = brio_inserter_walk(main, p, UINT64_MAX);
         if (brio_owns(&store->t, ins->zone, ins->walk.start)) return true;
-        brio_zone_leave(&w->zone);
+        brio_zone_leave(ins->zone);
     }
     return false;
 }
 
-/* Makes the worker of thread i and places it in its zone. */
-static brio_status worker_new(pass *own, int i, int threads, worker *w) {
-    brio_context *ctx = own->store->ctx;
+static brio_status hand_new(void *user, brio_zone *zone, const brio_pass_part *part, void **out) {
+    const insertion *own = user;
     const brio_inserter *main = own->main;
-    brio_status status = BRIO_OK;
-    *w = (worker){.pass = own,
-                  .begin = brio_part(own->count, i, threads),
-                  .end = brio_part(own->count, i + 1, threads),
-                  .status = BRIO_ERR_INTERNAL /* until it has worked */};
-    BRIO_TRY(brio_zone_new(ctx, own->store->rank, own->shift, own->segments, own->taken, &w->zone));
-    BRIO_TRY(brio_inserter_new(own->store, &w->inserter));
-    w->inserter->zone = &w->zone;
-    w->inserter->long_walks = main->long_walks;
-    w->inserter->done = main->done;
-    w->inserter->reports = i == 0;
-    w->placed = place_worker(w);
-done:
-    return status;
+    hand *h;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(own->store->ctx, h, 1));
+    *out = h;
+    h->own = own;
+    BRIO_FORWARD(brio_inserter_new(own->store, &h->inserter));
+    h->inserter->zone = zone;
+    h->inserter->long_walks = main->long_walks;
+    h->inserter->done = main->done;
+    h->inserter->reports = part->thread == 0;
+    h->placed = place_hand(h, part);
+    return BRIO_OK;
 }
 
-/* Frees what a worker owns; NULL pointers inside are accepted. */
-static void worker_free(worker *w, brio_context *ctx) {
-    brio_inserter_free(w->inserter);
-    brio_zone_free(ctx, &w->zone);
-    brio_release(ctx, w->deferred);
-    *w = (worker){0};
+static void hand_free(void *user) {
+    hand *h = user;
+    brio_context *ctx = h->own->store->ctx;
+    brio_inserter_free(h->inserter);
+    brio_release(ctx, h);
 }
 
-/* Gives the main inserter the slots that the worker has left, and what it counted. */
-static brio_status leave_pass(worker *w) {
-    brio_inserter *ins = w->inserter, *main = w->pass->main;
-    brio_store *store = w->pass->store;
+/* Gives the main inserter the slots that a hand has left, and what it counted. */
+static brio_status leave_pass(void *user, void *left, size_t deferred) {
+    const insertion *own = user;
+    brio_inserter *ins = ((hand *)left)->inserter, *main = own->main;
+    brio_store *store = own->store;
+    if (!ins) return BRIO_OK; /* it could not be made */
     BRIO_FORWARD(brio_inserter_return_stretch(ins));
     BRIO_FORWARD(BRIO_RESERVE(store->ctx, main->unused, main->unused_capacity, main->num_unused + ins->num_unused));
     if (ins->num_unused) memcpy(main->unused + main->num_unused, ins->unused, ins->num_unused * sizeof *ins->unused);
@@ -215,7 +124,7 @@ static brio_status leave_pass(worker *w) {
     main->stats.created += ins->stats.created;
     main->stats.destroyed += ins->stats.destroyed;
     main->stats.insphere_calls += ins->stats.insphere_calls;
-    main->stats.deferred += ins->stats.deferred;
+    main->stats.deferred += deferred;
     main->stats.locate_seconds += ins->stats.locate_seconds;
     main->walk.steps += ins->walk.steps;
     main->filter.unsettled += ins->filter.unsettled;
@@ -227,25 +136,15 @@ static brio_status leave_pass(worker *w) {
 
 /* --- passes --- */
 
-/* Divides the curve into segments so that each has some vertices already. */
-static brio_status divide_curve(pass *own, size_t inserted) {
-    brio_context *ctx = own->store->ctx;
-    size_t points = own->store->num_points,
-           most = inserted / SEGMENT < MOST_SEGMENTS ? inserted / SEGMENT : MOST_SEGMENTS;
-    own->shift = 0;
-    while (points >> own->shift > most) own->shift++;
-    assert(own->shift < 32);
-    own->segments = (points >> own->shift) + 1;
-    brio_release(ctx, own->taken);
-    return BRIO_ALLOC_ZERO(ctx, own->taken, own->segments);
-}
-
 /* Makes room for the slots of a pass: as many a point as up to now, and some more. */
-static brio_status reserve_slots(pass *own, size_t inserted, int threads) {
+static brio_status reserve_slots(void *user, size_t count, int threads) {
+    insertion *own = user;
     brio_store *store = own->store;
+    size_t inserted = own->passes.vertices - count;
+    own->count = count;
     assert(inserted > 0 && store->t.count <= store->max_tetrahedra && own->main->num_unused <= store->t.count);
     double each = (double)(store->t.count - own->main->num_unused) / (double)inserted;
-    size_t more = (size_t)(1.04 * each * (double)own->count) + (size_t)threads * 2 * BRIO_SLOT_STRETCH;
+    size_t more = (size_t)(1.04 * each * (double)count) + (size_t)threads * 2 * BRIO_SLOT_STRETCH;
     size_t room = store->max_tetrahedra - store->t.count;
     return brio_store_reserve(store, more < room ? more : room);
 }
@@ -267,76 +166,53 @@ static bool slots_are_accounted_for(const brio_inserter *ins) {
 }
 #endif
 
-/* Runs one pass over the records. The list of records becomes that of the deferred ones. */
-static brio_status run_pass(pass *own, worker *workers, int threads) {
-    brio_context *ctx = own->store->ctx;
-    brio_status status = BRIO_OK;
-    uint32_t *left = NULL;
-    size_t num_left = 0;
-    for (int i = 0; i < threads; i++) BRIO_TRY(worker_new(own, i, threads, &workers[i]));
-    own->running = threads;
-    brio_run(ctx, threads, work_as_member, workers);
-    for (int i = 0; i < threads; i++) {
-        BRIO_TRY(workers[i].status);
-        BRIO_TRY(leave_pass(&workers[i]));
-        num_left += workers[i].num_deferred;
-    }
+static void end_pass(void *user) {
+    const insertion *own = user;
     own->main->cavity.num_created = 0; /* its last star may be gone (N2) */
-    assert(slots_are_accounted_for(own->main) && own->running == 0);
-    BRIO_TRY(BRIO_ALLOC(ctx, left, num_left));
-    brio_release(ctx, own->list);
-    own->list = left;
-    own->count = 0;
-    for (int i = 0; i < threads; i++) {
-        const worker *w = &workers[i];
-        if (w->num_deferred) memcpy(left + own->count, w->deferred, w->num_deferred * sizeof *left);
-        own->count += w->num_deferred;
-    }
-done:
-    for (int i = 0; i < threads; i++) worker_free(&workers[i], ctx);
-    return status;
-}
-
-static int useful_threads(size_t count, size_t inserted, int most) {
-    size_t threads = count / LEAST < inserted / CROWD ? count / LEAST : inserted / CROWD;
-    return threads < (size_t)most ? (int)threads : most;
+    assert(slots_are_accounted_for(own->main));
 }
 
 /* Inserts what the passes have left, by the main inserter alone. */
-static brio_status insert_rest(pass *own, double done) {
+static brio_status insert_rest(const insertion *own, double done) {
     brio_inserter *ins = own->main;
-    for (size_t i = 0; i < own->count; i++) {
+    size_t count = own->passes.count;
+    for (size_t i = 0; i < count; i++) {
         brio_insertion outcome;
-        BRIO_FORWARD(brio_insert(ins, record_of(own, i), &outcome));
+        BRIO_FORWARD(brio_insert(ins, brio_pass_item(&own->passes, i), &outcome));
         assert(outcome != BRIO_DEFERRED);
         if (is_report_due(ins)) BRIO_FORWARD(brio_inserter_report(ins, done));
     }
-    ins->stats.serial += own->count;
+    ins->stats.serial += count;
     return BRIO_OK;
 }
 
+static const brio_pass_work INSERTION = {.prepare = reserve_slots,
+                                         .enter = hand_new,
+                                         .attempt = try_point,
+                                         .due = is_due,
+                                         .report = report,
+                                         .leave = leave_pass,
+                                         .passed = end_pass,
+                                         .free = hand_free,
+                                         .item = record_of,
+                                         .least = LEAST};
+
 brio_status brio_insert_parallel(brio_inserter *ins, size_t begin, size_t end) {
-    brio_context *ctx = ins->store->ctx;
+    brio_store *store = ins->store;
     brio_status status = BRIO_OK;
-    pass own = {.main = ins, .store = ins->store, .first = (uint32_t)begin, .count = end - begin};
-    int most = brio_threads(ctx, own.count, LEAST);
-    worker *workers = NULL;
-    assert(ins->locator == &brio_strategy_walk); /* workers walk, and keep no tables of other strategies up to date */
-    assert(ins->store->rank && !ins->zone && begin <= end && end <= ins->store->num_points);
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, workers, (size_t)most));
-    for (int n = 0; n < PASSES; n++) {
-        size_t count = own.count, inserted = end - count;
-        int threads = useful_threads(count, inserted, most);
-        if (threads < 2) break;
-        BRIO_TRY(reserve_slots(&own, inserted, threads));
-        BRIO_TRY(divide_curve(&own, inserted));
-        BRIO_TRY(run_pass(&own, workers, threads));
-        if (own.count > count / 2) break;
-    }
-    BRIO_TRY(insert_rest(&own, (double)end / (double)ins->store->num_points));
+    insertion own = {.main = ins, .store = store, .first = (uint32_t)begin, .count = end - begin};
+    own.passes = (brio_passes){.ctx = store->ctx,
+                               .work = &INSERTION,
+                               .user = &own,
+                               .rank = store->rank,
+                               .ranks = store->num_points,
+                               .vertices = end,
+                               .count = end - begin};
+    assert(ins->locator == &brio_strategy_walk); /* hands walk, and keep no tables of other strategies up to date */
+    assert(store->rank && !ins->zone && begin <= end && end <= store->num_points);
+    BRIO_TRY(brio_passes_run(&own.passes, brio_threads(store->ctx, end - begin, LEAST)));
+    BRIO_TRY(insert_rest(&own, (double)end / (double)store->num_points));
 done:
-    brio_release(ctx, workers);
-    brio_release(ctx, own.list);
-    brio_release(ctx, own.taken);
+    brio_passes_free(&own.passes);
     return status;
 }

@@ -1,6 +1,6 @@
 /* Passes of parallel insertion: segments of the curve, taken, kept, given back; points, inserted or deferred.
  *
- * Follows src/triangulation/parallel.c and zone.c with THREADS threads, SEGMENTS segments and POINTS points. What an insertion
+ * Follows src/triangulation/passes.c with THREADS threads, SEGMENTS segments and POINTS points. What an insertion
  * meets is any segment at all: the geometry is that of cavity.pml. Numbers of the code that are larger: RETRIES and PASSES (4),
  * SEGMENTS_KEPT (8). FAIL: some thread's insertion fails, as for want of memory.
  *

@@ -1,186 +1,8 @@
 /* Triangulations that live. The oracle: after any sequence of changes the snapshot is the result of brio_delaunay of the
  * points that are left, equal in every byte. */
-#include "harness.h"
+#include "living_world.h"
 
-#include "dynamic/live.h"
 #include "failing_allocator.h"
-#include <math.h>
-#include <string.h>
-
-typedef enum { UNIFORM, GRID, SPHERE, CLUSTERS, SCAN, MIXED, NUM_SHAPES } shape;
-static const char *const SHAPE[] = {"uniform", "grid", "sphere", "clusters", "scan", "mixed"};
-
-static uint64_t state = 1;
-
-static double draw(void) {
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (double)(state >> 11) * 0x1p-53;
-}
-
-static size_t draw_below(size_t n) {
-    return (size_t)(draw() * (double)n);
-}
-
-/* A point whose coordinates have exact ties: on a small grid, or on a sphere of integers. */
-static void draw_point(shape s, double p[3]) {
-    static const double ON_SPHERE[][3] = {{15, 0, 0}, {9, 12, 0}, {5, 10, 10}, {2, 5, 14}, {2, 10, 11}, {14, 5, 2}};
-    if (s == MIXED) s = (shape)draw_below(MIXED);
-    for (int c = 0; c < 3; c++) p[c] = draw();
-    if (s == GRID)
-        for (int c = 0; c < 3; c++) p[c] = floor(p[c] * 6) / 8;
-    if (s == SCAN) { /* lines of a scanner over a surface, with a little noise */
-        p[1] = floor(40 * p[1]) / 40;
-        p[2] = 0.3 * p[0] * p[0] - 0.2 * p[1] * p[0] + 1e-4 * p[2];
-    }
-    if (s == CLUSTERS) {
-        double corner = floor(draw() * 4);
-        for (int c = 0; c < 3; c++) p[c] = corner / 4 + p[c] * p[c] * p[c] * 1e-3;
-    }
-    if (s == SPHERE) {
-        const double *q = ON_SPHERE[draw_below(sizeof ON_SPHERE / sizeof *ON_SPHERE)];
-        size_t turn = draw_below(3);
-        for (size_t c = 0; c < 3; c++) p[c] = q[(c + turn) % 3] * (draw() < 0.5 ? -1 : 1) / 16;
-    }
-}
-
-static double draw_weight(shape s) {
-    return s == GRID ? floor(draw() * 4) / 64 : draw() < 0.5 ? 0 : draw() * 0.02;
-}
-
-/* What the points are, beside the triangulation. */
-typedef struct {
-    brio_context *ctx;
-    brio_dynamic *d;
-    shape shape;
-    int weighted;
-    double *point, *weight; /* by index */
-    uint8_t *alive;
-    uint32_t *index; /* of those that are there, in any order */
-    size_t num_indices, num_points;
-} world;
-
-static world world_new(shape s, int weighted, size_t most) {
-    world w = {.shape = s, .weighted = weighted};
-    EXPECT(brio_context_new(NULL, &w.ctx) == BRIO_OK);
-    brio_context_set_threads(w.ctx, 1);
-    w.point = malloc(3 * most * sizeof *w.point);
-    w.weight = malloc(most * sizeof *w.weight);
-    w.alive = calloc(most, 1);
-    w.index = malloc(most * sizeof *w.index);
-    return w;
-}
-
-static void world_free(world *w) {
-    brio_dynamic_free(w->d);
-    EXPECT(brio_context_memory(w->ctx) == 0, "%zu bytes are left", brio_context_memory(w->ctx));
-    brio_context_free(w->ctx);
-    free(w->point), free(w->weight), free(w->alive), free(w->index);
-}
-
-/* The points that are there, by ascending index. */
-typedef struct {
-    double *point, *weight;
-    size_t count;
-} points_left;
-
-static points_left left_of(const world *w) {
-    points_left l = {malloc((3 * w->num_points + 1) * sizeof(double)), malloc((w->num_points + 1) * sizeof(double)), 0};
-    for (size_t i = 0; i < w->num_indices; i++) {
-        if (!w->alive[i]) continue;
-        memcpy(l.point + 3 * l.count, w->point + 3 * i, 3 * sizeof(double));
-        l.weight[l.count++] = w->weight[i];
-    }
-    return l;
-}
-
-/* Whether the snapshot is what brio_delaunay makes of the points that are left. */
-static int is_as_built(world *w) {
-    points_left l = left_of(w);
-    brio_triangulation *snapshot = NULL, *built = NULL;
-    int same = 0;
-    EXPECT(l.count == w->num_points);
-    EXPECT(brio_dynamic_snapshot(w->ctx, w->d, &snapshot) == BRIO_OK, "%s", brio_message(w->ctx));
-    EXPECT(brio_delaunay(w->ctx, l.point, w->weighted ? l.weight : NULL, l.count, NULL, &built) == BRIO_OK);
-    if (snapshot && built) {
-        const brio_delaunay_stats *s = brio_triangulation_stats(snapshot), *b = brio_triangulation_stats(built);
-        same = s->points == b->points && s->vertices == b->vertices && s->duplicates == b->duplicates &&
-               s->hidden == b->hidden && s->dimension == b->dimension && s->tetrahedra == b->tetrahedra &&
-               s->hull_facets == b->hull_facets;
-        size_t count = b->tetrahedra + b->hull_facets;
-        same = same && memcmp(brio_triangulation_tetrahedra(snapshot), brio_triangulation_tetrahedra(built),
-                              count * sizeof(brio_tetrahedron)) == 0;
-        same = same && memcmp(brio_triangulation_representatives(snapshot), brio_triangulation_representatives(built),
-                              l.count * sizeof(uint32_t)) == 0;
-        same = same && brio_triangulation_points_hash(snapshot) == brio_triangulation_points_hash(built);
-    }
-    brio_triangulation_free(snapshot);
-    brio_triangulation_free(built);
-    free(l.point), free(l.weight);
-    return same;
-}
-
-static void enter(world *w, size_t index, const double *p, double weight) {
-    memcpy(w->point + 3 * index, p, 3 * sizeof *p);
-    w->weight[index] = weight;
-    w->num_points += !w->alive[index];
-    w->alive[index] = 1;
-}
-
-static void insert_some(world *w, size_t n) {
-    double p[3 * 64], weight[64];
-    uint32_t first = 0;
-    for (size_t i = 0; i < n; i++) {
-        draw_point(w->shape, p + 3 * i);
-        weight[i] = w->weighted ? draw_weight(w->shape) : 0;
-    }
-    EXPECT(brio_dynamic_insert(w->d, p, w->weighted ? weight : NULL, n, &first) == BRIO_OK, "%s", brio_message(w->ctx));
-    EXPECT(first == w->num_indices);
-    for (size_t i = 0; i < n; i++) enter(w, w->num_indices++, p + 3 * i, weight[i]);
-}
-
-/* Draws indices of different points that are there; returns how many, at most n. */
-static size_t draw_indices(const world *w, size_t n, uint32_t *index) {
-    size_t count = 0;
-    for (size_t tries = 0; tries < 40 * n && count < n && w->num_points > 0; tries++) {
-        uint32_t i = (uint32_t)draw_below(w->num_indices);
-        int twice = !w->alive[i];
-        for (size_t k = 0; k < count; k++) twice |= index[k] == i;
-        if (!twice) index[count++] = i;
-    }
-    return count;
-}
-
-static void remove_some(world *w, size_t n) {
-    uint32_t index[64];
-    n = draw_indices(w, n, index);
-    EXPECT(brio_dynamic_remove(w->d, index, n) == BRIO_OK, "%s", brio_message(w->ctx));
-    for (size_t i = 0; i < n; i++) w->alive[index[i]] = 0, w->num_points--;
-}
-
-static void move_some(world *w, size_t n, double step) {
-    uint32_t index[64];
-    double p[3 * 64], weight[64];
-    n = draw_indices(w, n, index);
-    for (size_t i = 0; i < n; i++) {
-        draw_point(w->shape, p + 3 * i);
-        for (size_t c = 0; c < 3 && step < 1; c++)
-            p[3 * i + c] =
-                w->point[3 * index[i] + c] + step * (w->shape == GRID ? floor(3 * draw()) - 1 : draw() - 0.5);
-        weight[i] = w->weighted ? draw_weight(w->shape) : 0;
-    }
-    EXPECT(brio_dynamic_move(w->d, index, p, w->weighted ? weight : NULL, n) == BRIO_OK, "%s", brio_message(w->ctx));
-    for (size_t i = 0; i < n; i++) enter(w, index[i], p + 3 * i, weight[i]);
-}
-
-static void reweight_some(world *w, size_t n) {
-    uint32_t index[64];
-    double weight[64];
-    if (!w->weighted) return;
-    n = draw_indices(w, n, index);
-    for (size_t i = 0; i < n; i++) weight[i] = draw_weight(w->shape);
-    EXPECT(brio_dynamic_reweight(w->d, index, weight, n) == BRIO_OK, "%s", brio_message(w->ctx));
-    for (size_t i = 0; i < n; i++) w->weight[index[i]] = weight[i];
-}
 
 static void change(world *w, size_t usual) {
     static const double STEP[] = {1e-9, 1e-3, 0.125, 1};
@@ -221,15 +43,6 @@ static void any_changes_end_as_built(void) {
 
 /* --- many at once --- */
 
-static void insert_many(world *w, size_t n) {
-    double *p = calloc(3 * n, sizeof *p);
-    uint32_t first;
-    for (size_t i = 0; i < n; i++) draw_point(w->shape, p + 3 * i);
-    EXPECT(brio_dynamic_insert(w->d, p, NULL, n, &first) == BRIO_OK, "%s", brio_message(w->ctx));
-    for (size_t i = 0; i < n; i++) enter(w, w->num_indices++, p + 3 * i, 0);
-    free(p);
-}
-
 static void move_all(world *w, double step) {
     double *p = calloc(3 * w->num_points, sizeof *p);
     brio_dynamic_points(w->d, NULL, p, NULL);
@@ -261,12 +74,6 @@ static void all_points_move(void) {
         world_free(&w);
     }
     EXPECT(together >= 4, "%zu moves without building anew", together);
-}
-
-static int stop_at(const char *stage, double fraction, void *user) {
-    size_t *left = user;
-    (void)stage, (void)fraction;
-    return *left > 0 && --*left == 0;
 }
 
 /* Many steps of all points, so that most tetrahedra are not tested in most of them: some points jump, weights change,
@@ -464,7 +271,63 @@ static void a_folded_hole_is_filled_well_or_not_at_all(void) {
     EXPECT(mended > 20 && kept > 20, "%zu and %zu", mended, kept);
 }
 
+/* Two tetrahedra of a hole, of which the first has come to hold the second: their borders are facets of the triangulation
+ * of all eight vertices, and bound what lies between them from both sides. Filled, the hole would have tetrahedra whose
+ * mates have other mates. */
+static void a_hole_that_covers_a_place_twice_stays(void) {
+    static const double CORNER[4][3] = {{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}};
+    size_t tried = 0;
+    for (int trial = 0; trial < 40; trial++) {
+        world w = world_new(UNIFORM, 0, 64);
+        bool filled = false;
+        EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+        insert_some(&w, 50);
+        brio_live_begin(w.d);
+        brio_hole *h = &w.d->hole;
+        uint32_t pair[2] = {(uint32_t)draw_below(w.d->t.count), (uint32_t)draw_below(w.d->t.count)};
+        int apart = !brio_is_infinite(&w.d->t, pair[0]) && !brio_is_infinite(&w.d->t, pair[1]);
+        for (int k = 0; k < 4; k++)
+            apart &= brio_slot_of_vertex(w.d->t.tet[pair[1]].vertex, w.d->t.tet[pair[0]].vertex[k]) == 4;
+        for (int i = 0; i < 2 && apart; i++) {
+            h->tet[h->num_tets++] = pair[i];
+            w.d->state[pair[i]] |= SLOT_HOLE;
+            for (int k = 0; k < 4; k++) {
+                double *r = w.d->record[w.d->t.tet[pair[i]].vertex[k]];
+                for (int c = 0; c < 3; c++) r[c] = i ? 1.5 + CORNER[k][c] / 18 : CORNER[k][c];
+                h->border[h->num_border++] = w.d->t.tet[pair[i]].mate[k];
+            }
+        }
+        if (apart) {
+            EXPECT(brio_hole_reserve_fresh(w.d, h->num_border) == BRIO_OK);
+            EXPECT(brio_hole_mend(w.d, &filled) == BRIO_OK);
+            EXPECT(!filled && mates_agree(w.d), "trial %d", trial);
+        }
+        tried += (size_t)apart;
+        EXPECT(brio_live_end(w.d, BRIO_ERR_INTERNAL) == BRIO_ERR_INTERNAL);
+        world_free(&w);
+    }
+    EXPECT(tried > 5, "%zu", tried);
+}
+
 /* --- what fails leaves all as it was --- */
+
+/* A change that was about to be made by building anew when it failed otherwise: it has failed. */
+static void only_one_failure_asks_for_building_anew(void) {
+    static const brio_status FAILURE[] = {BRIO_ERR_CANCELLED, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE};
+    world w = world_new(UNIFORM, 0, 64);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
+    insert_some(&w, 20);
+    for (size_t i = 0; i < sizeof FAILURE / sizeof *FAILURE; i++) {
+        brio_live_begin(w.d);
+        w.d->needs_anew = true;
+        EXPECT(brio_live_end(w.d, FAILURE[i]) == FAILURE[i] && !w.d->needs_anew);
+    }
+    brio_live_begin(w.d);
+    w.d->needs_anew = true;
+    EXPECT(brio_live_end(w.d, BRIO_ERR_INTERNAL) == BRIO_ERR_INTERNAL && w.d->needs_anew);
+    EXPECT(is_as_built(&w));
+    world_free(&w);
+}
 
 /* A world of about 70 points, some of them coincident or hidden. */
 static world small_world(brio_context *ctx, int weighted) {
@@ -552,24 +415,31 @@ static void cancelled_changes_leave_all(void) {
 }
 
 /* A call that was told to stop has failed, wherever it was: one that was about to build anew did so, and succeeded. */
+static int stop_at_a_look(const char *stage, double fraction, void *user) {
+    world *w = user;
+    (void)stage, (void)fraction;
+    w->ctx->unlooked = BRIO_LOOK_EVERY; /* the next look asks, too */
+    return w->looks > 0 && --w->looks == 0;
+}
+
 static void cancelled_moves_of_all_leave_all(void) {
     static const double SHARE[] = {0.01, 0.03, 0.06};
     size_t n = 1200, cancelled = 0;
     double *p = calloc(3 * n, sizeof *p);
     for (int s = 0; s < 3; s++) {
         world w = world_new(UNIFORM, 0, n + 1);
-        size_t left = 0;
         brio_status status = BRIO_ERR_CANCELLED;
         EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
         insert_many(&w, n);
-        brio_context_set_progress(w.ctx, stop_at, &left);
-        for (size_t k = 1; k < 400 && status != BRIO_OK; k += BRIEF_TESTS ? 5 : 1) {
+        brio_context_set_progress(w.ctx, stop_at_a_look, &w);
+        for (size_t k = 1; k < 1000000 && status != BRIO_OK; k += 1 + k / (BRIEF_TESTS ? 4 : 60)) {
             for (size_t i = 0; i < 3 * n; i++) p[i] = w.point[i] + SHARE[s] / cbrt((double)n) * (2 * draw() - 1);
-            left = k;
+            w.looks = k;
+            w.ctx->unlooked = BRIO_LOOK_EVERY;
             status = brio_dynamic_move(w.d, NULL, p, NULL, n);
-            EXPECT((status == BRIO_OK) == (left > 0) && (status == BRIO_OK || status == BRIO_ERR_CANCELLED),
-                   "%s, %zu are left", brio_message(w.ctx), left);
-            left = 0;
+            EXPECT((status == BRIO_OK) == (w.looks > 0) && (status == BRIO_OK || status == BRIO_ERR_CANCELLED),
+                   "%s, %zu are left", brio_message(w.ctx), w.looks);
+            w.looks = 0;
             cancelled += status != BRIO_OK;
             if (status == BRIO_OK) memcpy(w.point, p, 3 * n * sizeof *p);
             EXPECT(is_as_built(&w), "share %g, stopped at %zu", SHARE[s], k);
@@ -657,6 +527,8 @@ SUITE(test_dynamic) {
     RUN(coordinates_may_be_huge_or_tiny);
     RUN(centres_of_spheres_go);
     RUN(a_folded_hole_is_filled_well_or_not_at_all);
+    RUN(a_hole_that_covers_a_place_twice_stays);
+    RUN(only_one_failure_asks_for_building_anew);
     RUN(failing_memory_leaves_all);
     RUN(cancelled_changes_leave_all);
     RUN(cancelled_moves_of_all_leave_all);

@@ -1,0 +1,61 @@
+/* Random operations on living triangulations, as many as one likes.
+ *
+ * operations COUNT [SEED]: inserts, removes, moves and reweights points, one in most calls, some hundred in some of them, by one
+ * to four threads. Points are uniform, on a grid, cospherical, clustered, on a scan's lines, or all of these, with weights and
+ * without; a triangulation gets 10,000 calls, then another one begins. After every 1,000th call the snapshot is compared with what
+ * brio_delaunay makes of the points that are left, byte by byte, and checked exactly. Prints a line for each kind of points; fails
+ * if there was a difference. */
+#include "../unit/living_world.h"
+
+enum { EACH = 10000, EVERY = 1000 };
+
+static void change_some(world *w, size_t usual) {
+    static const double STEP[] = {1e-9, 1e-3, 0.125, 1};
+    size_t n = draw() < 0.97 ? 1 : 1 + draw_below(300);
+    double what = draw(), more = w->num_points < usual ? 0.35 : 0.15;
+    brio_context_set_threads(w->ctx, n > 128 ? 1 + (int)draw_below(4) : 1);
+    if (what < more)
+        insert_some(w, n);
+    else if (what < 0.5)
+        remove_some(w, n);
+    else if (what < 0.8 || !w->weighted)
+        move_some(w, n, STEP[draw_below(4)]);
+    else
+        reweight_some(w, n);
+}
+
+/* Makes calls with one triangulation; returns how many comparisons found a difference. */
+static size_t run(shape s, int weighted, size_t count, size_t *compared) {
+    static const size_t USUAL[] = {30, 300, 3000};
+    size_t usual = USUAL[draw_below(3)], differences = 0;
+    world w = world_new(s, weighted, 310 * count);
+    EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, weighted, &w.d) == BRIO_OK);
+    for (size_t i = 1; i <= count; i++) {
+        change_some(&w, usual);
+        if (i % EVERY && i < count) continue;
+        differences += !is_as_built(&w) || brio_dynamic_check(w.ctx, w.d) != BRIO_OK;
+        (*compared)++;
+    }
+    world_free(&w);
+    return differences;
+}
+
+int main(int argc, char **argv) {
+    size_t count = argc > 1 ? (size_t)atoll(argv[1]) : 100000, all = 0, differences = 0;
+    size_t calls[NUM_SHAPES][2] = {{0}}, compared[NUM_SHAPES][2] = {{0}}, differ[NUM_SHAPES][2] = {{0}};
+    state = argc > 2 ? (uint64_t)atoll(argv[2]) : 1;
+    for (size_t turn = 0; all < count; turn++) {
+        size_t s = turn / 2 % NUM_SHAPES, weighted = turn % 2, left = count - all, n = left < EACH ? left : EACH;
+        differ[s][weighted] += run((shape)s, (int)weighted, n, &compared[s][weighted]);
+        calls[s][weighted] += n;
+        all += n;
+    }
+    for (size_t s = 0; s < NUM_SHAPES; s++)
+        for (size_t weighted = 0; weighted < 2; weighted++) {
+            printf("%-9s %-9s %8zu operations, %5zu comparisons, %zu differences\n", SHAPE[s],
+                   weighted ? "weighted" : "", calls[s][weighted], compared[s][weighted], differ[s][weighted]);
+            differences += differ[s][weighted];
+        }
+    printf("%zu operations, %zu differences, %d other failures\n", all, differences, harness_failures);
+    return differences || harness_failures;
+}
