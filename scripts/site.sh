@@ -9,10 +9,13 @@ build=$1
 environment=out/site-env
 prefix="$PWD/out/site-prefix"
 
-if ! cmp -s docs/requirements.txt "$environment/requirements.txt"; then
-    /usr/bin/python3 -m venv "$environment"
-    "$environment/bin/pip" install -q --no-compile -r docs/requirements.txt ./python
-    cp docs/requirements.txt "$environment/requirements.txt"
+# What the environment is made of: the packages, and the sources of the module, which has the library in it.
+made_of=$(cat docs/requirements.txt; find python src include cmake CMakeLists.txt -type f ! -name '*.pyc' ! -path '*/build/*' |
+    LC_ALL=C sort | xargs sha256sum | sha256sum)
+if [ "$made_of" != "$(cat "$environment/made-of" 2>/dev/null)" ]; then
+    [ -x "$environment/bin/pip" ] || /usr/bin/python3 -m venv "$environment"
+    "$environment/bin/pip" install -q --no-compile -r docs/requirements.txt ./python # a folder is always installed anew
+    printf '%s\n' "$made_of" >"$environment/made-of"
 fi
 cmake --install "$build" --prefix "$prefix" >/dev/null
 

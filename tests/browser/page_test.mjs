@@ -219,7 +219,7 @@ async function controls() {
     const png = readFileSync(await download.path());
     expect(png.subarray(1, 4).toString() === "PNG" && png.length > 5000, "the saved picture");
     await page.getByRole("button", { name: "Copy the address of this view" }).click();
-    expect(/address/.test(await page.textContent("#status")), "the address is announced");
+    await page.waitForFunction(() => /address/.test(document.getElementById("status").textContent), null, { timeout: 5000 });
     await page.context().close();
     const again = await open("flaws.html", { hash: address });
     const state = await again.evaluate(() => { const a = window.brioPage; return { map: a.drawings[0].state.map, source: a.drawings[0].state.source, visible: a.drawings[1].state.visible, opacity: a.drawings[0].state.opacity, parallel: a.camera.parallel, cut: a.scene.cutting.at, theme: a.theme }; });
@@ -302,6 +302,78 @@ async function tetrahedra() {
         return sum;
     });
     expect(area > 0.85 && area < 1, `the section of a cube has the area ${area}`);
+    await page.context().close();
+}
+
+/** The slider over the alpha filtration: at each value the triangles that brio alpha finds there; what is picked is one of them. */
+async function alphas() {
+    run("generate", "cube", "-n", "120", "-o", "few.xyz");
+    run("alpha", "few.xyz", "--alpha", "auto", "--view", "alphas.html");
+    const page = await open("alphas.html"), slider = page.getByRole("slider", { name: "Alpha" });
+    await page.locator("#visible0").uncheck();
+    const seen = [];
+    for (const part of ["0.15", "0.5", "0.9", "1"]) {
+        await slider.fill(part);
+        await settled(page);
+        const [alpha, boundary, singular] = await page.evaluate(() => { const d = window.brioPage.drawings[1]; return [d.alpha, d.shape.boundary, d.shape.singular]; });
+        const facts = JSON.parse(execFileSync(brio, ["alpha", "few.xyz", "--alpha", String(alpha), "--json"], { cwd: folder }));
+        expect(facts.faces === boundary && facts.internals.singular_facets === singular, `alpha ${alpha}: ${boundary} and ${singular} triangles, brio alpha has ${facts.faces} and ${facts.internals.singular_facets}`);
+        seen.push([boundary, (await picture(page)).count]);
+    }
+    expect(new Set(seen.map(String)).size === 4 && seen[0][1] < seen[3][1], `the pictures do not differ: ${seen}`);
+    expect((await page.locator("#panel [role=status]").textContent()).includes(`${seen[3][0]} triangles bound the solid`), "the panel says how many");
+    const box = await page.locator("#canvas").boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    await page.waitForSelector("#card:not([hidden])");
+    const there = await page.evaluate(() => { const d = window.brioPage.drawings[1], f = window.brioPage.picker.picks[0].face; return d.shape.of.includes(f) && d.layer.filtration.vanishes[f] > d.alpha; });
+    expect(there, "a triangle is picked that is not shown");
+    const hash = await page.evaluate(() => location.hash);
+    await page.context().close();
+    const again = await open("alphas.html", { hash });
+    expect(await again.evaluate(() => window.brioPage.drawings[1].shape.boundary) === seen[3][0], "the address brings alpha back");
+    await again.context().close();
+}
+
+/** Cells and tetrahedra moved apart: each by its own way, whole; the cutting plane takes whole pieces away; picking knows the cell. */
+async function apart() {
+    run("generate", "cube", "-n", "40", "-o", "sites.xyz");
+    run("voronoi", "sites.xyz", "--box", "0,0,0,1,1,1", "-o", "cells.vtu");
+    run("view", "cells.vtu", "-o", "cells.html");
+    const page = await open("cells.html");
+    await page.focus("#canvas");
+    await press(page, "-", "-", "-", "-", "-");
+    const before = await picture(page);
+    await page.getByRole("slider", { name: "Apart" }).fill("0.6");
+    await page.waitForFunction(() => window.brioPage.drawings[0].buffers.placeE);
+    await settled(page);
+    const after = await picture(page);
+    expect(after.box[2] - after.box[0] > 1.2 * (before.box[2] - before.box[0]), `apart ${after.box}, together ${before.box}`);
+    const pieces = await page.evaluate(async () => { const d = window.brioPage.drawings[0]; return [(await d.layer.pieces()).centre.length / 3, d.buffers.placeE.count / 9, d.layer.triangles.length / 3]; });
+    expect(pieces[0] === 40 && pieces[1] === pieces[2], `40 cells, ${pieces}`);
+    await page.focus("#canvas");
+    await press(page, "1", "Enter");
+    await page.waitForSelector("#card:not([hidden])");
+    const card = await page.textContent("#card"), site = await page.evaluate(() => { const p = window.brioPage.picker.picks[0]; return [p.face, p.faceFacts.properties.find(([q]) => q.name === "site")[1]]; });
+    expect(site[0] !== null && site[1] >= 0 && site[1] < 40 && card.includes("volume of the face"), `picked ${site}`);
+    await page.getByLabel("cutting plane").check();
+    await page.waitForFunction(n => window.brioPage.drawings[0].buffers.placeE.count / 9 < n, pieces[2]);
+    const counts = await page.evaluate(async () => { const d = window.brioPage.drawings[0], { piece } = await d.layer.pieces(), kept = new Set(d.chosen.map(t => piece[t])); return [d.chosen.length, piece.filter(c => kept.has(c)).length, kept.size]; });
+    expect(counts[0] === counts[1] && counts[2] > 5 && counts[2] < 35, `whole cells stay: ${counts}`);
+    await page.context().close();
+}
+
+/** Balls about points have the size of their radius. */
+async function balls() {
+    writeFileSync(at("two.csv"), "x,y,z,radius\n0,0,0,1\n4,0,0,0.5\n");
+    run("view", "two.csv", "-o", "two.html");
+    const page = await open("two.html");
+    await page.getByLabel("points", { exact: true }).uncheck();
+    await page.getByLabel("balls of their radii").check();
+    await page.focus("#canvas");
+    await press(page, "o", "1", "-", "-", "-", "-");
+    const seen = await picture(page), [a, b] = [await placeOf(page, [0, 0, 0]), await placeOf(page, [4, 0, 0])], unit = Math.hypot(a[0] - b[0], a[1] - b[1]) / 4;
+    expect(Math.abs(seen.count - Math.PI * 1.25 * unit * unit) < 0.03 * seen.count, `${seen.count} pixels of balls, expected ${Math.PI * 1.25 * unit * unit}`);
+    expect(Math.abs(seen.box[2] - seen.box[0] + 1 - 5.5 * unit) < 3 && Math.abs(seen.box[3] - seen.box[1] + 1 - 2 * unit) < 3, `balls in ${seen.box}`);
     await page.context().close();
 }
 
@@ -464,8 +536,8 @@ async function large() {
     expect(cloud.longest < 100, `a frame took ${cloud.longest} ms`);
 }
 
-const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection };
-const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
+const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection, alphas, apart };
+const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
     for (const [name, test] of Object.entries(length === "long" ? LONG : SHORT)) {
         const began = Date.now();
