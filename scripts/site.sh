@@ -1,6 +1,6 @@
 #!/bin/sh
 # site.sh BUILD: the documentation as a site, in out/site: pages of docs/, the manual of C from the headers (Doxygen), and pages of
-# the gallery, which the commands of docs/gallery.md and docs/start make. With PICTURES=1 also docs/images/gallery, by Chromium.
+# the gallery and of the theory, which the commands of docs/gallery.md, docs/theory.md and docs/start make. With PICTURES=1 also docs/images/gallery, by Chromium.
 #
 # BUILD is the folder of a build of brio.
 set -eu
@@ -23,7 +23,7 @@ export BRIO_GALLERY="$PWD/out/gallery" NO_MKDOCS_2_WARNING=1 PKG_CONFIG_PATH="$p
 export PATH="$prefix/bin:$PWD/$environment/bin:$PATH"
 rm -rf "$BRIO_GALLERY" out/site
 mkdir -p "$BRIO_GALLERY"
-/usr/bin/python3 scripts/run_page.py "$BRIO_GALLERY" docs/gallery.md docs/start/*.md
+/usr/bin/python3 scripts/run_page.py "$BRIO_GALLERY" docs/gallery.md docs/theory.md docs/start/*.md
 [ "${PICTURES:-}" != 1 ] || node scripts/pictures.mjs "$BRIO_GALLERY" docs/images/gallery
 "$environment/bin/mkdocs" build -q
 doxygen docs/Doxyfile

@@ -377,6 +377,55 @@ async function balls() {
     await page.context().close();
 }
 
+/** The live figures of docs/theory.md: cells have the places that are nearest, circles of triangles and polar balls are empty, a drag
+ *  changes the figure. */
+async function figures() {
+    const kinds = ["cells", "power", "alpha", "poles", "crust"], script = readFileSync(new URL("docs/site/figures.js", root), "utf8");
+    writeFileSync(at("figures.html"), `<!doctype html><html lang="en"><title>figures</title><body>${kinds.map(k => `<div class="figure" data-figure="${k}"></div>`).join("")}<script>${script}</script></body></html>`);
+    const context = await browser.newContext({ viewport: { width: 700, height: 500 }, offline: true }), page = await context.newPage();
+    page.on("console", m => expect(false, `figures: ${m.text()}`));
+    page.on("pageerror", e => expect(false, `figures: ${e.message}`));
+    await page.goto(`file://${at("figures.html")}`);
+    await page.waitForFunction(() => window.brioFigures?.every(f => f.pen));
+    const picture = kind => page.evaluate(k => window.brioFigures.find(f => f.box.dataset.figure === k).canvas.toDataURL(), kind);
+    const wrong = await page.evaluate(() => {
+        const [cells, power, alpha, poles, crust] = window.brioFigures, out = [], far = (a, b) => (a.x - b.x) ** 2 + (a.y - b.y) ** 2;
+        const inside = (cell, p) => cell.length > 2 && cell.every((a, k) => { const b = cell[(k + 1) % cell.length]; return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) >= 0; });
+        for (const f of [cells, power])
+            for (let i = 0; i < 400; i++) {
+                const p = { x: (i * 0.618034 % 1) * 1.6, y: (i * 0.754878) % 1 }, d = f.sites.map(s => far(s, p) - s.w), best = d.indexOf(Math.min(...d));
+                if (!inside(f.cells[best], p)) out.push(`${f.kind.words}: ${p.x} ${p.y} is not in cell ${best}`);
+            }
+        for (const t of cells.dual.triangles) if (cells.sites.some((s, i) => !t.corners.includes(i) && far(s, t.centre) < far(cells.sites[t.corners[0]], t.centre) - 1e-9)) out.push(`the circle of ${t.corners} is not empty`);
+        const { edges, triangles } = alpha.filtration, n = alpha.sites.length;
+        if (n - edges.length + triangles.length !== 1) out.push(`${n} points, ${edges.length} edges, ${triangles.length} triangles: no disk`);
+        for (const t of triangles) for (const e of edges) if (e.ends.every(v => t.corners.includes(v)) && e.value > t.value + 1e-12) out.push("an edge comes after its triangle");
+        for (const q of poles.poles) if (poles.sites.some(s => far(s, q) < far(poles.sites[poles.chosen], q) - 1e-9)) out.push("a polar ball is not empty");
+        if (poles.poles.length !== 2) out.push("not two poles");
+        const edgesOf = crust.crust.filter(([a, b]) => far(a, b) > 1e-14), ends = edgesOf.flat();
+        const odd = ends.filter(p => ends.filter(q => far(p, q) < 1e-12).length % 2);
+        if (odd.length) out.push(`the crust is not closed at ${odd.map(p => `${p.x} ${p.y}`)}`);
+        if (!crust.sites.every(s => crust.crust.some(e => e.some(p => far(p, s) < 1e-12)))) out.push("the crust leaves samples out");
+        return out;
+    });
+    expect(wrong.length === 0, wrong.slice(0, 5).join("; "));
+    const before = await picture("cells"), box = await page.locator("[data-figure=cells] canvas").boundingBox();
+    const site = await page.evaluate(() => window.brioFigures[0].sites[7]), place = p => [box.x + p.x / 1.6 * box.width, box.y + p.y * box.height];
+    await page.mouse.move(...place(site));
+    await page.mouse.down();
+    await page.mouse.move(...place({ x: 0.8, y: 0.5 }), { steps: 3 });
+    await page.mouse.up();
+    const moved = await page.evaluate(() => window.brioFigures[0].sites[7]);
+    expect(Math.hypot(moved.x - 0.8, moved.y - 0.5) < 0.02 && await picture("cells") !== before, `a drag moves a point to ${moved.x} ${moved.y}`);
+    for (const kind of kinds.slice(1)) {
+        const was = await picture(kind);
+        await page.locator(`[data-figure=${kind}] input`).evaluate(e => { e.value = e.max; e.dispatchEvent(new Event("input")); });
+        expect(await picture(kind) !== was, `the slider of ${kind} changes nothing`);
+    }
+    await accessible(page, "figures");
+    await context.close();
+}
+
 /** At 400 pixels nothing is wider than the window, and what axe calls serious is nowhere, dark or light. */
 async function narrow() {
     const page = await open("flaws.html", { width: 400, height: 760 });
@@ -536,8 +585,8 @@ async function large() {
     expect(cloud.longest < 100, `a frame took ${cloud.longest} ms`);
 }
 
-const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection, alphas, apart };
-const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
+const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection, alphas, apart, figures };
+const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, figures, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
     for (const [name, test] of Object.entries(length === "long" ? LONG : SHORT)) {
         const began = Date.now();
