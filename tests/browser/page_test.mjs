@@ -1,4 +1,4 @@
-// What a page shows, in Chromium with its software renderer: node page_test.mjs BRIO [long]. Pages are made of files written here,
+// What a page shows, in Chromium with its software renderer: node page_test.mjs BRIO [long|bench]. Pages are made of files written here,
 // so that what has to be seen is known: silhouettes and colours of pictures, coordinates of picked vertices to the last bit, every
 // control, touch, keys, a narrow window, and what axe-core finds. No page may ask for anything, or complain on the console.
 //
@@ -552,23 +552,38 @@ async function lost() {
     }
 }
 
+/** Opens a page and moves it; says how long that took. */
+async function measure(name, words) {
+    const began = Date.now(), page = await open(name), seconds = (Date.now() - began) / 1000, first = await page.evaluate(() => window.brioPage.firstPicture / 1000);
+    await page.evaluate(() => { window.brioPage.longest = 0; });
+    const box = await page.locator("#canvas").boundingBox();
+    await page.mouse.move(box.x + 300, box.y + 300);
+    await page.mouse.down();
+    for (let i = 0; i < 20; i++) { await page.mouse.move(box.x + 300 + 5 * i, box.y + 300); await page.waitForTimeout(30); }
+    const longest = await page.evaluate(() => window.brioPage.longest);
+    await page.mouse.up();
+    await settled(page);
+    const size = statSync(at(name)).size / 1e6;
+    console.log(`${words}: ${size.toFixed(1)} MB, ${first.toFixed(1)} s to the first picture, ${seconds.toFixed(1)} s to the whole one, longest block while moving ${longest.toFixed(0)} ms`);
+    await page.context().close();
+    return { size, longest, first, seconds };
+}
+
+/** What docs/view.md says of times, on a machine that does nothing else: the page of a scan of 35,000 points, and of 2 million triangles. */
+async function bench() {
+    const empty = statSync(new URL("web/page.html", root)).size / 1e3;
+    console.log(`the page without data: ${empty.toFixed(0)} kB`);
+    expect(empty < 250, "the page without data has 250 kB");
+    run("generate", "scan", "-n", "35000", "-o", "scan.ply");
+    run("surface", "scan.ply", "-o", "surface.ply");
+    run("view", "surface.ply", "-o", "surface.html");
+    expect((await measure("surface.html", "a surface of 35,000 points")).first < 1, "it is not seen within a second");
+    const { first, seconds } = await large();
+    expect(first < 5 && seconds < 10, "2 million triangles are not seen within five seconds");
+}
+
 /** Clouds, also of a million points: thinned while it moves; no frame blocks. */
 async function large() {
-    const measure = async (name, words) => {
-        const began = Date.now(), page = await open(name), seconds = (Date.now() - began) / 1000, first = await page.evaluate(() => window.brioPage.firstPicture / 1000);
-        await page.evaluate(() => { window.brioPage.longest = 0; });
-        const box = await page.locator("#canvas").boundingBox();
-        await page.mouse.move(box.x + 300, box.y + 300);
-        await page.mouse.down();
-        for (let i = 0; i < 20; i++) { await page.mouse.move(box.x + 300 + 5 * i, box.y + 300); await page.waitForTimeout(30); }
-        const longest = await page.evaluate(() => window.brioPage.longest);
-        await page.mouse.up();
-        await settled(page);
-        const size = statSync(at(name)).size / 1e6;
-        console.log(`${words}: ${size.toFixed(1)} MB, ${first.toFixed(1)} s to the first picture, ${seconds.toFixed(1)} s to the whole one, longest block while moving ${longest.toFixed(0)} ms`);
-        await page.context().close();
-        return { size, longest };
-    };
     let state = 1;
     const noise = () => (state = (state * 48271) % 2147483647) / 2147483647;
     const n = 1001, vertices = [], faces = [];
@@ -583,12 +598,13 @@ async function large() {
     run("view", "cloud.npy", "-o", "cloud.html");
     const cloud = await measure("cloud.html", "2 million points");
     expect(cloud.longest < 100, `a frame took ${cloud.longest} ms`);
+    return mesh;
 }
 
 const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection, alphas, apart, figures };
 const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, figures, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
-    for (const [name, test] of Object.entries(length === "long" ? LONG : SHORT)) {
+    for (const [name, test] of Object.entries({ short: SHORT, long: LONG, bench: { bench } }[length])) {
         const began = Date.now();
         try { await test(); } catch (error) { expect(false, `${name}: ${error.stack}`); }
         if (length === "long") console.log(`${name}: ${((Date.now() - began) / 1000).toFixed(1)} s`);
