@@ -120,15 +120,15 @@ class Shows(PictureTest):
                 points += corners
                 faces.append((n, n + 1, n + 2) if front else (n, n + 2, n + 1))
             mesh = self.ply("soup.ply", points, faces, face=["uchar red", "uchar green", "uchar blue"], marks=lambda i: "%d %d %d" % hues[i])
-            rows, facts = self.picture(mesh, "--look=%s,%s,%s" % look, size="96x64")
-            project = Projection(points, look, 96, 64)
+            rows, facts = self.picture(mesh, "--look=%s,%s,%s" % look, size="78x52")
+            project = Projection(points, look, 78, 52)
             self.assertAlmostEqual(facts["pixel"] * project.scale, 1, 9)
             for got, wanted in zip(facts["look"], unit(look)):
                 self.assertAlmostEqual(got, wanted, 12)
             triangles = [[project(points[v]) for v in f] for f in faces]
             judged = [0, 0]
-            for y in range(64):
-                for x in range(96):
+            for y in range(52):
+                for x in range(78):
                     if any(from_segment(t[k], t[k - 1], x + 0.5, y + 0.5) < 2.2 for t in triangles for k in range(3)):
                         continue  # where the boundaries are marked
                     heights = [(z, i) for i, t in enumerate(triangles) for z in [over(t, x + 0.5, y + 0.5)] if z is not None]
@@ -237,8 +237,8 @@ class Bytes(PictureTest):
         draw = random.Random(3)
         cloud = self.ply("c.ply", [(draw.random(), 0, draw.random()) for _ in range(4000)], vertex=["uchar red", "uchar green", "uchar blue"],
                          rows=lambda i: "%d %d %d" % tuple(draw.randrange(256) for _ in range(3)))
-        _, facts = self.picture(cloud, "--look", "0,1,0", size="300x211")
-        self.assertTrue(len(self.filters) > 2 and 50000 < facts["bytes"] < 3 * 300 * 211)
+        _, facts = self.picture(cloud, "--look", "0,1,0", size="200x141")
+        self.assertTrue(len(self.filters) > 2 and 30000 < facts["bytes"] < 3 * 200 * 141)
         rows, facts = self.picture(self.ply("empty.ply", []), size="1000x3")
         self.assertEqual({p for row in rows for p in row}, {BACKGROUND})
         self.assertLess(facts["bytes"], 600)
