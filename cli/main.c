@@ -148,8 +148,8 @@ static int run_command(const command *c, int argc, char **argv) {
     cli_opening_facts(&r);
     r.lap = cli_clock();
     TRY(c->run(&r));
-    if (r.common.view && !r.shown)
-        FAIL(&r, BRIO_ERR_ARGUMENT, "--view: this run of %s makes nothing that a page shows", c->name);
+    if (cli_showing(&r) && !r.shown)
+        FAIL(&r, BRIO_ERR_ARGUMENT, "%s: this run of %s makes nothing that can be shown", cli_showing(&r), c->name);
 done:;
     int code = finish(&r, status);
     free(arguments);

@@ -113,9 +113,23 @@ static double up_to(double alpha, const brio_mesh *points) {
     return radius * radius;
 }
 
+/* Makes the layer of a page that shows all alphas, with a slider. With more facets it would be too large a page. */
+static brio_status show_filtration(run *r, const brio_mesh *input, const brio_alpha_complex *complex, brio_mesh **out) {
+    enum { MOST_FACETS = 800000 }; /* of 60,000 points; chosen: 20 MB, and the slider answers at once */
+    if (!r->common.view) return BRIO_OK;
+    if (complex->counts[2] > MOST_FACETS) {
+        cli_warn(r, WARNING_FILTRATION, r->common.view, complex->counts[2]);
+        return BRIO_OK;
+    }
+    FORWARD(brio_alpha_facets(r->ctx, input->vertices, complex, out));
+    r->beside = *out;
+    r->beside_name = "all alphas";
+    return BRIO_OK;
+}
+
 static brio_status make_shape(run *r, const brio_mesh *input, const brio_alpha_complex *complex, double alpha) {
     brio_status status = BRIO_OK;
-    brio_mesh *surface = NULL;
+    brio_mesh *surface = NULL, *facets = NULL;
     brio_alpha_shape_stats s = {0};
     double most = up_to(alpha, input);
     if (isnan(alpha)) TRY(brio_alpha_auto(r->ctx, complex, &most));
@@ -126,8 +140,11 @@ static brio_status make_shape(run *r, const brio_mesh *input, const brio_alpha_c
     TRY(cli_carry_properties(r, input, NULL, surface));
     TRY(cli_check_interrupt(r));
     TRY(cli_certify(r, surface, 0));
+    TRY(show_filtration(r, input, complex, &facets));
     TRY(cli_write(r, surface));
 done:
+    r->beside = NULL;
+    brio_mesh_free(facets);
     brio_mesh_free(surface);
     return status;
 }

@@ -152,7 +152,7 @@ static brio_status compare_surfaces(run *r, const brio_mesh *a, const brio_mesh 
     brio_status status = BRIO_OK;
     if (cli_wants_mesh(r))
         FAIL(r, BRIO_ERR_ARGUMENT, "two surfaces: %s is for points compared with a surface",
-             r->common.output ? "-o" : "--view");
+             r->common.output ? "-o" : cli_showing(r));
     status = brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &d);
     if (status == BRIO_ERR_ARGUMENT) /* faces without area, or of two corners */
         FAIL(r, BRIO_ERR_NO_ANSWER, "%s, %s: %s", r->operands[0], r->operands[1], brio_message(r->ctx));

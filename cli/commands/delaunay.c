@@ -156,7 +156,7 @@ static brio_status check_tiles(run *r, const arguments *a) {
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING || a->verify ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->order.block_size ||
                 !isnan(a->order.round_ratio);
-    if (r->common.view) return cli_fail(r, BRIO_ERR_ARGUMENT, "--view: not with --tiles");
+    if (cli_showing(r)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: not with --tiles", cli_showing(r));
     if (once)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles goes with weights and -o, not with --plane, --verify, orders, "
@@ -185,8 +185,8 @@ static brio_status check_periodic(run *r, const arguments *a) {
     bool open = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->tiles;
-    if (cli_is_periodic(&a->periodic) && r->common.view)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--view: not with --cell");
+    if (cli_is_periodic(&a->periodic) && cli_showing(r))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: not with --cell", cli_showing(r));
     if (cli_is_periodic(&a->periodic) && open)
         return cli_fail(
             r, BRIO_ERR_ARGUMENT,

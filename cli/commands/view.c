@@ -47,9 +47,9 @@ static void report(run *r, brio_mesh *const *meshes, int count) {
 static brio_status check_output(run *r) {
     const common_options *c = &r->common;
     const char *given = c->format ? "format" : c->ascii ? "ascii" : c->float32 ? "float32" : NULL;
-    if (!c->output) return cli_fail_output(r, "no output: -o FILE is missing");
+    if (!c->output && !c->picture) return cli_fail_output(r, "no output: -o FILE is missing");
     if (given) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s has no meaning here: a page has one form", given);
-    return strcmp(c->output, "-") ? cli_check_page(r, "output", c->output) : BRIO_OK;
+    return c->output && strcmp(c->output, "-") ? cli_check_page(r, "output", c->output) : BRIO_OK;
 }
 
 static brio_status view(run *r) {
@@ -72,7 +72,9 @@ static brio_status view(run *r) {
         list[i] = &layers[i];
     }
     report(r, meshes, r->num_operands);
-    TRY(cli_write_page(r, r->common.output, list, (size_t)r->num_operands, &o));
+    if (r->common.output) TRY(cli_write_page(r, r->common.output, list, (size_t)r->num_operands, &o));
+    if (r->common.picture) TRY(cli_write_picture(r, list, (size_t)r->num_operands, &o));
+    r->shown = true;
 done:
     for (int i = 0; i < MOST_FILES; i++) brio_mesh_free(meshes[i]);
     return status;
@@ -81,15 +83,17 @@ done:
 const command cli_view = {
     .name = "view",
     .operands = "FILE ...",
-    .summary = "one page that shows files in a browser: points, surfaces, tetrahedra",
+    .summary = "one page that shows files in a browser, or a picture: points, surfaces, tetrahedra",
     .description =
         "The page is one HTML file that needs no network and no installation. It shows colours and properties, the "
         "certificate of faces, boundaries and edges of more than two faces, and tetrahedra with a cutting plane. "
         "Several files are layers of one scene, or stand side by side.",
     .examples = "brio view surface.ply -o page.html\nopen page.html in a browser\n"
                 "brio view scan.ply surface.ply -o both.html\nthe points over their surface\n"
-                "brio view before.ply after.ply --side-by-side -o compare.html\nturned together\n",
+                "brio view before.ply after.ply --side-by-side -o compare.html\nturned together\n"
+                "brio view surface.ply --picture surface.png\na picture, without a browser\n",
     .has_output = true,
+    .shows = true,
     .outputs = ".html .htm",
     .group = GROUP_FILES,
     .min_operands = 1,

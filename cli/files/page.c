@@ -1,8 +1,9 @@
-/* Pages that show meshes: --view of every command that writes a mesh, and brio view. */
+/* Pages and pictures that show meshes: --view and --picture of every command that writes a mesh, and brio view. */
 #include "cli/files/read_write.h"
 #include "cli/files/files.h"
 #include "cli/run/interrupt.h"
 #include "platform/program.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -38,6 +39,84 @@ brio_status cli_write_page(run *r, const char *path, const brio_page_layer *cons
     return BRIO_OK;
 }
 
+/* --- pictures --- */
+
+/* Reads three numbers X,Y,Z, not all 0. */
+static bool read_direction(const char *text, double direction[3]) {
+    bool zero = true;
+    for (int k = 0; k < 3; k++) {
+        char *end;
+        direction[k] = strtod(text, &end);
+        if (end == text || !isfinite(direction[k]) || *end != (k < 2 ? ',' : 0)) return false;
+        zero &= direction[k] == 0;
+        text = end + 1;
+    }
+    return !zero;
+}
+
+/* Reads two whole numbers WxH; the library says how large they may be. */
+static bool read_size(const char *text, int size[2]) {
+    for (int k = 0; k < 2; k++) {
+        char *end;
+        long number = strtol(text, &end, 10);
+        if (end == text || number < 1 || number > 1000000 || *end != (k < 1 ? 'x' : 0)) return false;
+        size[k] = (int)number;
+        text = end + 1;
+    }
+    return true;
+}
+
+brio_status cli_check_picture(run *r) {
+    const common_options *c = &r->common;
+    const char *dot = c->picture ? strrchr(c->picture, '.') : NULL, *idle = NULL;
+    double direction[3];
+    int size[2];
+    if (!c->picture) idle = c->look ? "look" : c->colour_by ? "colour-by" : c->picture_size ? "picture-size" : NULL;
+    if (idle) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s has no meaning without --picture", idle);
+    if (!c->picture) return BRIO_OK;
+    if (!dot || strcasecmp(dot, ".png") != 0)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: a picture is .png", c->picture);
+    if (c->look && !read_direction(c->look, direction))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--look: '%s' is no direction; expected three numbers X,Y,Z, not all 0",
+                        c->look);
+    if (c->picture_size && !read_size(c->picture_size, size))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "--picture-size: '%s' is no size; expected pixels WxH, such as 1920x1080",
+                        c->picture_size);
+    return cli_check_beside(r, "picture", c->picture);
+}
+
+brio_status cli_write_picture(run *r, const brio_page_layer *const *layers, size_t num_layers,
+                              const brio_page_options *page) {
+    const common_options *c = &r->common;
+    brio_picture_options o = {.size = sizeof o, .colour = c->colour_by};
+    brio_picture_stats stats = {.size = sizeof stats};
+    int size[2] = {0, 0};
+    if (c->look) read_direction(c->look, o.from);
+    if (c->picture_size) read_size(c->picture_size, size);
+    o.width = size[0];
+    o.height = size[1];
+    o.self_intersections = page && page->self_intersections;
+    o.side_by_side = page && page->side_by_side;
+    FORWARD(cli_check_interrupt(r));
+    cli_interrupt_writing(true);
+    brio_status status = brio_write_picture(r->ctx, c->picture, layers, num_layers, &o, &stats);
+    cli_interrupt_writing(false);
+    cli_lap(r, "picture");
+    if (status != BRIO_OK) return status;
+    cli_fact_open(&r->facts, "picture", FACT_OBJECT);
+    cli_fact_bytes(&r->facts, "bytes", stats.bytes);
+    cli_fact_open(&r->facts, "look", FACT_LIST);
+    for (int k = 0; k < 3; k++) cli_fact_real(&r->facts, NULL, stats.from[k]);
+    cli_fact_close(&r->facts);
+    cli_fact_real(&r->facts, "pixel", stats.pixel);
+    if (stats.low < stats.high) cli_fact_real(&r->facts, "low", stats.low);
+    if (stats.low < stats.high) cli_fact_real(&r->facts, "high", stats.high);
+    cli_fact_close(&r->facts);
+    return BRIO_OK;
+}
+
+/* --- what a command shows --- */
+
 /* Writes the report so far. */
 static void write_report(FILE *stream, void *object) {
     run *r = object;
@@ -47,14 +126,16 @@ static void write_report(FILE *stream, void *object) {
 brio_status cli_show(run *r, const brio_mesh *mesh) {
     brio_status status = BRIO_OK;
     char *report = NULL;
-    if (!r->common.view) return BRIO_OK;
+    if (!cli_showing(r)) return BRIO_OK;
     report = brio_program_text(write_report, r);
     if (!report) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for the report on a page");
     const char *path = r->common.output ? r->common.output : r->operands[0];
     const brio_page_layer layer = {.mesh = mesh, .name = cli_page_name(path), .report = report};
-    const brio_page_layer *layers[] = {&layer};
-    status = cli_write_page(r, r->common.view, layers, 1, NULL);
-    r->shown = status == BRIO_OK;
+    const brio_page_layer more = {.mesh = r->beside, .name = r->beside_name};
+    const brio_page_layer *layers[] = {&layer, &more};
+    if (r->common.view) TRY(cli_write_page(r, r->common.view, layers, r->beside ? 2 : 1, NULL));
+    if (r->common.picture) TRY(cli_write_picture(r, layers, 1, NULL));
+    r->shown = true;
 done:
     free(report);
     return status;

@@ -56,19 +56,21 @@ static brio_status refuse_idle(run *r) {
     return BRIO_OK;
 }
 
-/* Refuses --view for a command that makes no mesh: it writes nothing, or what is no mesh, or a file by itself. */
-static brio_status check_view(run *r) {
+/* Refuses --view and --picture for a command that makes no mesh: it writes nothing, or what is no mesh, or a file by
+ * itself. */
+static brio_status check_shown(run *r) {
     const command *c = r->command;
-    if (!r->common.view) return BRIO_OK;
-    if (!c->has_output || c->outputs || c->writes_last)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--view has no meaning for %s; brio view shows files", c->name);
-    return cli_check_page(r, "view", r->common.view);
+    const char *name = c->shows ? r->common.view ? "--view" : NULL : cli_showing(r);
+    if (name && (!c->has_output || c->outputs || c->writes_last))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s has no meaning for %s; brio view shows files", name, c->name);
+    FORWARD(cli_check_page(r, "view", r->common.view));
+    return cli_check_picture(r);
 }
 
 brio_status cli_check_common(run *r) {
     const common_options *c = &r->common;
     FORWARD(refuse_idle(r));
-    FORWARD(check_view(r));
+    FORWARD(check_shown(r));
     if (c->threads < 0 || c->threads > MAX_THREADS)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--threads: %d is not between 0 and %d", c->threads, MAX_THREADS);
     if (c->json && cli_goes_to_stdout(c->output))
@@ -162,7 +164,7 @@ brio_status cli_read_samples(run *r, const char *path, brio_mesh **out) {
 brio_status cli_require_output_holding(run *r, cli_holds holds, bool optional) {
     const common_options *c = &r->common;
     brio_format format;
-    if (!c->output && (optional || c->json || c->view)) return BRIO_OK;
+    if (!c->output && (optional || c->json || cli_showing(r))) return BRIO_OK;
     if (!c->output) return cli_fail_output(r, "no output: -o FILE is missing");
     FORWARD(cli_output_format(r, c->output, c->format, &format));
     const brio_format_info *info = brio_format_facts(format);

@@ -39,13 +39,14 @@ brio_status cli_require_output_for(run *r, const char *option, bool given);
 brio_status cli_require_output(run *r, bool optional);
 /** Finds the same where an option changes what the command writes. */
 brio_status cli_require_output_holding(run *r, cli_holds holds, bool optional);
-/** Writes to -o and, where --view asks for it, a page; does nothing without them. The time is lapped as `write`, and as
- *  `view`. */
+/** Writes to -o and, where --view and --picture ask for them, a page and a picture; does nothing without them. The
+ * time is
+ *  lapped as `write`, `view` and `picture`. */
 brio_status cli_write(run *r, const brio_mesh *mesh);
 /** Writes to another file, by its extension. */
 brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh);
 
-/* --- pages that show meshes in a browser (page.c) --- */
+/* --- pages that show meshes in a browser, and pictures (page.c) --- */
 
 /** Returns what a page calls a file: its name without the folders. */
 const char *cli_page_name(const char *path);
@@ -55,7 +56,14 @@ brio_status cli_check_page(run *r, const char *name, const char *path);
 /** Writes a page, reports its size, and warns of points that are not on it. The time is lapped as `view`. */
 brio_status cli_write_page(run *r, const char *path, const brio_page_layer *const *layers, size_t num_layers,
                            const brio_page_options *options);
-/** Writes the page of --view, with the report so far beside the mesh; does nothing without --view. */
+/** Finds everything wrong with --picture and its options that can be found before the work. */
+brio_status cli_check_picture(run *r);
+/** Writes the picture of --picture, and reports from where it is seen. The time is lapped as `picture`.
+ *  page  the options of a page that a picture has, too: crossings, side by side; NULL for the defaults. */
+brio_status cli_write_picture(run *r, const brio_page_layer *const *layers, size_t num_layers,
+                              const brio_page_options *page);
+/** Writes the page of --view, with the report so far beside the mesh, and the picture of --picture; does nothing
+ *  without them. */
 brio_status cli_show(run *r, const brio_mesh *mesh);
 
 #endif

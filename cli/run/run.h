@@ -60,6 +60,7 @@ void cli_notes_print(FILE *out, const char *kind, const notes *n);
 
 typedef struct common_options {
     const char *output, *format, *view, *input_format, *columns, *scratch;
+    const char *picture, *look, *colour_by, *picture_size;
     bool json, quiet, verbose, progress, ascii, float32, compress, drop_invalid, salvage;
     int threads;
     uint64_t seed;
@@ -107,9 +108,11 @@ typedef struct run {
     char message[1024];            /* of a failure found here; the library's is in the context */
     brio_failure failure;          /* what is known of the failure of `message` */
     notes warnings, hints;
-    bool flat;       /* a failure is explained by the points: they lie in a plane or on a line */
-    bool shown;      /* the page of --view was written */
-    bool over_limit; /* an estimate is over --max-memory */
+    bool flat;               /* a failure is explained by the points: they lie in a plane or on a line */
+    const brio_mesh *beside; /* set by a command before it writes: a second layer of the page of --view, */
+    const char *beside_name; /* and what it is called there */
+    bool shown;              /* the page of --view, the picture of --picture was written */
+    bool over_limit;         /* an estimate is over --max-memory */
 } run;
 
 /** Where the help lists a command. */
@@ -128,6 +131,7 @@ typedef struct command {
     command_group group;
     int min_operands, max_operands;
     bool writes_last; /* the last of max_operands operands is the output, as -o is */
+    bool shows;       /* shows files: its output is a page, and it has pictures, but no --view */
     int first_input;  /* operands before it say what to do; without inputs the report names the first */
     const option *options;
     const void *defaults; /* what the command's options are before the line is read */
@@ -162,9 +166,14 @@ brio_failure cli_failure(const run *r);
 const char *cli_message(const run *r, brio_status status);
 int cli_exit_code(brio_status status);
 
-/** Returns whether a mesh is asked for: a file of it, or a page that shows it. */
+/** Returns the option that shows the result, "--view" or "--picture", or NULL. */
+static inline const char *cli_showing(const run *r) {
+    return r->common.view ? "--view" : r->common.picture ? "--picture" : NULL;
+}
+
+/** Returns whether a mesh is asked for: a file of it, or a page or a picture that shows it. */
 static inline bool cli_wants_mesh(const run *r) {
-    return r->common.output || r->common.view;
+    return r->common.output || cli_showing(r);
 }
 
 /** Ends a stage of the clock. */

@@ -40,6 +40,8 @@
 
 #define WARNING_PAGE "%s: %llu points are not on the page, which shows an even choice; --points N shows more"
 
+#define WARNING_FILTRATION "%s: shows this alpha alone: with its %zu facets the page would be too large for all alphas"
+
 #define WARNING_DENSITY                                                                                                \
     "the points hardly show the surface (median of r %.2f; points all over a volume have 1.05): too few of them, "     \
     "noise, or thin walls; with noise --method labeled-delaunay does better"

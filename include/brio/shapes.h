@@ -182,6 +182,18 @@ typedef struct brio_alpha_shape_stats {
 BRIO_API brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
                                       double alpha, brio_mesh **out, brio_alpha_shape_stats *stats);
 
+/** Lists every facet of the filtration as a mesh: all alpha shapes at once, for a slider. Its faces have three
+ * properties
+ *  (float64): a facet is in the complex from `appears` on, a face of its solid from `solid` on, and inside the solid
+ *  from `vanishes` on, which is INFINITY on the convex hull. So the boundary at alpha is solid <= alpha < vanishes,
+ *  and the singular facets are appears <= alpha < solid. Facets are seen counterclockwise from the side that is
+ *  outside between the two; they are in the order of complex->simplices[2].
+ *  points   those of the complex, which is of points in space.   out  all points as vertices; owned by the caller.
+ *  Cost: linear; 44 bytes a facet. Returns BRIO_OK, BRIO_ERR_ARGUMENT (the plane), BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_alpha_facets(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
+                                       brio_mesh **out);
+
 /** Text formats of filtrations. */
 typedef enum brio_filtration_format {
     BRIO_FILTRATION_GUDHI = 0, /* a line a simplex, "dimension vertices value", as GUDHI's simplex tree reads it */

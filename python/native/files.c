@@ -131,9 +131,22 @@ static PyObject *convert(PyObject *module, PyObject *args) {
 
 enum { MOST_LAYERS = 12 }; /* as brio view shows: the page has as many colours */
 
-static PyObject *refuse_layers(module_state *state) {
-    raise_argument(state, PyUnicode_FromFormat("a page shows at most %d meshes", MOST_LAYERS));
-    return NULL;
+/* Reads ((mesh, name, report), ...) as layers; returns their number, -1 after an error. */
+static Py_ssize_t take_layers(module_state *state, PyObject *given, brio_page_layer layers[MOST_LAYERS],
+                              const brio_page_layer *list[MOST_LAYERS]) {
+    Py_ssize_t count = PyTuple_Size(given);
+    if (count > MOST_LAYERS) {
+        raise_argument(state, PyUnicode_FromFormat("a page shows at most %d meshes", MOST_LAYERS));
+        return -1;
+    }
+    for (Py_ssize_t i = 0; i < count; i++) {
+        PyObject *object;
+        if (!PyArg_ParseTuple(PyTuple_GetItem(given, i), "Ozz", &object, &layers[i].name, &layers[i].report)) return -1;
+        layers[i].mesh = handle_object(state, object, KIND_MESH);
+        if (!layers[i].mesh) return -1;
+        list[i] = &layers[i];
+    }
+    return count;
 }
 
 /* write_page(path, ((mesh, name, report), ...), (title, most_points, exact, self_intersections, side_by_side), threads,
@@ -143,7 +156,7 @@ static PyObject *write_page(PyObject *module, PyObject *args) {
     brio_page_options o = {.size = sizeof o};
     brio_page_layer layers[MOST_LAYERS] = {{0}};
     const brio_page_layer *list[MOST_LAYERS];
-    Py_ssize_t points;
+    Py_ssize_t points, count;
     const char *path;
     int threads;
     call c;
@@ -151,21 +164,36 @@ static PyObject *write_page(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "yO!(znppp)iO", &path, &PyTuple_Type, &given, &o.title, &points, &o.exact,
                           &o.self_intersections, &o.side_by_side, &threads, &progress))
         return NULL;
-    Py_ssize_t count = PyTuple_Size(given);
-    if (count > MOST_LAYERS) return refuse_layers(state_of(module));
-    for (Py_ssize_t i = 0; i < count; i++) {
-        PyObject *object;
-        if (!PyArg_ParseTuple(PyTuple_GetItem(given, i), "Ozz", &object, &layers[i].name, &layers[i].report))
-            return NULL;
-        layers[i].mesh = handle_object(state_of(module), object, KIND_MESH);
-        if (!layers[i].mesh) return NULL;
-        list[i] = &layers[i];
-    }
+    if ((count = take_layers(state_of(module), given, layers, list)) < 0) return NULL;
     o.most_points = (size_t)points;
     if (call_begin(&c, state_of(module), threads, progress)) return NULL;
     CALL(c, status, brio_write_page(c.ctx, path, list, (size_t)count, &o, NULL));
     if (call_end(&c, status)) return NULL;
     Py_RETURN_NONE;
+}
+
+/* write_picture(path, ((mesh, name, report), ...), (width, height, colour, self_intersections, side_by_side, dark),
+ * (x, y, z), threads, progress); colour may be None. Returns ((x, y, z), pixel, (low, high)). */
+static PyObject *write_picture(PyObject *module, PyObject *args) {
+    PyObject *given, *progress;
+    brio_picture_options o = {.size = sizeof o};
+    brio_picture_stats s = {.size = sizeof s};
+    brio_page_layer layers[MOST_LAYERS] = {{0}};
+    const brio_page_layer *list[MOST_LAYERS];
+    Py_ssize_t count;
+    const char *path;
+    int threads;
+    call c;
+    brio_status status;
+    if (!PyArg_ParseTuple(args, "yO!(iizppp)(ddd)iO", &path, &PyTuple_Type, &given, &o.width, &o.height, &o.colour,
+                          &o.self_intersections, &o.side_by_side, &o.dark, &o.from[0], &o.from[1], &o.from[2], &threads,
+                          &progress))
+        return NULL;
+    if ((count = take_layers(state_of(module), given, layers, list)) < 0) return NULL;
+    if (call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_write_picture(c.ctx, path, list, (size_t)count, &o, &s));
+    if (call_end(&c, status)) return NULL;
+    return Py_BuildValue("(ddd)d(dd)", s.from[0], s.from[1], s.from[2], s.pixel, s.low, s.high);
 }
 
 PyMethodDef files_methods[] = {
@@ -174,5 +202,6 @@ PyMethodDef files_methods[] = {
     {"convert", convert, METH_VARARGS,
      "convert(from, to, columns, write options, box, (neighbours, factor, thin, merge, distance), threads, progress)"},
     {"write_page", write_page, METH_VARARGS, "write_page(path, layers, options, threads, progress)"},
+    {"write_picture", write_picture, METH_VARARGS, "write_picture(path, layers, options, look, threads, progress)"},
     {NULL, NULL, 0, NULL},
 };

@@ -56,3 +56,30 @@ def test_wrong_calls():
         brio.view(*[TRIANGLE] * 13)
     with pytest.raises(brio.ArgumentError):
         brio.view(TRIANGLE, title=3)
+
+
+def test_a_picture_is_seen_from_where_it_is_asked_for():
+    triangle = brio.Mesh(TRIANGLE, [[0, 1, 2]], properties={"heat": [1.0, 2.0, 4.0]})
+    seen = brio.picture(triangle, look=(0, 0, 2), size=(100, 100), colour_by="heat")
+    assert seen.png.startswith(b"\x89PNG\r\n\x1a\n") and seen.png[16:24] == (100).to_bytes(4, "big") * 2
+    assert seen.look == (0, 0, 1) and seen.range == (1, 4) and abs(seen.pixel - 1 / 92) < 1e-12
+    assert seen._repr_png_() == seen.png and "save" in repr(seen)
+    assert brio.picture(triangle, size=(90, 60)).look[2] > 0.5  # its front
+
+
+def test_a_picture_is_saved(tmp_path):
+    seen = brio.picture(TRIANGLE, dark=True, size=(50, 40), threads=1)
+    seen.save(tmp_path / "p.png")
+    assert (tmp_path / "p.png").read_bytes() == seen.png != brio.picture(TRIANGLE, size=(50, 40)).png
+
+
+def test_a_cell_shows_a_mesh_by_a_small_picture_and_its_certificate():
+    text = brio.Mesh(TRIANGLE, [[0, 1, 2]])._repr_html_()
+    assert "1 boundary loops, manifold, oriented" in text and 'src="data:image/png;base64,iVBOR' in text
+    assert "boundary" not in brio.Mesh(TRIANGLE)._repr_html_()
+
+
+def test_wrong_calls_of_pictures():
+    for wrong in ({"look": (1, 2)}, {"look": (0, 0, 0)}, {"size": (0, 9)}, {"size": (20000, 9)}, {"colour_by": "heat"}, {"colour_by": 5}, {"look": (1, float("nan"), 2)}):
+        with pytest.raises(ValueError):
+            brio.picture(TRIANGLE, **wrong)

@@ -73,7 +73,65 @@ static brio_status place_vertices(shape *s, const double *points) {
     return BRIO_OK;
 }
 
-/* --- all of it --- */
+/* --- all alphas at once --- */
+
+static double value_of(const shape *s, uint32_t tet) {
+    return tet < s->complex->counts[3] ? s->complex->values[3][tet] : INFINITY;
+}
+
+/* Lists all facets in the order of the complex, each by its lower handle. A facet looks away from the tetrahedron of
+ * the lesser value, which is inside first. */
+static brio_status list_facets(shape *s) {
+    static const char *const names[3] = {"appears", "solid", "vanishes"};
+    brio_mesh *m = s->mesh;
+    const size_t count = s->complex->counts[2];
+    double *value[3];
+    size_t f = 0;
+    void *data;
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, m->face_offsets, count + 1));
+    BRIO_FORWARD(BRIO_ALLOC(s->ctx, m->face_vertices, 3 * count + 1));
+    m->num_faces = count;
+    for (size_t i = 0; i <= count; i++) m->face_offsets[i] = 3 * i;
+    for (int k = 0; k < 3; k++) {
+        BRIO_FORWARD(brio_mesh_add_face_property(m, names[k], BRIO_SCALAR_FLOAT64, &data));
+        value[k] = data;
+    }
+    for (uint32_t h = 0; h < 4 * s->complex->counts[3]; h++) {
+        const uint32_t mate = *brio_mate(&s->t, h), *v = s->t.tet[brio_tet_of(h)].vertex;
+        const double mine = value_of(s, brio_tet_of(h)), other = value_of(s, brio_tet_of(mate));
+        BRIO_FORWARD(brio_look(s->ctx, 1));
+        if (mate < h) continue;
+        for (int k = 0; k < 3; k++) { /* FACET is seen from inside */
+            int from = mine <= other ? (3 - k) % 3 : k;
+            m->face_vertices[3 * f + (size_t)k] = v[BRIO_FACET[brio_slot_of(h)][from]];
+        }
+        value[0][f] = s->complex->values[2][f];
+        value[1][f] = fmin(mine, other);
+        value[2][f++] = fmax(mine, other);
+    }
+    assert(f == count);
+    return BRIO_OK;
+}
+
+brio_status brio_alpha_facets(brio_context *ctx, const double *points, const brio_alpha_complex *complex,
+                              brio_mesh **out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    shape s = {.ctx = ctx, .complex = complex};
+    *out = NULL;
+    BRIO_REQUIRE(ctx, complex->triangulation, BRIO_ERR_ARGUMENT, "the complex is of points in the plane");
+    s.t = brio_tetrahedra_of(complex->triangulation);
+    BRIO_TRY(brio_mesh_new(ctx, &s.mesh));
+    BRIO_TRY(brio_mesh_set_vertices(s.mesh, points, brio_triangulation_stats(complex->triangulation)->points));
+    BRIO_TRY(list_facets(&s));
+    *out = s.mesh;
+    s.mesh = NULL;
+done:
+    brio_mesh_free(s.mesh);
+    return status;
+}
+
+/* --- one alpha --- */
 
 /* Counts the singular simplices of a dimension. A simplex of the complex is singular when all tetrahedra that contain
  * it are outside. */

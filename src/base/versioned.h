@@ -47,6 +47,8 @@
 #define BRIO_FIRST_brio_page_layer            report
 #define BRIO_FIRST_brio_page_options          reserved_int
 #define BRIO_FIRST_brio_page_stats            reserved_int
+#define BRIO_FIRST_brio_picture_options       reserved_int
+#define BRIO_FIRST_brio_picture_stats         high
 #define BRIO_FIRST_brio_planar_crust_stats    crust_seconds
 #define BRIO_FIRST_brio_plane_frame           thickness
 #define BRIO_FIRST_brio_power_shape_options   redundancy

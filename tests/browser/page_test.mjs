@@ -1,4 +1,4 @@
-// What a page shows, in Chromium with its software renderer: node page_test.mjs BRIO [long]. Pages are made of files written here,
+// What a page shows, in Chromium with its software renderer: node page_test.mjs BRIO [long|bench]. Pages are made of files written here,
 // so that what has to be seen is known: silhouettes and colours of pictures, coordinates of picked vertices to the last bit, every
 // control, touch, keys, a narrow window, and what axe-core finds. No page may ask for anything, or complain on the console.
 //
@@ -219,7 +219,7 @@ async function controls() {
     const png = readFileSync(await download.path());
     expect(png.subarray(1, 4).toString() === "PNG" && png.length > 5000, "the saved picture");
     await page.getByRole("button", { name: "Copy the address of this view" }).click();
-    expect(/address/.test(await page.textContent("#status")), "the address is announced");
+    await page.waitForFunction(() => /address/.test(document.getElementById("status").textContent), null, { timeout: 5000 });
     await page.context().close();
     const again = await open("flaws.html", { hash: address });
     const state = await again.evaluate(() => { const a = window.brioPage; return { map: a.drawings[0].state.map, source: a.drawings[0].state.source, visible: a.drawings[1].state.visible, opacity: a.drawings[0].state.opacity, parallel: a.camera.parallel, cut: a.scene.cutting.at, theme: a.theme }; });
@@ -303,6 +303,127 @@ async function tetrahedra() {
     });
     expect(area > 0.85 && area < 1, `the section of a cube has the area ${area}`);
     await page.context().close();
+}
+
+/** The slider over the alpha filtration: at each value the triangles that brio alpha finds there; what is picked is one of them. */
+async function alphas() {
+    run("generate", "cube", "-n", "120", "-o", "few.xyz");
+    run("alpha", "few.xyz", "--alpha", "auto", "--view", "alphas.html");
+    const page = await open("alphas.html"), slider = page.getByRole("slider", { name: "Alpha" });
+    await page.locator("#visible0").uncheck();
+    const seen = [];
+    for (const part of ["0.15", "0.5", "0.9", "1"]) {
+        await slider.fill(part);
+        await settled(page);
+        const [alpha, boundary, singular] = await page.evaluate(() => { const d = window.brioPage.drawings[1]; return [d.alpha, d.shape.boundary, d.shape.singular]; });
+        const facts = JSON.parse(execFileSync(brio, ["alpha", "few.xyz", "--alpha", String(alpha), "--json"], { cwd: folder }));
+        expect(facts.faces === boundary && facts.internals.singular_facets === singular, `alpha ${alpha}: ${boundary} and ${singular} triangles, brio alpha has ${facts.faces} and ${facts.internals.singular_facets}`);
+        seen.push([boundary, (await picture(page)).count]);
+    }
+    expect(new Set(seen.map(String)).size === 4 && seen[0][1] < seen[3][1], `the pictures do not differ: ${seen}`);
+    expect((await page.locator("#panel [role=status]").textContent()).includes(`${seen[3][0]} triangles bound the solid`), "the panel says how many");
+    const box = await page.locator("#canvas").boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    await page.waitForSelector("#card:not([hidden])");
+    const there = await page.evaluate(() => { const d = window.brioPage.drawings[1], f = window.brioPage.picker.picks[0].face; return d.shape.of.includes(f) && d.layer.filtration.vanishes[f] > d.alpha; });
+    expect(there, "a triangle is picked that is not shown");
+    const hash = await page.evaluate(() => location.hash);
+    await page.context().close();
+    const again = await open("alphas.html", { hash });
+    expect(await again.evaluate(() => window.brioPage.drawings[1].shape.boundary) === seen[3][0], "the address brings alpha back");
+    await again.context().close();
+}
+
+/** Cells and tetrahedra moved apart: each by its own way, whole; the cutting plane takes whole pieces away; picking knows the cell. */
+async function apart() {
+    run("generate", "cube", "-n", "40", "-o", "sites.xyz");
+    run("voronoi", "sites.xyz", "--box", "0,0,0,1,1,1", "-o", "cells.vtu");
+    run("view", "cells.vtu", "-o", "cells.html");
+    const page = await open("cells.html");
+    await page.focus("#canvas");
+    await press(page, "-", "-", "-", "-", "-");
+    const before = await picture(page);
+    await page.getByRole("slider", { name: "Apart" }).fill("0.6");
+    await page.waitForFunction(() => window.brioPage.drawings[0].buffers.placeE);
+    await settled(page);
+    const after = await picture(page);
+    expect(after.box[2] - after.box[0] > 1.2 * (before.box[2] - before.box[0]), `apart ${after.box}, together ${before.box}`);
+    const pieces = await page.evaluate(async () => { const d = window.brioPage.drawings[0]; return [(await d.layer.pieces()).centre.length / 3, d.buffers.placeE.count / 9, d.layer.triangles.length / 3]; });
+    expect(pieces[0] === 40 && pieces[1] === pieces[2], `40 cells, ${pieces}`);
+    await page.focus("#canvas");
+    await press(page, "1", "Enter");
+    await page.waitForSelector("#card:not([hidden])");
+    const card = await page.textContent("#card"), site = await page.evaluate(() => { const p = window.brioPage.picker.picks[0]; return [p.face, p.faceFacts.properties.find(([q]) => q.name === "site")[1]]; });
+    expect(site[0] !== null && site[1] >= 0 && site[1] < 40 && card.includes("volume of the face"), `picked ${site}`);
+    await page.getByLabel("cutting plane").check();
+    await page.waitForFunction(n => window.brioPage.drawings[0].buffers.placeE.count / 9 < n, pieces[2]);
+    const counts = await page.evaluate(async () => { const d = window.brioPage.drawings[0], { piece } = await d.layer.pieces(), kept = new Set(d.chosen.map(t => piece[t])); return [d.chosen.length, piece.filter(c => kept.has(c)).length, kept.size]; });
+    expect(counts[0] === counts[1] && counts[2] > 5 && counts[2] < 35, `whole cells stay: ${counts}`);
+    await page.context().close();
+}
+
+/** Balls about points have the size of their radius. */
+async function balls() {
+    writeFileSync(at("two.csv"), "x,y,z,radius\n0,0,0,1\n4,0,0,0.5\n");
+    run("view", "two.csv", "-o", "two.html");
+    const page = await open("two.html");
+    await page.getByLabel("points", { exact: true }).uncheck();
+    await page.getByLabel("balls of their radii").check();
+    await page.focus("#canvas");
+    await press(page, "o", "1", "-", "-", "-", "-");
+    const seen = await picture(page), [a, b] = [await placeOf(page, [0, 0, 0]), await placeOf(page, [4, 0, 0])], unit = Math.hypot(a[0] - b[0], a[1] - b[1]) / 4;
+    expect(Math.abs(seen.count - Math.PI * 1.25 * unit * unit) < 0.03 * seen.count, `${seen.count} pixels of balls, expected ${Math.PI * 1.25 * unit * unit}`);
+    expect(Math.abs(seen.box[2] - seen.box[0] + 1 - 5.5 * unit) < 3 && Math.abs(seen.box[3] - seen.box[1] + 1 - 2 * unit) < 3, `balls in ${seen.box}`);
+    await page.context().close();
+}
+
+/** The live figures of docs/theory.md: cells have the places that are nearest, circles of triangles and polar balls are empty, a drag
+ *  changes the figure. */
+async function figures() {
+    const kinds = ["cells", "power", "alpha", "poles", "crust"], script = readFileSync(new URL("docs/site/figures.js", root), "utf8");
+    writeFileSync(at("figures.html"), `<!doctype html><html lang="en"><title>figures</title><body>${kinds.map(k => `<div class="figure" data-figure="${k}"></div>`).join("")}<script>${script}</script></body></html>`);
+    const context = await browser.newContext({ viewport: { width: 700, height: 500 }, offline: true }), page = await context.newPage();
+    page.on("console", m => expect(false, `figures: ${m.text()}`));
+    page.on("pageerror", e => expect(false, `figures: ${e.message}`));
+    await page.goto(`file://${at("figures.html")}`);
+    await page.waitForFunction(() => window.brioFigures?.every(f => f.pen));
+    const picture = kind => page.evaluate(k => window.brioFigures.find(f => f.box.dataset.figure === k).canvas.toDataURL(), kind);
+    const wrong = await page.evaluate(() => {
+        const [cells, power, alpha, poles, crust] = window.brioFigures, out = [], far = (a, b) => (a.x - b.x) ** 2 + (a.y - b.y) ** 2;
+        const inside = (cell, p) => cell.length > 2 && cell.every((a, k) => { const b = cell[(k + 1) % cell.length]; return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) >= 0; });
+        for (const f of [cells, power])
+            for (let i = 0; i < 400; i++) {
+                const p = { x: (i * 0.618034 % 1) * 1.6, y: (i * 0.754878) % 1 }, d = f.sites.map(s => far(s, p) - s.w), best = d.indexOf(Math.min(...d));
+                if (!inside(f.cells[best], p)) out.push(`${f.kind.words}: ${p.x} ${p.y} is not in cell ${best}`);
+            }
+        for (const t of cells.dual.triangles) if (cells.sites.some((s, i) => !t.corners.includes(i) && far(s, t.centre) < far(cells.sites[t.corners[0]], t.centre) - 1e-9)) out.push(`the circle of ${t.corners} is not empty`);
+        const { edges, triangles } = alpha.filtration, n = alpha.sites.length;
+        if (n - edges.length + triangles.length !== 1) out.push(`${n} points, ${edges.length} edges, ${triangles.length} triangles: no disk`);
+        for (const t of triangles) for (const e of edges) if (e.ends.every(v => t.corners.includes(v)) && e.value > t.value + 1e-12) out.push("an edge comes after its triangle");
+        for (const q of poles.poles) if (poles.sites.some(s => far(s, q) < far(poles.sites[poles.chosen], q) - 1e-9)) out.push("a polar ball is not empty");
+        if (poles.poles.length !== 2) out.push("not two poles");
+        const edgesOf = crust.crust.filter(([a, b]) => far(a, b) > 1e-14), ends = edgesOf.flat();
+        const odd = ends.filter(p => ends.filter(q => far(p, q) < 1e-12).length % 2);
+        if (odd.length) out.push(`the crust is not closed at ${odd.map(p => `${p.x} ${p.y}`)}`);
+        if (!crust.sites.every(s => crust.crust.some(e => e.some(p => far(p, s) < 1e-12)))) out.push("the crust leaves samples out");
+        return out;
+    });
+    expect(wrong.length === 0, wrong.slice(0, 5).join("; "));
+    const before = await picture("cells"), box = await page.locator("[data-figure=cells] canvas").boundingBox();
+    const site = await page.evaluate(() => window.brioFigures[0].sites[7]), place = p => [box.x + p.x / 1.6 * box.width, box.y + p.y * box.height];
+    await page.mouse.move(...place(site));
+    await page.mouse.down();
+    await page.mouse.move(...place({ x: 0.8, y: 0.5 }), { steps: 3 });
+    await page.mouse.up();
+    const moved = await page.evaluate(() => window.brioFigures[0].sites[7]);
+    expect(Math.hypot(moved.x - 0.8, moved.y - 0.5) < 0.02 && await picture("cells") !== before, `a drag moves a point to ${moved.x} ${moved.y}`);
+    for (const kind of kinds.slice(1)) {
+        const was = await picture(kind);
+        await page.locator(`[data-figure=${kind}] input`).evaluate(e => { e.value = e.max; e.dispatchEvent(new Event("input")); });
+        expect(await picture(kind) !== was, `the slider of ${kind} changes nothing`);
+    }
+    await accessible(page, "figures");
+    await context.close();
 }
 
 /** At 400 pixels nothing is wider than the window, and what axe calls serious is nowhere, dark or light. */
@@ -431,23 +552,38 @@ async function lost() {
     }
 }
 
+/** Opens a page and moves it; says how long that took. */
+async function measure(name, words) {
+    const began = Date.now(), page = await open(name), seconds = (Date.now() - began) / 1000, first = await page.evaluate(() => window.brioPage.firstPicture / 1000);
+    await page.evaluate(() => { window.brioPage.longest = 0; });
+    const box = await page.locator("#canvas").boundingBox();
+    await page.mouse.move(box.x + 300, box.y + 300);
+    await page.mouse.down();
+    for (let i = 0; i < 20; i++) { await page.mouse.move(box.x + 300 + 5 * i, box.y + 300); await page.waitForTimeout(30); }
+    const longest = await page.evaluate(() => window.brioPage.longest);
+    await page.mouse.up();
+    await settled(page);
+    const size = statSync(at(name)).size / 1e6;
+    console.log(`${words}: ${size.toFixed(1)} MB, ${first.toFixed(1)} s to the first picture, ${seconds.toFixed(1)} s to the whole one, longest block while moving ${longest.toFixed(0)} ms`);
+    await page.context().close();
+    return { size, longest, first, seconds };
+}
+
+/** What docs/view.md says of times, on a machine that does nothing else: the page of a scan of 35,000 points, and of 2 million triangles. */
+async function bench() {
+    const empty = statSync(new URL("web/page.html", root)).size / 1e3;
+    console.log(`the page without data: ${empty.toFixed(0)} kB`);
+    expect(empty < 250, "the page without data has 250 kB");
+    run("generate", "scan", "-n", "35000", "-o", "scan.ply");
+    run("surface", "scan.ply", "-o", "surface.ply");
+    run("view", "surface.ply", "-o", "surface.html");
+    expect((await measure("surface.html", "a surface of 35,000 points")).first < 1, "it is not seen within a second");
+    const { first, seconds } = await large();
+    expect(first < 5 && seconds < 10, "2 million triangles are not seen within five seconds");
+}
+
 /** Clouds, also of a million points: thinned while it moves; no frame blocks. */
 async function large() {
-    const measure = async (name, words) => {
-        const began = Date.now(), page = await open(name), seconds = (Date.now() - began) / 1000, first = await page.evaluate(() => window.brioPage.firstPicture / 1000);
-        await page.evaluate(() => { window.brioPage.longest = 0; });
-        const box = await page.locator("#canvas").boundingBox();
-        await page.mouse.move(box.x + 300, box.y + 300);
-        await page.mouse.down();
-        for (let i = 0; i < 20; i++) { await page.mouse.move(box.x + 300 + 5 * i, box.y + 300); await page.waitForTimeout(30); }
-        const longest = await page.evaluate(() => window.brioPage.longest);
-        await page.mouse.up();
-        await settled(page);
-        const size = statSync(at(name)).size / 1e6;
-        console.log(`${words}: ${size.toFixed(1)} MB, ${first.toFixed(1)} s to the first picture, ${seconds.toFixed(1)} s to the whole one, longest block while moving ${longest.toFixed(0)} ms`);
-        await page.context().close();
-        return { size, longest };
-    };
     let state = 1;
     const noise = () => (state = (state * 48271) % 2147483647) / 2147483647;
     const n = 1001, vertices = [], faces = [];
@@ -462,12 +598,13 @@ async function large() {
     run("view", "cloud.npy", "-o", "cloud.html");
     const cloud = await measure("cloud.html", "2 million points");
     expect(cloud.longest < 100, `a frame took ${cloud.longest} ms`);
+    return mesh;
 }
 
-const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection };
-const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
+const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection, alphas, apart, figures };
+const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, figures, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
-    for (const [name, test] of Object.entries(length === "long" ? LONG : SHORT)) {
+    for (const [name, test] of Object.entries({ short: SHORT, long: LONG, bench: { bench } }[length])) {
         const began = Date.now();
         try { await test(); } catch (error) { expect(false, `${name}: ${error.stack}`); }
         if (length === "long") console.log(`${name}: ${((Date.now() - began) / 1000).toFixed(1)} s`);

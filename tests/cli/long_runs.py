@@ -76,7 +76,7 @@ RUNS = {
     "locate": ["locate {few.ply} --at {big.ply} -o {out}.csv", "locate {ball.ply} --plane xy --at {ball.ply} -o {out}.npy"],
     "restricted": ["restricted {solid.ply} --surface {dense.ply} -o {out}.ply"],
     "tree": ["tree {ball.ply} -o {out}.ply", "tree {ball.ply} --plane xy -o {out}.vtp"],
-    "view": ["view {dense.ply} -o {out}.html", "view {big.ply} -o {out}.html"],
+    "view": ["view {dense.ply} -o {out}.html", "view {big.ply} -o {out}.html", "view {big.ply} --picture {out}.png"],
     "interpolate": ["interpolate {small.ply} --at {scan.ply} --property view -o {out}.ply"],
 }
 

@@ -12,7 +12,7 @@ from brio_cli import BRIO, CliTest, CUBE, main, OCTAHEDRON, OCTAHEDRON_FACES
 
 COMMANDS = ["delaunay", "surface", "medial", "hull", "alpha", "offset", "check", "compare", "iso", "info", "view", "generate", "subdivide", "simplify", "terrain",
             "locate", "interpolate", "voronoi", "restricted", "tree", "balls"]
-COMMON_OPTIONS = ["--output", "--view", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
+COMMON_OPTIONS = ["--output", "--view", "--picture", "--look", "--colour-by", "--picture-size", "--format", "--input-format", "--columns", "--drop-invalid", "--salvage", "--ascii", "--float32", "--compress", "--json",
                   "--threads", "--seed", "--max-memory", "--scratch", "--quiet", "--progress", "--verbose", "--help"]
 OWN_OPTIONS = {
     "delaunay": ["--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--order", "--block-size", "--round-ratio", "--locate", "--plane",

@@ -60,6 +60,7 @@ RUNS = {
     "simplify {p} --faces 4 -o {o}.ply": ("3333333", r"has no faces"),
     "terrain {p} -o {o}.ply": ("3333300", r"points? on the map make no triangle"),
     "view {p} -o {o}.html": ("0000000", None),
+    "view {p} --picture {o}.png": ("0000000", None),
 }
 # read no points
 OTHERS = {"generate", "iso"}

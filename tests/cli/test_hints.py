@@ -32,8 +32,9 @@ def joined(strings):
     return "".join(re.findall(r'"((?:[^"\\\n]|\\.)*)"', strings)).replace('\\"', '"')
 
 
-# Evoked by no input of a few vertices: an offset whose faults could not be mended. A large mesh that crosses itself does.
-UNSEEN = {"WARNING_PROVEN"}
+# Evoked by no input of a few vertices: an offset whose faults could not be mended (a large mesh that crosses itself does),
+# and a page for 60,000 points.
+UNSEEN = {"WARNING_PROVEN", "WARNING_FILTRATION"}
 
 
 def sentences():

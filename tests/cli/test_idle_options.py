@@ -18,7 +18,7 @@ from brio_cli import CliTest, CUBE, FLAT, FLAT_RIGHT, main, OCTAHEDRON, OCTAHEDR
 ANYWHERE = {"json", "quiet", "verbose", "progress", "threads", "seed", "max-memory", "scratch", "output", "help"}
 
 VALUES = {
-    "view": ["v.html"], "title": ["other"],
+    "view": ["v.html"], "picture": ["v.png"], "look": ["1,2,3"], "colour-by": ["x"], "picture-size": ["20x10"], "title": ["other"],
     "format": ["zzz"], "input-format": ["obj", "zzz"], "columns": ["-,x,y,z"], "weights": ["w.txt"], "weights-mod": ["-9"],
     "order": ["random", "hilbert"], "block-size": ["7"], "round-ratio": ["0.9"], "locate": ["jump"], "record-every": ["5"],
     "subgraph": ["tree"], "tiles": ["3"], "page-size": ["4K"], "surface": ["mesh.ply"], "cache-size": ["64K"], "plane": ["xy"], "method": ["cocone", "linear", "voronoi"], "labeling": ["naive"], "noise": ["smooth", "0.5"],

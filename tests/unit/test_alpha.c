@@ -205,6 +205,48 @@ static void shapes_bound_their_tetrahedra(void) {
 }
 
 /* One and four threads: the same bits. */
+/* At each value of a tetrahedron the facets that the three properties choose are those of the shape: as many, seen from
+ * the same side, so that they bound the same volume. */
+static void facets_hold_all_shapes(void) {
+    static set s;
+    for (int kind = 0; kind < 8; kind++) {
+        make(&s, kind, 5);
+        EXPECT(build(&s));
+        brio_mesh *all, *m;
+        EXPECT(brio_alpha_facets(s.ctx, s.p, &s.c, &all) == BRIO_OK, "%s", brio_message(s.ctx));
+        EXPECT(all->num_faces == s.c.counts[2] && all->num_vertices == s.n);
+        const double *appears = brio_mesh_face_property(all, "appears")->data;
+        const double *solid = brio_mesh_face_property(all, "solid")->data;
+        const double *vanishes = brio_mesh_face_property(all, "vanishes")->data;
+        for (size_t n = 0; n < s.c.counts[3]; n += 11) {
+            double alpha = s.c.values[3][n], volume = 0;
+            brio_certificate c = {0};
+            brio_alpha_shape_stats stats = {0};
+            size_t bounding = 0, singular = 0;
+            EXPECT(brio_alpha_shape(s.ctx, s.p, &s.c, alpha, &m, &stats) == BRIO_OK);
+            EXPECT(brio_mesh_certificate(s.ctx, m, &c) == BRIO_OK);
+            for (size_t f = 0; f < all->num_faces; f++) {
+                const double *a = s.p + 3 * (size_t)all->face_vertices[3 * f];
+                const double *b = s.p + 3 * (size_t)all->face_vertices[3 * f + 1];
+                const double *d = s.p + 3 * (size_t)all->face_vertices[3 * f + 2];
+                singular += appears[f] <= alpha && alpha < solid[f];
+                if (!(solid[f] <= alpha && alpha < vanishes[f])) continue;
+                bounding++;
+                volume += (a[0] * (b[1] * d[2] - b[2] * d[1]) - a[1] * (b[0] * d[2] - b[2] * d[0]) +
+                           a[2] * (b[0] * d[1] - b[1] * d[0])) /
+                          6;
+            }
+            EXPECT(bounding == m->num_faces && singular == stats.singular_facets, "kind %d, alpha %g: %zu, %zu", kind,
+                   alpha, bounding, singular);
+            EXPECT(fabs(c.volume - volume) <= 1e-9 * fabs(volume), "kind %d: %g, %g", kind, c.volume, volume);
+            brio_certificate_free(&c);
+            brio_mesh_free(m);
+        }
+        brio_mesh_free(all);
+        drop(&s);
+    }
+}
+
 static void threads_change_nothing(void) {
     enum { MANY = 4000 };
     double *p = malloc(3 * MANY * sizeof *p), *w = malloc(MANY * sizeof *w);
@@ -265,6 +307,9 @@ static brio_status run_alpha(brio_context *ctx) {
     if (status == BRIO_OK) status = brio_alpha_order(ctx, &c, order);
     if (status == BRIO_OK) status = brio_alpha_auto(ctx, &c, &alpha);
     if (status == BRIO_OK) status = brio_alpha_shape(ctx, p, &c, alpha, &m, NULL);
+    brio_mesh_free(m);
+    m = NULL;
+    if (status == BRIO_OK) status = brio_alpha_facets(ctx, p, &c, &m);
     brio_mesh_free(m);
     brio_alpha_complex_free(&c);
     brio_triangulation_free(t);
@@ -347,6 +392,7 @@ SUITE(test_alpha) {
     RUN(values_against_brute_force);
     RUN(order_is_strict);
     RUN(shapes_bound_their_tetrahedra);
+    RUN(facets_hold_all_shapes);
     RUN(threads_change_nothing);
     RUN(shapes_are_the_same_at_every_scale_or_refused);
     RUN(alpha_where_values_are_lost_is_refused);

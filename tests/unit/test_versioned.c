@@ -209,6 +209,8 @@ ENDS_WITH(brio_curve_certificate, length);
 ENDS_WITH(brio_page_layer, report);
 ENDS_WITH(brio_page_options, reserved_int);
 ENDS_WITH(brio_page_stats, reserved_int);
+ENDS_WITH(brio_picture_options, reserved_int);
+ENDS_WITH(brio_picture_stats, high);
 ENDS_WITH(brio_planar_crust_stats, crust_seconds);
 ENDS_WITH(brio_spanning_tree_stats, tree_seconds);
 ENDS_WITH(brio_tiles_cells_stats, region_volume);

@@ -2,7 +2,7 @@
 // nothing from there but numbers, and words that it knows.
 import { MAPS } from "./colours.js";
 
-const SWITCHES = ["visible", "faces", "points", "wire", "edges", "boundary", "nonmanifold", "flipped", "crossing", "bridges", "flat"];
+const SWITCHES = ["visible", "faces", "points", "wire", "edges", "boundary", "nonmanifold", "flipped", "crossing", "bridges", "flat", "balls"];
 
 export function writeAddress(app) {
     const c = app.scene.cutting, view = { c: app.camera.toArray() };
@@ -41,6 +41,8 @@ export function readAddress(app) {
         if (Object.hasOwn(MAPS, layer.map)) s.map = layer.map;
         if (Number.isFinite(layer.opacity)) s.opacity = Math.max(0.1, Math.min(1, layer.opacity));
         if (Number.isFinite(layer.pointSize)) s.pointSize = Math.max(1, Math.min(16, layer.pointSize));
+        if (Number.isFinite(layer.alpha)) s.alpha = Math.max(0, Math.min(1, layer.alpha));
+        if (Number.isFinite(layer.explode)) s.explode = Math.max(0, Math.min(2, layer.explode));
         if (Number.isFinite(layer.low) && Number.isFinite(layer.high)) Object.assign(s, { low: layer.low, high: layer.high, keepRange: true });
     });
     return true;

@@ -125,14 +125,18 @@ export class App {
     }
 
     get cutShown() { return this.scene.cut; }
-    /** Cuts the tetrahedra by the plane. */
+    /** Cuts the tetrahedra by the plane; pieces that are apart stay whole, or go. */
     recut() {
+        for (const d of this.drawings) {
+            d.cutting = this.scene.cut ? this.scene.cutIn(d.place) : null;
+            if (d.state.explode > 0) d.apart();
+        }
         if (!this.scene.cut) return;
         for (const d of this.drawings) if (d.layer.tetrahedra.length) d.cutAt(...this.scene.cutIn(d.place));
     }
     async recolour(drawing) { await drawing.recolour(); this.recut(); }
     async recolourAll() {
-        for (const d of this.drawings) { await d.recolour(); if (d.state.wire) await d.wireframe(); }
+        for (const d of this.drawings) { await d.recolour(); d.atAlpha(); if (d.state.wire) await d.wireframe(); }
         this.recut();
         this.fillPanel();
         this.tools.forEach(t => t.sync());

@@ -12,10 +12,13 @@ export function defaultState(layer) {
         visible: true, faces: m.triangles > 0 || m.hull > 0, points: layer.kind === "cloud", wire: false, edges: m.edges > 0,
         boundary: few(m.boundary), nonmanifold: few(m.nonmanifold), flipped: few(m.flipped), crossing: true, bridges: false,
         flat: layer.sharp > 0.12, opacity: 1, pointSize: m.vertices < 5000 ? 6 : m.vertices < 100000 ? 4 : 3,
-        source: "plain", map: "viridis", low: 0, high: 1,
+        source: "plain", map: "viridis", low: 0, high: 1, alpha: 0.3, explode: 0, balls: false,
     };
+    if (layer.hasPieces) state.nonmanifold = false; // edges of cells have many faces by their nature
+    if (layer.filtration) Object.assign(state, { boundary: false, nonmanifold: false, flipped: false, flat: true, points: true });
     if (colours) state.source = "colours";
     else if (layer.colours("f")) state.source = "face-colours";
+    else if (layer.hasPieces && m.face_properties.some(p => p.name === "volume")) state.source = m.face_properties.find(p => p.name === "volume").block;
     else if (layer.kind === "cloud") {
         const value = m.properties.find(p => ["confidence", "distance", "intensity", "value", "radius"].includes(p.name));
         state.source = value ? value.block : "z";
@@ -80,9 +83,12 @@ export class Drawing {
             const chosen = l.trianglesWhere(f => values[f]);
             if (chosen.length) this.indices("bridges", chosen);
         }
+        const radius = l.meta.properties.find(p => p.name === "radius");
+        if (radius) this.spheres(await l.property("v", radius));
         await this.recolour();
+        this.atAlpha();
         const all = l.triangles.length || l.hull.length;
-        if (all / 3 > budget / 4) {
+        if (all / 3 > budget / 4 && !l.filtration) {
             let coarse = await l.coarse(96);
             if (coarse.length / 3 > budget) coarse = await l.coarse(48);
             if (coarse.length < all * 0.7) this.indices("coarse", coarse);
@@ -94,6 +100,54 @@ export class Drawing {
         list.forEach((v, i) => ends.set(p.subarray(3 * v, 3 * v + 3), 3 * i));
         this.buffer(name, ends);
     }
+    /** Balls about the vertices, in steps of the layer: a place and a radius for each. */
+    spheres(radii) {
+        const l = this.layer, p = l.positions, rows = new Float32Array(4 * radii.length);
+        for (let v = 0; v < radii.length; v++) rows.set([p[3 * v], p[3 * v + 1], p[3 * v + 2], Math.abs(radii[v]) / (l.meta.step || 1)], 4 * v);
+        this.buffer("spheres", rows);
+    }
+    /** The value alpha at which a filtration is shown: the slider goes through the values in their order. */
+    get alpha() {
+        const levels = this.layer.filtration.levels;
+        return levels[Math.min(levels.length - 1, Math.floor(this.state.alpha * levels.length))] ?? 0;
+    }
+    /** Fills the buffers of the alpha shape. */
+    atAlpha() {
+        if (!this.layer.filtration) return;
+        const shape = this.shape = this.layer.alphaShape(this.alpha), lines = new Uint32Array(2 * shape.all.length);
+        for (let i = 0; i < shape.all.length; i++) lines[2 * i] = shape.all[i], lines[2 * i + 1] = shape.all[i % 3 === 2 ? i - 2 : i + 1];
+        this.indices("shape", shape.all.subarray(0, 3 * shape.boundary));
+        this.indices("singular", shape.all.subarray(3 * shape.boundary));
+        this.indices("shapeWire", lines);
+    }
+    /** Fills the buffers of pieces that are moved apart, from the middle of all. */
+    async apart() {
+        const l = this.layer, pieces = this.state.explode > 0 ? await l.pieces() : null;
+        if (!pieces) return this.drop("placeE");
+        const { piece, centre } = pieces, p = l.positions, far = this.state.explode, cut = this.cutting;
+        // A piece whose centre the cutting plane cuts away is left out.
+        const stays = c => !cut || [0, 1, 2].reduce((sum, k) => sum + cut[0][k] * centre[3 * c + k], 0) <= cut[1];
+        const chosen = this.chosen = Uint32Array.from(piece.keys()).filter(t => stays(piece[t])), n = 3 * chosen.length;
+        const corner = new Uint32Array(n), face = chosen.map(t => pieces.face[t]);
+        for (let i = 0; i < n; i++) corner[i] = pieces.corner[3 * chosen[Math.floor(i / 3)] + i % 3];
+        const place = new Float32Array(3 * n), normal = new Int8Array(4 * n), middle = l.size.map(x => x / 2), q = [[], [], []];
+        for (let i = 0; i < n; i += 3) {
+            const c = 3 * piece[chosen[i / 3]];
+            for (let j = 0; j < 3; j++) for (let k = 0; k < 3; k++) place[3 * (i + j) + k] = q[j][k] = p[3 * corner[i + j] + k] + far * (centre[c + k] - middle[k]);
+            const u = [0, 1, 2].map(k => q[1][k] - q[0][k]), v = [0, 1, 2].map(k => q[2][k] - q[0][k]);
+            const w = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], size = Math.hypot(...w) || 1;
+            for (let j = 0; j < 3; j++) for (let k = 0; k < 3; k++) normal[4 * (i + j) + k] = Math.round(127 * w[k] / size);
+        }
+        this.buffer("placeE", place);
+        this.buffer("normalE", normal);
+        for (const [name, width] of [["rgba", 4], ["value", 1]]) {
+            const rows = this.rows?.[name], ofFaces = this.rows?.where === "f";
+            if (!rows || (ofFaces && !pieces.cells)) { this.drop(`${name}E`); continue; }
+            const out = new rows.constructor(width * n);
+            for (let i = 0; i < n; i++) for (let k = 0; k < width; k++) out[width * i + k] = rows[width * (ofFaces ? face[Math.floor(i / 3)] : corner[i]) + k];
+            this.buffer(`${name}E`, out);
+        }
+    }
     async wireframe() {
         if (!this.buffers.wire) this.indices("wire", await this.layer.wireframe());
     }
@@ -103,6 +157,7 @@ export class Drawing {
         const s = this.state, l = this.layer;
         const byFace = s.source === "face-colours" ? "f" : null;
         this.mode = 0;
+        this.rows = null;
         this.values = null;
         this.expanded = false;
         if (s.source === "colours" || byFace) {
@@ -114,6 +169,7 @@ export class Drawing {
             const rgba = new Uint8ClampedArray(4 * count).fill(255); // wrong colours do not wrap
             channels.forEach((c, k) => { for (let i = 0; i < count; i++) rgba[4 * i + k] = c[i] * scale; });
             this.mode = 1;
+            this.rows = { rgba, where: byFace || "v" };
             if (byFace) await this.expand("rgba", rgba, 4);
             else this.buffer("rgba", this.arranged(rgba, 4));
         } else if (s.source !== "plain") {
@@ -126,10 +182,12 @@ export class Drawing {
             if (this.shownSource !== s.source && !s.keepRange) [s.low, s.high] = [least, most];
             s.keepRange = false;
             const scaled = Float32Array.from(values, x => this.part(x));
+            this.rows = { value: scaled, where: source.where };
             if (source.where === "f") await this.expand("value", scaled, 1);
             else this.buffer("value", this.arranged(scaled, 1));
         }
         this.shownSource = s.source;
+        await this.apart();
     }
     /** Where a value is between the least and the greatest one, 0 to 1; in halves, since their difference may be no double. */
     part(x) { return Number.isFinite(x) ? (x / 2 - this.least / 2) / this.half : NOTHING; }
@@ -190,16 +248,22 @@ export class Drawing {
         if (!s.visible) return out;
         const put = (program, more) => out.push({ drawing: this, program, set: "", index: null, primitive: gl.TRIANGLES, mode: single,
             colour: this.colour, size: 1, lit: true, back: true, opacity: s.opacity, ...more });
-        const solid = l.triangles.length ? "triangles" : "hull";
-        if (s.faces && b[solid]) {
+        const solid = l.triangles.length ? "triangles" : "hull", apart = s.explode > 0 && b.placeE;
+        if (s.faces && l.filtration) {
+            if (b.shape.count) put("faces", { index: "shape", pick: "shape", mode: this.expanded ? 0 : this.mode });
+            if (b.singular.count) put("faces", { index: "singular", pick: "singular", mode: 0, colour: [0.35, 0.6, 0.95], back: false });
+            if (s.wire && b.shapeWire.count) put("lines", { index: "shapeWire", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, opacity: 0.55 });
+        } else if (s.faces && apart) put("faces", { set: "E", mode: b.valueE || b.rgbaE ? this.mode : 0, count: b.placeE.count / 3, pick: "piece", uncut: true });
+        else if (s.faces && b[solid]) {
             if (moving && b.coarse) put("faces", { index: "coarse", pick: false });
             else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner" });
             else put("faces", { index: solid, pick: "triangle" });
         }
-        const small = !moving || !b.coarse;
+        if (s.balls && b.spheres) put("balls", { spheres: true, count: b.spheres.count / 4, mode: 0, back: false });
+        const small = (!moving || !b.coarse) && !apart;
         if (small && s.faces && s.crossing && b.crossing) put("marks", { index: "crossing", mode: 0, colour: [0.92, 0.16, 0.24], back: false, opacity: 1 });
         if (small && s.faces && s.bridges && b.bridges) put("marks", { index: "bridges", mode: 0, colour: [0.98, 0.66, 0.1], back: false, opacity: 1 });
-        if (cutting && b.placeS && this.section && this.section.of.length && s.faces) {
+        if (cutting && !apart && b.placeS && this.section && this.section.of.length && s.faces) {
             put("faces", { set: "S", count: b.placeS.count / 3, mode: b.valueS ? 2 : 0, colour: this.colour.map(c => 0.85 * c), lit: false, uncut: true, back: false, pick: "section", opacity: 1 });
             if (!moving || b.linesS.count < 2e5) put("lines", { set: "S", index: "linesS", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, uncut: true, opacity: this.section.of.length > 10000 ? 0.35 : 0.75 });
         }
@@ -207,7 +271,7 @@ export class Drawing {
         if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, lit: false, pick: "edge", opacity: 1 });
         const wides = { boundary: [0.1, 0.62, 1], nonmanifold: [1, 0.24, 0.65], flipped: [0.95, 0.85, 0.1] };
         for (const [name, colour] of Object.entries(wides))
-            if (s[name] && b[name] && s.faces) put("wide", { wide: name, count: b[name].count / 6, mode: 0, colour, size: 2.5, lit: false, opacity: 1 });
+            if (s[name] && b[name] && s.faces && !apart) put("wide", { wide: name, count: b[name].count / 6, mode: 0, colour, size: 2.5, lit: false, opacity: 1 });
         if (s.points) {
             const all = l.meta.vertices, count = moving ? Math.min(all, 2 * budget) : all;
             put("points", { count, primitive: gl.POINTS, size: s.pointSize, pick: "point" });

@@ -60,6 +60,68 @@ export class Layer {
         this.flipped = await this.corners("flipped", m.flipped, 2);
         this.crossing = this.has("crossing") ? await this.column("crossing", m.faces, 1) : null;
         await this.findNormals();
+        await this.findFiltration();
+    }
+
+    /** The alpha filtration, where the faces have its three properties (brio_alpha_facets): for each face from which value on it is in
+     *  the complex, a face of the solid, and inside it; and the values at which something changes, ascending. */
+    async findFiltration() {
+        const list = ["appears", "solid", "vanishes"].map(name => this.meta.face_properties.find(p => p.name === name));
+        this.filtration = null;
+        if (list.some(p => !p)) return;
+        const values = [];
+        for (const p of list) values.push(Float64Array.from(await this.property("f", p), x => Number.isNaN(x) ? Infinity : x));
+        const sorted = Float64Array.from(values[1]).sort(); // when the solid changes
+        this.filtration = { appears: values[0], solid: values[1], vanishes: values[2], levels: sorted.filter((x, i) => x < Infinity && x !== sorted[i - 1]) };
+    }
+    /** The triangles at a value alpha: of the boundary of the solid, and the singular ones; `of` has the face of each of both. */
+    alphaShape(alpha) {
+        const { appears, solid, vanishes } = this.filtration, n = this.triangles.length / 3, kind = new Uint8Array(n), count = [0, 0, 0];
+        for (let t = 0; t < n; t++) {
+            const f = this.faceAt(t);
+            if (appears[f] <= alpha && alpha < vanishes[f]) kind[t] = solid[f] <= alpha ? 1 : 2;
+            count[kind[t]]++;
+        }
+        const all = new Uint32Array(3 * (count[1] + count[2])), of = new Uint32Array(count[1] + count[2]), next = [0, 0, count[1]];
+        for (let t = 0; t < n; t++) {
+            if (!kind[t]) continue;
+            const i = next[kind[t]]++;
+            for (let k = 0; k < 3; k++) all[3 * i + k] = this.triangles[3 * t + k];
+            of[i] = this.faceAt(t);
+        }
+        return { all, of, boundary: count[1], singular: count[2] };
+    }
+
+    /** The pieces that can be moved apart: cells, by the property `site` or `cell` of the faces, or tetrahedra; null where there are none.
+     *  corner has three vertices for each triangle, piece[t] is a number from 0, centre three numbers for each piece; face[t] is the face
+     *  or the tetrahedron of a triangle. */
+    async pieces() {
+        if (this.apart !== undefined) return this.apart;
+        const cell = this.meta.face_properties.find(p => ["site", "cell"].includes(p.name) && !p.type.startsWith("float"));
+        let corner, piece, face;
+        if (cell && this.triangles.length) {
+            const values = await this.property("f", cell), number = new Map();
+            corner = this.triangles;
+            face = Uint32Array.from({ length: corner.length / 3 }, (_, t) => this.faceAt(t));
+            piece = face.map(f => { if (!number.has(values[f])) number.set(values[f], number.size); return number.get(values[f]); });
+        } else if (this.tetrahedra.length && !this.triangles.length) {
+            const facets = [1, 2, 3, 0, 3, 2, 0, 1, 3, 0, 2, 1], t = this.tetrahedra;
+            corner = new Uint32Array(3 * t.length);
+            for (let i = 0; i < t.length; i += 4) facets.forEach((k, j) => { corner[3 * i + j] = t[i + k]; });
+            face = Uint32Array.from({ length: t.length }, (_, i) => i >> 2);
+            piece = face;
+        } else return this.apart = null;
+        const count = piece.reduce((a, b) => Math.max(a, b), -1) + 1, centre = new Float32Array(3 * count), corners = new Uint32Array(count), p = this.positions;
+        for (let i = 0; i < corner.length; i++) {
+            const c = piece[Math.floor(i / 3)];
+            corners[c]++;
+            for (let k = 0; k < 3; k++) centre[3 * c + k] += p[3 * corner[i] + k];
+        }
+        for (let i = 0; i < centre.length; i++) centre[i] /= corners[Math.floor(i / 3)];
+        return this.apart = { corner, piece, face, centre, cells: corner === this.triangles };
+    }
+    get hasPieces() {
+        return this.triangles.length ? this.meta.face_properties.some(p => ["site", "cell"].includes(p.name) && !p.type.startsWith("float")) : this.tetrahedra.length > 0;
     }
 
     /** faceOf[t]: the face of triangle t; null where every face is one triangle. */
@@ -184,6 +246,7 @@ export class Layer {
     /** The edges of the faces, twice where they are boundaries or flipped: pairs of vertices. */
     async wireframe() {
         const t = this.triangles.length ? this.triangles : this.hull, inner = this.faceOf ? this.diagonals() : null;
+        if (this.filtration) return new Uint32Array(0); // of the shape that is shown: drawing.js
         let out = new Uint32Array(t.length + 1024), n = 0;
         const put = (a, b) => {
             if (n + 2 > out.length) { const more = new Uint32Array(2 * out.length); more.set(out); out = more; }

@@ -73,6 +73,18 @@ export function layerPanel(drawing, app) {
     const slide = (key, words, least, most, step) => labelled(words, make("input", {
         type: "range", min: least, max: most, step, value: state[key], oninput: e => { state[key] = +e.target.value; app.redraw(true); },
     }));
+    const level = make("p", { className: "note", role: "status" });
+    const tell = () => {
+        const { boundary, singular } = drawing.shape, a = drawing.alpha;
+        level.textContent = `alpha ${short(a)}${a >= 0 ? `, radius ${short(Math.sqrt(a))}` : ""}: ${count(boundary)} triangles bound the solid, ${count(singular)} bound nothing`;
+    };
+    const alphas = layer.filtration ? [labelled("Alpha", make("input", {
+        type: "range", min: 0, max: 1, step: 0.001, value: state.alpha, oninput: e => { state.alpha = +e.target.value; drawing.atAlpha(); tell(); app.redraw(true); },
+    })), level] : [];
+    if (layer.filtration) tell();
+    const apart = layer.hasPieces ? labelled("Apart", make("input", {
+        type: "range", min: 0, max: 2, step: 0.02, value: state.explode, oninput: async e => { state.explode = +e.target.value; await drawing.apart(); app.redraw(true); },
+    })) : null;
     const b = drawing.buffers, surface = m.triangles > 0 || m.hull > 0;
     const range = make("div", { className: "range" });
     const map = make("select", { onchange: e => { state.map = e.target.value; refresh(); app.redraw(); } }, ...Object.keys(MAPS).map(x => make("option", { value: x, selected: x === state.map }, x)));
@@ -98,15 +110,15 @@ export function layerPanel(drawing, app) {
         tick("faces", "faces", surface), tick("wire", "wireframe", surface, () => drawing.wireframe()), tick("points", "points", true),
         tick("edges", "edges", m.edges > 0), tick("boundary", "boundary", m.boundary > 0), tick("nonmanifold", "edges of over two faces", m.nonmanifold > 0),
         tick("flipped", "edges whose faces disagree", m.flipped > 0), tick("crossing", "crossing faces", !!(b.crossing && b.crossing.count)),
-        tick("bridges", "bridges", !!b.bridges), tick("flat", "flat shading", surface));
+        tick("bridges", "bridges", !!b.bridges), tick("balls", "balls of their radii", !!b.spheres), tick("flat", "flat shading", surface));
     const notes = [!m.exact && `Rounded: coordinates to ${short(m.step)}, properties in floating point to 16 bits of their range. Vertices and faces have no numbers here. brio view --exact keeps all.`,
         m.normals_left_out && "The normals of the file are left out: shades follow the faces. brio view --exact keeps them.",
         m.all_vertices > m.vertices && `An even choice of ${count(m.vertices)} of ${count(m.all_vertices)} points.`].filter(Boolean);
     return make("section", { className: "layer", "aria-label": name },
         make("h2", {}, make("input", { type: "checkbox", id: `visible${layer.number}`, checked: state.visible, onchange: e => { state.visible = e.target.checked; app.redraw(); } }),
             make("label", { htmlFor: `visible${layer.number}`, className: "name" }, make("span", { className: "swatch", style: `background: rgb(${drawing.colour.map(c => Math.round(255 * c))})` }), name)),
-        counts(m), ...notes.map(words => make("p", { className: "note" }, words)), shownParts, labelled("Colour by", source), range,
+        counts(m), ...notes.map(words => make("p", { className: "note" }, words)), ...alphas, apart, shownParts, labelled("Colour by", source), range,
         surface ? slide("opacity", "Opacity", 0.1, 1, 0.05) : null, slide("pointSize", "Point size", 1, 16, 1),
-        m.certificate ? make("details", { open: true }, make("summary", {}, "Certificate"), certificate(m.certificate)) : null,
+        m.certificate && !layer.filtration ? make("details", { open: true }, make("summary", {}, "Certificate"), certificate(m.certificate)) : null,
         m.report ? make("details", {}, make("summary", {}, "Report"), make("pre", { tabIndex: 0 }, m.report)) : null);
 }

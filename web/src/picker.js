@@ -19,7 +19,7 @@ export class Picker {
         if (!found) { this.clear(); return null; }
         const what = app.scene.identify(found);
         const facts = await what.drawing.layer.vertex(what.vertex);
-        const pick = { ...what, ...facts, at: app.scene.fromFile(facts.place), view: app.views().indexOf(view) };
+        const pick = { ...what, ...facts, at: what.moved ? what.point : app.scene.fromFile(facts.place), view: app.views().indexOf(view) };
         if (what.face !== null) pick.faceFacts = await what.drawing.layer.face(what.face);
         this.picks = this.measuring && this.picks.length === 1 ? [this.picks[0], pick] : [pick];
         this.show();

@@ -6,7 +6,7 @@ import { invert, multiply, project } from "./matrix.js";
 
 const PICK = 9; // pixels about the pointer in which something is picked
 const PART = 300000; // vertices drawn at once, a multiple of 6
-const PLACES = { aPlace: 0, aNormal: 1, aRgba: 2, aValue: 3, aFrom: 0, aTo: 1 };
+const PLACES = { aPlace: 0, aNormal: 1, aRgba: 2, aValue: 3, aFrom: 0, aTo: 1, aBall: 0 };
 
 function compile(gl, [vertex, fragment]) {
     const program = gl.createProgram();
@@ -128,6 +128,11 @@ export class Renderer {
         const gl = this.gl, b = item.drawing.buffers;
         for (let i = 0; i < 4; i++) { gl.disableVertexAttribArray(i); gl.vertexAttribDivisor(i, 0); }
         gl.vertexAttrib4f(1, 0, 0, 0, 0);
+        if (item.spheres) {
+            this.attribute(0, b.spheres, 4, gl.FLOAT, false);
+            gl.vertexAttribDivisor(0, 1);
+            return;
+        }
         if (item.wide) {
             this.attribute(0, b[item.wide], 3, gl.FLOAT, false, 24, 0);
             this.attribute(1, b[item.wide], 3, gl.FLOAT, false, 24, 12);
@@ -178,8 +183,8 @@ export class Renderer {
         this.bind(item);
         this.uniforms(item, p);
         const count = item.count ?? item.drawing.buffers[item.index].count, from = item.from ?? 0;
-        const part = item.wide ? count : Math.min(count - from, Math.max(6, Math.floor(most / 6) * 6));
-        if (item.wide) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+        const whole = item.wide || item.spheres, part = whole ? count : Math.min(count - from, Math.max(6, Math.floor(most / 6) * 6));
+        if (whole) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
         else if (item.index) gl.drawElements(item.primitive, part, gl.UNSIGNED_INT, 4 * from);
         else gl.drawArrays(item.primitive, from, part);
         item.from = from + part;

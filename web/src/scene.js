@@ -42,13 +42,25 @@ export class Scene {
         const { drawing, kind, id, point } = found, l = drawing.layer, place = drawing.place;
         const q = point.map((x, k) => (x - place[k]) / place[3]);
         const at = v => [0, 1, 2].map(k => l.positions[3 * v + k]);
-        const nearest = list => list.reduce((a, v) => length(sub(at(v), q)) < length(sub(at(a), q)) ? v : a);
+        const nearest = (list, to = q) => list.reduce((a, v) => length(sub(at(v), to)) < length(sub(at(a), to)) ? v : a);
         const out = { drawing, point, vertex: 0, face: null, tetrahedron: null };
         if (kind === "point") out.vertex = drawing.vertexAt(id);
         else if (kind === "edge") out.vertex = id;
         else if (kind === "section") {
             out.tetrahedron = drawing.section.of[Math.floor(id / 3)];
             out.vertex = nearest(Array.from(l.tetrahedra.subarray(4 * out.tetrahedron, 4 * out.tetrahedron + 4)));
+        } else if (kind === "piece") {
+            const { corner, face, cells } = l.apart, chosen = drawing.chosen[Math.floor(id / 3)];
+            const c = 3 * l.apart.piece[chosen], far = drawing.state.explode, back = q.map((x, k) => x - far * (l.apart.centre[c + k] - l.size[k] / 2));
+            out.vertex = nearest(Array.from(corner.subarray(3 * chosen, 3 * chosen + 3)), back);
+            out.moved = true;
+            if (cells) out.face = face[chosen];
+            else out.tetrahedron = face[chosen];
+        } else if (kind === "shape" || kind === "singular") {
+            const { all, of, boundary } = drawing.shape, first = kind === "shape" ? 0 : boundary, end = kind === "shape" ? boundary : of.length;
+            const chosen = first + nearestTriangle(all.subarray(3 * first, 3 * end), id, q, at);
+            out.vertex = nearest(Array.from(all.subarray(3 * chosen, 3 * chosen + 3)));
+            out.face = of[chosen];
         } else {
             const t = l.triangles.length ? l.triangles : l.hull;
             const chosen = kind === "corner" ? Math.floor(id / 3) : nearestTriangle(t, id, q, at);

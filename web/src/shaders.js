@@ -67,6 +67,26 @@ export const PROGRAMS = {
     lines: [vertex(NEARER), fragment(DRAWN, POINTS)],
     pickFaces: [vertex(""), fragment(PICKED, PICK)],
     pickPoints: [vertex(SIZED), fragment(PICKED, ROUND + PICK)],
+    // Balls: a square for each, which looks at the eye, and in it the ball's side that does.
+    balls: [`${COMMON}${PLACED}
+layout(location = 0) in vec4 aBall; out vec3 vPlace; flat out vec4 vBall; out vec2 vCorner;
+void main() {
+    vCorner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+    vBall = vec4(placed(aBall.xyz), aBall.w * uPlace.w);
+    vPlace = vBall.xyz + vBall.w * (transpose(mat3(uView)) * vec3(vCorner, 0.0));
+    gl_Position = uMatrix * vec4(vPlace, 1.0);
+}`, `${COMMON}${PLACED}
+${DRAWN} in vec3 vPlace; flat in vec4 vBall; in vec2 vCorner; uniform vec4 uColour; uniform float uOpacity;
+void main() {
+    float rest = 1.0 - dot(vCorner, vCorner);
+    if (rest < 0.0) discard;
+    vec3 n = vec3(vCorner, sqrt(rest)), p = vBall.xyz + vBall.w * (transpose(mat3(uView)) * n);
+    if (dot(uCut.xyz, p) > uCut.w) discard;
+    vec4 clip = uMatrix * vec4(p, 1.0);
+    gl_FragDepth = clip.z / clip.w * 0.5 + 0.5;
+    float light = 0.28 + 0.62 * max(0.0, dot(n, normalize(vec3(-0.35, 0.55, 0.8)))) + 0.22 * max(0.0, dot(n, normalize(vec3(0.7, -0.3, 0.5))));
+    drawn = vec4(uColour.rgb * light, uOpacity);
+}`],
     // Wide lines: two triangles for each pair of ends, as wide as uSize pixels.
     wide: [`${COMMON}${PLACED}
 layout(location = 0) in vec3 aFrom; layout(location = 1) in vec3 aTo; uniform float uSize; uniform vec2 uPixels;

@@ -15,16 +15,16 @@ from ._points import outliers, thin
 from ._reconstruct import BallUnion, Surface, ball_union, medial_axis, offset, oriented_normals, reconstruct
 from ._spherical import SphericalVoronoi
 from ._version import __version__
-from ._view import Page, view
+from ._view import Page, Picture, picture, view
 from ._voronoi import Voronoi
 from .errors import *  # noqa: F403
 
 __all__ = [
     "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Curve", "Delaunay", "Distance",
     "DynamicDelaunay",
-    "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "Page", "PeriodicDelaunay", "PeriodicVoronoi",
+    "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "Page", "Picture", "PeriodicDelaunay", "PeriodicVoronoi",
     "SphericalVoronoi", "Surface",
     "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
-    "offset", "oriented_normals", "outliers", "read", "reconstruct", "simplify", "spanning_tree", "thin", "view", "write",
+    "offset", "oriented_normals", "outliers", "picture", "read", "reconstruct", "simplify", "spanning_tree", "thin", "view", "write",
     *errors.__all__,
 ]

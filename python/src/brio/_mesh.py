@@ -1,5 +1,7 @@
 """Meshes: vertices with polygons, tetrahedra, edges, and properties of vertices and polygons."""
 
+import base64
+import html
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -694,6 +696,19 @@ class Mesh:
             if count:
                 parts.append(f"{count} {name}")
         return f"<brio.{type(self).__name__}: {', '.join(parts)}>"
+
+    def _repr_html_(self) -> str:
+        """A small picture and what is certain, for a cell of a notebook; brio.view(mesh) shows the whole there."""
+        from ._view import picture
+
+        words = [html.escape(repr(self)[6:-1])]
+        if len(self.face_offsets) > 1:
+            c = self.certificate
+            words += ["closed" if c.closed else f"{c.boundary_loops} boundary loops", "manifold" if c.manifold else "not manifold",
+                      "oriented" if c.oriented else "not oriented", f"{c.components} components, genus {c.genus}"]
+        png = base64.b64encode(picture(self, size=(360, 240)).png).decode("ascii")
+        return (f'<figure style="margin: 0"><img width="360" height="240" alt="{words[0]}" src="data:image/png;base64,{png}">'
+                f"<figcaption>{', '.join(words)}</figcaption></figure>")
 
 
 def as_mesh(value: Any, name: str) -> Mesh:

@@ -1,4 +1,4 @@
-"""Pages that show meshes in a browser, or in a cell of a notebook."""
+"""Pages that show meshes in a browser, or in a cell of a notebook, and pictures of them."""
 
 from __future__ import annotations
 
@@ -8,16 +8,17 @@ import pathlib
 import tempfile
 import webbrowser
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from . import _native
-from ._arrays import as_count, as_path, as_text
+from ._arrays import as_count, as_path, as_rows, as_text
 from ._calls import Progress, reporting
 from ._files import Path
 from ._mesh import Mesh
 from .errors import ArgumentError
 
-__all__ = ["Page", "view"]
+__all__ = ["Page", "Picture", "picture", "view"]
 
 
 class Page:
@@ -53,6 +54,95 @@ class Page:
     def _repr_html_(self) -> str:
         return ('<iframe srcdoc="%s" style="width: 100%%; height: %dpx; border: 0" title="brio"></iframe>'
                 % (html.escape(self.html), self.height))
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture that `picture` made. As the last value of a notebook's cell it is shown there.
+
+    Attributes
+    ----------
+    png : bytes
+        The file.
+    look : tuple of float
+        The direction of the eye, a unit vector.
+    pixel : float
+        The length of a pixel, in the unit of the meshes.
+    range : tuple of float
+        The least and the greatest value of the colour map; 0 and 0 without one.
+    """
+
+    png: bytes
+    look: tuple[float, float, float]
+    pixel: float
+    range: tuple[float, float]
+
+    def __repr__(self) -> str:
+        return "<brio.Picture of %.0f kB: save(path)>" % (len(self.png) / 1e3)
+
+    def save(self, path: Path) -> None:
+        """Writes the picture to a file, such as picture.png."""
+        with open(path, "wb") as file:
+            file.write(self.png)
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+
+def layers_of(meshes: Sequence[Any], names: Sequence[str] | None) -> tuple[tuple[Any, str | None, None], ...]:
+    """Takes meshes or arrays of points, with their names, as the native functions want them."""
+    list_of = [m if isinstance(m, Mesh) else Mesh(m) for m in meshes]
+    words = [as_text(name, "names") for name in names] if names is not None else [None] * len(list_of)
+    if len(words) != len(list_of):
+        raise ArgumentError("names: %d for %d meshes" % (len(words), len(list_of)))
+    return tuple((m._for_files(), name, None) for m, name in zip(list_of, words))
+
+
+def picture(*meshes: Any, look: Any = None, colour_by: str | None = None, size: tuple[int, int] = (960, 640),
+            self_intersections: bool = False, side_by_side: bool = False, dark: bool = False, threads: int = 0,
+            progress: bool | Progress | None = None) -> Picture:
+    """Draws a picture of meshes, or arrays of points, without a graphics card and without a browser.
+
+    Parameters
+    ----------
+    meshes : Mesh or array_like, shape (n, 3)
+        One to twelve: over each other, or side by side.
+    look : array_like, shape (3,), optional
+        The direction of the eye; by default, of some directions the one that shows most.
+    colour_by : str, optional
+        A property of vertices or faces, "x", "y" or "z", by a colour map; "none" for one colour. By default the colours of
+        the meshes.
+    size : tuple of int
+        Pixels: the width and the height.
+    self_intersections : bool
+        Finds the faces that run through each other, and shows them in red.
+    side_by_side : bool
+    dark : bool
+        A dark background.
+
+    Returns
+    -------
+    Picture
+
+    Examples
+    --------
+    >>> import brio
+    >>> picture = brio.picture(brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), look=(0, 0, 1), size=(200, 100))
+    >>> picture.png[1:4], [round(x) for x in picture.look]
+    (b'PNG', [0, 0, 1])
+    """
+    layers = layers_of(meshes, None)
+    direction = as_rows([(0.0, 0.0, 0.0) if look is None else look], "look")[0]
+    if look is not None and not direction.any():
+        raise ArgumentError("look: no direction")
+    width, height = (as_count(n, "size", 1) for n in size)
+    options = (width, height, None if colour_by is None else as_text(colour_by, "colour_by"), self_intersections, side_by_side, dark)
+    with tempfile.TemporaryDirectory(prefix="brio-") as folder:
+        path = os.path.join(folder, "picture.png")
+        with reporting(progress) as report:
+            seen = _native.write_picture(as_path(path), layers, options, tuple(direction.tolist()), threads, report)
+        with open(path, "rb") as file:
+            return Picture(file.read(), *seen)
 
 
 def view(*meshes: Any, names: Sequence[str] | None = None, title: str | None = None, points: int = 0, exact: bool = False,
@@ -92,11 +182,7 @@ def view(*meshes: Any, names: Sequence[str] | None = None, title: str | None = N
     >>> "a triangle" in page.html
     True
     """
-    list_of = [m if isinstance(m, Mesh) else Mesh(m) for m in meshes]
-    words = [as_text(name, "names") for name in names] if names is not None else [None] * len(list_of)
-    if len(words) != len(list_of):
-        raise ArgumentError("names: %d for %d meshes" % (len(words), len(list_of)))
-    layers = tuple((m._for_files(), name, None) for m, name in zip(list_of, words))
+    layers = layers_of(meshes, names)
     options = (None if title is None else as_text(title, "title"), as_count(points, "points"), exact, self_intersections, side_by_side)
     with tempfile.TemporaryDirectory(prefix="brio-") as folder:
         path = os.path.join(folder, "page.html")

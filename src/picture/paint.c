@@ -1,0 +1,131 @@
+/* Colours of meshes in pictures: those of the mesh, a property by a colour map, or one colour for the layer. The same
+ * as on pages (web/src/colours.js). */
+#include "base/memory.h"
+#include "picture/picture.h"
+#include <math.h>
+#include <string.h>
+
+static const brio_rgb LAYERS[12] = {{{0xc9, 0xce, 0xd6}}, {{0xe0, 0xa4, 0x58}}, {{0x6f, 0xa8, 0xdc}},
+                                    {{0x93, 0xc4, 0x7d}}, {{0xc2, 0x7b, 0xa0}}, {{0x76, 0xa5, 0xaf}},
+                                    {{0xff, 0xd9, 0x66}}, {{0x8e, 0x7c, 0xc3}}, {{0xe0, 0x66, 0x66}},
+                                    {{0xa2, 0xc4, 0xc9}}, {{0xb6, 0xd7, 0xa8}}, {{0xd5, 0xa6, 0xbd}}};
+
+/* viridis, after its public table, at even distances. */
+static const uint8_t VIRIDIS[11][3] = {{0x44, 0x01, 0x54}, {0x48, 0x24, 0x75}, {0x41, 0x44, 0x87}, {0x35, 0x5f, 0x8d},
+                                       {0x2a, 0x78, 0x8e}, {0x21, 0x91, 0x8c}, {0x22, 0xa8, 0x84}, {0x44, 0xbf, 0x70},
+                                       {0x7a, 0xd1, 0x51}, {0xbd, 0xdf, 0x26}, {0xfd, 0xe7, 0x25}};
+
+/* Properties of clouds that are shown without being asked for. */
+static const char *const TELLING[] = {"confidence", "distance", "intensity", "value", "radius"};
+
+brio_rgb brio_map_colour(float t) {
+    if (isnan(t)) return (brio_rgb){{128, 128, 128}};
+    float x = (t < 0 ? 0 : t > 1 ? 1 : t) * 10;
+    int i = x >= 10 ? 9 : (int)x;
+    brio_rgb out;
+    for (int k = 0; k < 3; k++) {
+        float from = VIRIDIS[i][k], to = VIRIDIS[i + 1][k];
+        out.c[k] = (uint8_t)lrintf(from + (x - (float)i) * (to - from));
+    }
+    return out;
+}
+
+/* Numbers of the vertices or the faces: a property, or a coordinate where p is NULL. */
+typedef struct {
+    const brio_property *p;
+    const double *vertices;
+    int axis;
+    size_t n;
+} numbers;
+
+static double number_at(const numbers *x, size_t i) {
+    return x->p ? brio_property_value(x->p, i) : x->vertices[3 * i + (size_t)x->axis];
+}
+
+static brio_status take_values(brio_context *ctx, const numbers *x, brio_paint *out) {
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < x->n; i++) {
+        double value = number_at(x, i);
+        if (!isfinite(value)) continue;
+        low = value < low ? value : low;
+        high = value > high ? value : high;
+    }
+    if (low > high) low = high = 0;
+    out->low = low;
+    out->high = high;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->value, x->n + 1));
+    for (size_t i = 0; i < x->n; i++) {
+        double value = number_at(x, i), half = high / 2 - low / 2;
+        out->value[i] = !isfinite(value) ? NAN : half > 0 ? (float)((value / 2 - low / 2) / half) : 0.5F;
+    }
+    return BRIO_OK;
+}
+
+static const brio_property *find(const brio_mesh *m, const char *name, bool of_faces) {
+    return of_faces ? brio_mesh_face_property(m, name) : brio_mesh_property(m, name);
+}
+
+/* Takes the colours red, green and blue, if there are all three: bytes, 16 bits, or real numbers up to 1. */
+static brio_status take_colours(brio_context *ctx, const brio_mesh *m, bool of_faces, brio_paint *out) {
+    static const char *const names[3] = {"red", "green", "blue"};
+    const size_t n = of_faces ? m->num_faces : m->num_vertices;
+    const brio_property *p[3];
+    double most = 0;
+    for (int k = 0; k < 3; k++) {
+        p[k] = find(m, names[k], of_faces);
+        if (!p[k]) return BRIO_OK;
+        for (size_t i = 0; i < n; i++) {
+            double value = brio_property_value(p[k], i);
+            most = value > most ? value : most;
+        }
+    }
+    bool real = p[0]->type == BRIO_SCALAR_FLOAT32 || p[0]->type == BRIO_SCALAR_FLOAT64;
+    double scale = real && most <= 1 ? 255 : most > 255 ? 255 / 65535.0 : 1;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->rgb, n + 1));
+    for (size_t i = 0; i < n; i++)
+        for (int k = 0; k < 3; k++) {
+            double value = brio_property_value(p[k], i) * scale;
+            out->rgb[i].c[k] = value > 0 ? value < 255 ? (uint8_t)lrint(value) : 255 : 0;
+        }
+    out->of_faces = of_faces;
+    return BRIO_OK;
+}
+
+static brio_status take_property(brio_context *ctx, const brio_mesh *m, const char *name, bool *found,
+                                 brio_paint *out) {
+    numbers x = {.vertices = m->vertices, .n = m->num_vertices};
+    *found = true;
+    for (int of_faces = 0; of_faces < 2; of_faces++) {
+        x.p = find(m, name, of_faces != 0);
+        x.n = of_faces ? m->num_faces : m->num_vertices;
+        out->of_faces = of_faces != 0;
+        out->name = name;
+        if (x.p) return take_values(ctx, &x, out);
+    }
+    x.n = m->num_vertices;
+    out->of_faces = false;
+    x.axis = name[0] - 'x';
+    if (strlen(name) == 1 && x.axis >= 0 && x.axis < 3) return take_values(ctx, &x, out);
+    out->name = NULL;
+    *found = false;
+    return BRIO_OK;
+}
+
+brio_status brio_paint_find(brio_context *ctx, const brio_mesh *m, size_t layer, const char *wanted, bool *found,
+                            brio_paint *out) {
+    *out = (brio_paint){.plain = LAYERS[layer % (sizeof LAYERS / sizeof *LAYERS)]};
+    *found = true;
+    if (wanted && !strcmp(wanted, "none")) return BRIO_OK;
+    if (wanted) return take_property(ctx, m, wanted, found, out);
+    BRIO_FORWARD(take_colours(ctx, m, false, out));
+    if (!out->rgb) BRIO_FORWARD(take_colours(ctx, m, true, out));
+    if (out->rgb || m->num_faces || m->num_tetrahedra || m->num_edges) return BRIO_OK;
+    for (size_t i = 0; i < sizeof TELLING / sizeof *TELLING; i++)
+        if (find(m, TELLING[i], false)) return take_property(ctx, m, TELLING[i], found, out);
+    return take_property(ctx, m, "z", found, out);
+}
+
+void brio_paint_free(brio_context *ctx, brio_paint *p) {
+    brio_release(ctx, p->rgb);
+    brio_release(ctx, p->value);
+}
