@@ -126,10 +126,11 @@ def build_library(root, target, library, tools):
             shutil.copy(sources / header, include / place)
         (objects / 'expat_config.h').write_text('')
         files = [file for pattern in library.sources for file in sorted(sources.glob(pattern))]
+        launcher = ['ccache'] if shutil.which('ccache') else []
         flags = ['-O2', '-DNDEBUG', '-fPIC', '-fvisibility=hidden', '-ffunction-sections', '-w', '-I', objects, *library.flags]
         flags += [ENTROPY[target.system]] * (library.name == 'expat')
         for file in files:
-            subprocess.run([tools['cc'], '-c', *flags, file, '-o', objects / (file.stem + '.o')], check=True)
+            subprocess.run([*launcher, tools['cc'], '-c', *flags, file, '-o', objects / (file.stem + '.o')], check=True)
         subprocess.run([tools['ar'], 'rcs', archive, *sorted(objects.glob('*.o'))], check=True)
     return {use: 'ON', library.cmake + '_LIBRARY': archive, library.cmake + '_INCLUDE_DIR': include}
 
@@ -139,12 +140,17 @@ def c_library(target):
     return 'musl' if target.triple.endswith('-musl') else target.system
 
 
+# The compiler makes a target's C library from its sources, up to 1500 files, when it first links: once more for what is linked without
+# optimization, as the programs are that CMake tries.
+ONE_LIBRARY = {'CMAKE_C_FLAGS': '-O2', 'CMAKE_TRY_COMPILE_CONFIGURATION': 'Release'}
+
+
 def options_of(root, target):
     """What CMake is told to build for a target."""
     tools = tools_of(root, target)
     options = {'CMAKE_SYSTEM_NAME': target.system, 'CMAKE_SYSTEM_PROCESSOR': target.processor, 'CMAKE_C_COMPILER': tools['cc'],
-               'CMAKE_AR': tools['ar'], 'CMAKE_RANLIB': tools['ranlib'], 'CMAKE_BUILD_TYPE': 'Release',
-               'CMAKE_C_FLAGS_RELEASE': '-O2 -DNDEBUG'}
+               'CMAKE_AR': tools['ar'], 'CMAKE_RANLIB': tools['ranlib'], 'CMAKE_BUILD_TYPE': 'Release', **ONE_LIBRARY,
+               'CMAKE_C_FLAGS_RELEASE': '-DNDEBUG'}
     for library in LIBRARIES:
         options.update(build_library(root, target, library, tools))
     if shutil.which('ccache'):

@@ -1,0 +1,16 @@
+/* closed_streams.exe PROGRAM [ARGUMENT ...]: runs a program of Windows without standard streams, as services and detached programs are, and
+ * ends with its status. */
+#include <windows.h>
+
+int main(void) {
+    wchar_t *line = GetCommandLineW();
+    for (wchar_t end = *line == '"' ? *line++ : ' '; *line && *line != end; line++) {}
+    while (*line == '"' || *line == ' ') line++;
+    STARTUPINFOW start = {.cb = sizeof start, .dwFlags = STARTF_USESTDHANDLES};
+    PROCESS_INFORMATION program;
+    DWORD status = 1;
+    if (!CreateProcessW(NULL, line, NULL, NULL, FALSE, DETACHED_PROCESS, NULL, NULL, &start, &program)) return 126;
+    WaitForSingleObject(program.hProcess, INFINITE);
+    GetExitCodeProcess(program.hProcess, &status);
+    return (int)status;
+}
