@@ -168,9 +168,12 @@ def configure_and_build(source, folder, options, goals):
                 raise RuntimeError('does not build, see %s' % log.name)
 
 
-if __name__ == '__main__':  # cross.py FOLDER TARGET|module: writes NOTICES of a program, or of brio-module.wasm, which has no libraries
+if __name__ == '__main__':
+    # cross.py --names: the targets. cross.py FOLDER TARGET|module: writes NOTICES of a program, or of brio-module.wasm, which has no libraries
     here = pathlib.Path(__file__).resolve().parents[1]
-    if sys.argv[2] == 'module':
+    if sys.argv[1] == '--names':
+        print('\n'.join(t.name for t in TARGETS))
+    elif sys.argv[2] == 'module':
         write_notices(sys.argv[1], notices_of(here, 'WASI', []))
     else:
         write_notices(sys.argv[1], notices_of(here, c_library(next(t for t in TARGETS if t.name == sys.argv[2]))))
