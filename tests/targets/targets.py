@@ -124,11 +124,11 @@ def run_units(script, most_seconds, emulated, failures):
     return len(suites) - len(left_out) - len(failed), [suite for suite, _ in failed], left_out
 
 
-def run_contract(root, script, subjects, emulated, failures):
+def run_contract(root, script, subjects, runner, failures):
     """Tests of the command line that pass, and the names of those that fail. What these print goes to `failures`."""
     passed, failed = 0, []
     for subject in subjects:
-        done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env={**os.environ, 'BRIO': str(script), 'BRIO_EMULATED': '1' * emulated})
+        done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env={**os.environ, 'BRIO': str(script), 'BRIO_EMULATED': runner if runner in EMULATED else ''})
         text = done.stderr.decode()
         if done.returncode:
             failures.write(done.stdout + done.stderr)
@@ -145,7 +145,7 @@ def closed_streams(root, folder, target, script, points):
     environment, words = {**os.environ, 'BRIO_CLOSED': '1'}, [script]
     if target.system == 'Windows':
         launcher = folder / 'closed_streams.exe'
-        run([cross.tools_of(root, target)['cc'], '-o', launcher, root / 'tests/targets/closed_streams.c'], check=True)
+        run([cross.tools_of(root, target)['cc'], '-O2', '-g0', '-o', launcher, root / 'tests/targets/closed_streams.c'], check=True)
         words = ['wine', launcher, folder / 'brio.exe']
     elif target.system != 'WASI':
         return 0, []
@@ -209,7 +209,7 @@ def run_target(root, folder, target, script, native, points, most_seconds):
     runner, contract = RUNS[target.name]
     unit_script, _ = runner_of(root, folder, target, 'unit_tests')
     with open(folder / 'failures', 'wb') as failures:
-        passed, failed = run_contract(root, script, contract, runner in EMULATED, failures)
+        passed, failed = run_contract(root, script, contract, runner, failures)
         guarded, open_to = closed_streams(root, folder, target, script, points)
         passed, failed = passed + guarded, failed + open_to
         if unit_script:

@@ -67,10 +67,10 @@ def make_forwarder(root, target, folder):
     """python3.dll: each name of the limited API is that of python311.dll."""
     functions, data = wheels.limited_api(root)
     source, definition = folder / 'python3.c', folder / 'python3.def'
-    source.write_text('int _DllMainCRTStartup(void *a, unsigned b, void *c) { return 1; }\n')
+    source.write_text('int DllMainCRTStartup(void *a, unsigned b, void *c) { return 1; }\n')
     definition.write_text('LIBRARY python3.dll\nEXPORTS\n' + ''.join('  %s=python311.%s\n' % (n, n) for n in sorted(functions)) +
                           ''.join('  %s=python311.%s DATA\n' % (n, n) for n in sorted(data)))
-    wheels.run([cross.tools_of(root, target)['cc'], '-shared', '-nostdlib', '-o', folder / 'python3.dll', source, definition])
+    wheels.run([cross.tools_of(root, target)['cc'], '-O2', '-g0', '-shared', '-nostdlib', '-o', folder / 'python3.dll', source, definition])
 
 
 def make_musl_python(root, target, folder):
