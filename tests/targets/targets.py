@@ -135,13 +135,15 @@ def run_contract(root, script, subjects, runner, failures):
         found = re.search(r'^Ran (\d+) tests?', text, re.M)
         wrong = re.findall(r'^(?:FAIL|ERROR): (\w+)', text, re.M)
         failed += ['%s.%s' % (subject, name) for name in sorted(set(wrong))] or ([] if found and done.returncode == 0 else [subject])
-        passed += max(int(found.group(1)) - len(set(wrong)), 0) if found else 0
+        skipped = re.search(r'skipped=(\d+)', text)
+        passed += max(int(found.group(1)) - len(set(wrong)) - int(skipped.group(1) if skipped else 0), 0) if found else 0
     return passed, failed
 
 
 def closed_streams(root, folder, target, script, points):
     """Tests that pass, of one, and the names of those that fail: a program whose standard streams are closed writes none of its messages
-    into its output; its report has no place to go, which it says by its status. Where Python cannot close them (tests/cli/test_output.py), closed_streams.c and wasi.mjs do."""
+    into its output; its report has no place to go, which it says by its status. Where Python cannot close them, as
+    tests/cli/test_output.py does, closed_streams.c and wasi.mjs do."""
     environment, words = {**os.environ, 'BRIO_CLOSED': '1'}, [script]
     if target.system == 'Windows':
         launcher = folder / 'closed_streams.exe'
