@@ -4,7 +4,7 @@ JOBS := $(shell nproc 2>/dev/null || echo 2)
 BRIO := build/brio
 MAKEFLAGS += --no-print-directory
 
-.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak operations analyze targets wheels integrations release npm page mpi
+.PHONY: all demo check check-all fuzz faults python python-heavy python-sanitize bench quality votes thesis machines deb site clean crosscheck bruteforce mutations metamorphic python-fuzz coverage setup model threads soak operations analyze targets wheels try-wheels recipes integrations release npm page mpi
 
 all:
 	@sh scripts/setup.sh build
@@ -195,6 +195,17 @@ wheels:
 	@sh scripts/setup.sh packages
 	@sh scripts/setup.sh targets
 	/usr/bin/python3 scripts/wheels.py . build/wheels out/tests-env/bin/python $(WHEELS)
+
+# The wheels of these systems, installed where they belong, with the package's tests: docs/python/building.md. WHEELS as above.
+try-wheels:
+	@sh scripts/setup.sh targets
+	@sh scripts/setup.sh pythons
+	/usr/bin/python3 tests/targets/wheels.py . build/wheels build/wheels-tried $(WHEELS)
+
+# The recipes for conda, vcpkg and Homebrew, as far as their tools can be had: docs/release.md.
+recipes:
+	@sh scripts/setup.sh recipes
+	/usr/bin/python3 packaging/check/check.py . out/recipes
 
 # PyVista, meshio and trimesh, Blender, QGIS: each as integrations/README.md says. BLENDER=1 installs Blender's Python package, 1.4 GB.
 integrations: all

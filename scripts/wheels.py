@@ -152,7 +152,11 @@ def main():
         failed |= bool(wrong)
         rows.append('%s\t%d\t%s' % (path.name, size, 'WRONG: ' + ', '.join(wrong) if wrong else ' '.join(needs)))
         print(rows[-1], flush=True)
-    (out / 'WHEELS.tsv').write_text('\n'.join(['file\tbytes\tneeds', *rows]) + '\n')
+    table = out / 'WHEELS.tsv'
+    named = {line.split('\t')[0] for line in rows}  # those of other targets stay, while their files are there
+    kept = [line for line in (table.read_text().splitlines()[1:] if table.exists() else []) if line.split('\t')[0] not in named]
+    rows += [line for line in kept if (out / line.split('\t')[0]).exists()]
+    table.write_text('\n'.join(['file\tbytes\tneeds', *rows]) + '\n')
     return failed
 
 

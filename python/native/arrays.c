@@ -105,9 +105,7 @@ PyType_Spec array_spec = {"brio._native.Array", sizeof(array), 0,
 
 /* --- arrays of the caller --- */
 
-/* Whether an array's format is that which is wanted: numpy may say q for l, or Q for L; and where long has 32 bits, l for
- * i, and L for I. */
-static int same_type(const char *found, char wanted) {
+int is_of_format(const char *found, char wanted) {
     static const char of_64[] = "LQ", signed_of_64[] = "lq", of_32[] = "IL", signed_of_32[] = "il";
     const int wide = sizeof(long) == 8;
     if (!found || found[1] || !*found) return 0;
@@ -129,7 +127,7 @@ static int open_view(input *in, PyObject *object, const char *name, char format,
     in->rows = view->ndim > 0 ? (size_t)view->shape[0] : 0;
     in->columns = view->ndim > 1 ? (size_t)view->shape[1] : 1;
     in->bytes = (size_t)view->len;
-    if (same_type(view->format, format) && view->ndim == ndim && (columns <= 0 || in->columns == (size_t)columns))
+    if (is_of_format(view->format, format) && view->ndim == ndim && (columns <= 0 || in->columns == (size_t)columns))
         return 0;
     PyErr_Format(PyExc_ValueError, "%s: an array of another type or shape than wanted (%c, %d dimensions)", name,
                  format, ndim);

@@ -82,6 +82,10 @@ typedef struct {
     Py_ssize_t shape[2], strides[2];
 } layout;
 
+/* Whether an array's format is that which is wanted: numpy may say q for l, or Q for L; and where long has 32 bits, as on
+ * Windows, l for i, and L for I. */
+int is_of_format(const char *found, char wanted);
+
 /** Makes an object with a read-only buffer that keeps `base` alive; numpy.asarray makes an array of it. */
 PyObject *array_new(module_state *state, PyObject *base, layout shown);
 /** The layouts that occur: #n, or #n by columns, one after the other. */
@@ -163,6 +167,7 @@ void cells_release(void *cells);
 /* --- the functions of the module, by file --- */
 
 extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
-    mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[], dynamic_methods[];
+    mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[],
+    dynamic_methods[];
 
 #endif

@@ -75,12 +75,12 @@ typedef struct {
 typedef int opener(input *in, PyObject *object, const char *name, char format, int columns);
 
 /* Reads (points, options, number, extra or None, threads, progress). `extra` is an array to write, of `columns`. */
-static int open_surface_call(surface_call *s, PyObject *args, opener *open, char format, int columns) {
+static int open_surface_call(surface_call *s, PyObject *args, opener *opens, char format, int columns) {
     s->p = s->out = (input){.held = 0};
     if (!PyArg_ParseTuple(args, "OO!dOiO", &s->points, &PyDict_Type, &s->options, &s->number, &s->extra, &s->threads,
                           &s->progress))
         return -1;
-    if (open(&s->p, s->points, "points", 'd', 3)) return -1;
+    if (opens(&s->p, s->points, "points", 'd', 3)) return -1;
     if (s->extra == Py_None) return 0;
     if (output_open(&s->out, s->extra, "out", format, columns)) return -1;
     return input_has_rows(&s->out, "out", s->p.rows);

