@@ -99,11 +99,11 @@ BRIO_API const brio_image *brio_periodic_representatives(const brio_periodic *t)
 BRIO_API brio_status brio_periodic_checksum(brio_context *ctx, const brio_periodic *t, uint64_t *checksum);
 
 /** Checks a periodic triangulation exactly, without the code that made it: tetrahedra are positive; mates share facets;
- *  no vertex behind a facet is in conflict, ties included; every point has a vertex that represents it. Where all
- *  directions repeat, the volumes fill the cell, so that no vertex at all is in conflict. With fewer, the hull is
- *  convex at its edges; that space is covered only once is not checked. Where points and translates have dimension 2
- *  or less, there are no tetrahedra: that the dimension is right is checked then, and which points are vertices is
- *  not. That hidden points are hidden is not checked.
+ *  no vertex behind a facet is in conflict, ties included; every point has a vertex that represents it. Space is
+ *  covered once, so that no vertex at all is in conflict: where all directions repeat, by the sum of volumes; with
+ *  fewer, by the hull, which is convex, lies along the directions and goes round once. Where points and translates have
+ *  dimension 2 or less, there are no tetrahedra: that the dimension is right is checked then, and which points are
+ *  vertices is not. That hidden points are hidden is not checked.
  *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_periodic_check(brio_context *ctx, const brio_periodic *t);
