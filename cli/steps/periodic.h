@@ -29,7 +29,7 @@ static inline bool cli_is_periodic(const periodic_options *options) {
 }
 
 /** Estimates the triangulation, and what commands make of it; writes bytes in all.
- *  vertices  whether the cells get vertices.   filtration  whether it is written.   places  that are located, or NULL. */
+ *  vertices  whether the cells get vertices.   filtration  whether it is written.   places  that are located. */
 brio_status cli_periodic_delaunay_bytes(run *r, const periodic_options *options, const brio_mesh *mesh,
                                         const double *weights, double *bytes);
 brio_status cli_periodic_cells_bytes(run *r, const periodic_options *options, const brio_mesh *mesh,

@@ -170,11 +170,12 @@ typedef struct brio_periodic_shape_stats {
     double area, volume;                                       /* of the surface; of the solid */
 } brio_periodic_shape_stats;
 
-/** Makes the boundary of an alpha shape in space that repeats: the facets between tetrahedra with values of at most alpha
- *  and others, one of each class. Triangles are seen counterclockwise from outside. As a surface that repeats it is
- *  closed and manifold: where parts of the solid touch in a vertex or an edge only, vertices are doubled. The mesh is cut
- *  open where the surface goes on at a translate. It has the properties "point", "shift_a", "shift_b", "shift_c", which
- *  image a vertex is, and "sheet": vertices of one sheet are one vertex of the surface, and its translates.
+/** Makes the boundary of an alpha shape in space that repeats: the facets between tetrahedra with values of at most
+ *  alpha and others, one of each class. Triangles are seen counterclockwise from outside. As a surface that repeats it
+ *  is closed and manifold: where parts of the solid touch in a vertex or an edge only, vertices are doubled. The mesh
+ *  is cut open where the surface goes on at a translate. It has the properties "point", "shift_a", "shift_b" and
+ *  "shift_c", which image a vertex is, and "sheet": vertices of one sheet are one vertex of the surface, and its
+ *  translates.
  *  out    owned by the caller; without faces if the shape fills space.   stats  NULL, or receives what was found.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN), BRIO_ERR_NO_ANSWER (no tetrahedron has a value of at most alpha,
  *  or alpha is closer to 0 than brio_alpha_auto finds one), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.

@@ -118,6 +118,71 @@ def test_points_of_a_plane_and_a_line_have_cells():
     assert vor.volumes.sum() == pytest.approx(2, rel=1e-12)
 
 
+def test_places_in_any_cell():
+    """Against all translates; positions that are moved by the cell have the same answers, moved."""
+    cell = np.array([[1, 0, 0], [0.2, 1, 0], [0, 0.3, 1]])
+    points, places = RNG.random((30, 3)) @ cell, RNG.random((40, 3)) * 6 - 3
+    tri = brio.Delaunay(points, cell=cell)
+    moves = np.array(list(itertools.product(range(-5, 6), repeat=3)))
+    images = points[:, None] + moves @ cell
+    found, shifts = tri.nearest(places)
+    distance = np.linalg.norm(points[found] + shifts @ cell - places, axis=1)
+    least = [np.linalg.norm(images - place, axis=2).min() for place in places]
+    assert np.allclose(distance, least, rtol=1e-12)
+    simplices, shifts = tri.find_simplex(places.reshape(5, 8, 3))
+    assert simplices.shape == (5, 8) and shifts.shape == (5, 8, 3)
+    corners = tri.image_positions[tri.simplices[simplices]] + (shifts @ cell)[..., None, :]
+    corners, x = corners.reshape(-1, 4, 3), places
+    inside = np.linalg.solve(np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2), (x - corners[:, 0])[..., None])[..., 0]
+    assert inside.min() > -1e-9 and inside.sum(axis=1).max() < 1 + 1e-9
+    other, there = tri.find_simplex(places + [3, -2, 1] @ cell)
+    assert (other == simplices.ravel()).all() and (there - shifts.reshape(-1, 3) == [3, -2, 1]).all()
+    slab = brio.Delaunay(points, cell=cell, periodic="xy")
+    assert slab.find_simplex([0, 0, 9])[0] == -1
+
+
+def test_alpha_complex_of_a_torus():
+    """Betti numbers of the whole filtration are 1, 3, 3, 1; values are those of many copies."""
+    points = RNG.random((200, 3))
+    complex = brio.alpha_complex(points, cell=[1, 1, 1])
+    counts = [len(part) for part in complex.values]
+    assert counts[0] - counts[1] + counts[2] - counts[3] == 0
+    simplices = list(complex.filtration())
+    assert len(simplices) == sum(counts) and len({s for s, _ in simplices}) == len(simplices)
+    seen = set()
+    for simplex, value in simplices:
+        assert all(face in seen for face in itertools.combinations(simplex, len(simplex) - 1) if face)
+        seen.add(simplex)
+    gudhi = pytest.importorskip("gudhi")
+    tree = gudhi.SimplexTree()
+    for simplex, value in simplices:
+        tree.insert(list(simplex), value)
+    tree.compute_persistence(persistence_dim_max=True)
+    assert tree.betti_numbers() == [1, 3, 3, 1]
+
+
+def test_alpha_needs_simplices_that_differ():
+    complex = brio.alpha_complex(RNG.random((4, 3)), cell=[1, 1, 1])
+    with pytest.raises(brio.NoAnswerError, match="repeat the cell"):
+        list(complex.filtration())
+
+
+def test_alpha_shapes_that_repeat():
+    points = RNG.random((400, 3))
+    shape = brio.AlphaShape(points, 0.004, cell=[1, 1, 1])
+    inside = shape.complex.values[3] <= 0.004
+    corners = shape.complex.image_positions[shape.complex.simplices[3][inside]]
+    volume = np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1])).sum() / 6
+    assert shape.counts["volume"] == pytest.approx(volume, rel=1e-12) and shape.counts["tetrahedra"] == inside.sum()
+    properties = shape.properties
+    shift = np.stack([properties["shift_" + k] for k in "abc"], axis=1)
+    assert np.allclose(points[properties["point"]] + shift, shape.vertices, atol=1e-12)
+    full = brio.AlphaShape([[0, 0, 0]], cell=[1, 1, 1])
+    assert full.alpha == 0.75 and len(full.faces) == 0 and full.counts["volume"] == pytest.approx(1)
+    copy = pickle.loads(pickle.dumps(brio.AlphaShape(points, 0.01)))
+    assert len(copy.faces) > 0
+
+
 def test_arguments():
     with pytest.raises(brio.ArgumentError, match="3 by 3"):
         brio.Delaunay([[0, 0, 0]], cell=[1, 2])

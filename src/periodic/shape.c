@@ -1,11 +1,12 @@
 /* The boundary of an alpha shape in space that repeats.
  *
- * A class of tetrahedra is inside when its value is at most alpha. The surface is the facets between inside and outside,
- * one of each class. From a facet, tetrahedra inside are passed about each of its edges, until a facet of the surface
- * is met again: these two are neighbours there. So parts of the solid that touch in an edge or a vertex only have
- * surfaces that do not, and the surface is a closed manifold. Corners of neighbours at one vertex are one sheet: a
- * vertex of the surface. Two faces that meet at different images of their edge are cut apart in the mesh, which has a
- * vertex for each fan of faces that is left.
+ * A class of tetrahedra is inside when its value is at most alpha. The surface is the facets between inside and
+ * outside, one of each class. From a facet, tetrahedra inside are passed about each of its edges, until a facet of the
+ * surface is met again: these two are neighbours there. So parts of the solid that touch in an edge or a vertex only
+ * have surfaces that do not. Where a fan of faces passes one edge twice all the same, two pairs of neighbours are
+ * exchanged, which makes two fans of it (as in mesh/split_vertices.c): the surface is a closed manifold. Corners of
+ * neighbours at one vertex are one sheet: a vertex of the surface. Two faces that meet at different images of their
+ * edge are cut apart in the mesh, which has a vertex for each fan of faces that is left.
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
 #include "alpha/alpha_complex.h"
