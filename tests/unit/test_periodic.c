@@ -424,6 +424,24 @@ static void flat_points_are_checked(void) {
         }
 }
 
+/* Some reduced bases of face-centred lattices were refused: the bound on the translates that matter was too coarse. */
+static void every_basis_of_a_lattice_has_a_result(void) {
+    brio_rng rng = brio_rng_new(29);
+    static const int lattices[] = {2, 3, 4, 8};
+    for (int round = 0; round < (BRIEF_TESTS ? 20 : 100); round++) {
+        double cell[9];
+        memcpy(cell, CELLS[lattices[round % 4]], sizeof cell);
+        for (int step = 0; step < 12; step++) {
+            int to = below(&rng, 3), from = (to + 1 + below(&rng, 2)) % 3, n = below(&rng, 5) - 2;
+            for (int k = 0; k < 3; k++) cell[3 * to + k] += n * cell[3 * from + k];
+        }
+        crystal c = random_crystal(&rng, cell, 1 + (size_t)round % 3, 64, false);
+        brio_periodic *t = build(&c);
+        if (t) check(t, "a basis");
+        brio_periodic_free(t);
+    }
+}
+
 /* Makes the triangulation of a cell of twice the length into one that covers the plain cell's space twice: each class is
  * there twice, and all looks right from near. `twice` has points n to 2n - 1 at those of `once` moved by its vector a.
  * Returns the triangulation, whose arrays the caller frees, or whose tetrahedra are NULL on error. */
@@ -538,6 +556,7 @@ SUITE(test_periodic) {
     RUN(halos_do_not_matter);
     RUN(shifts_fit_or_are_refused);
     RUN(flat_points_are_checked);
+    RUN(every_basis_of_a_lattice_has_a_result);
     RUN(space_is_covered_once);
     RUN(no_points_have_a_result);
     RUN(wrong_options_are_refused);
