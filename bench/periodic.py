@@ -1,10 +1,11 @@
 """periodic.py: cells in space that repeats, volumes and neighbours included, of brio, voro++ and freud, in one run.
 
-  periodic.py [-n POINTS] [--repeat N] [--voropp PROGRAM]
+  periodic.py --brio PROGRAM [-n POINTS] [--repeat N] [--voropp PROGRAM]
 
-Uniform points in a cube. Each library runs in a process of its own: brio and freud from Python, voro++ as the program
-bench/peers/voropp_periodic.cpp, which --voropp names. What is measured begins with the points in memory and ends with volumes and
-neighbours there. Prints the median of wall and processor seconds, and the ratio to brio in a cubic cell on one thread."""
+Uniform points in a cube. Each library runs in a process of its own: brio as bench/periodic.c (target bench_periodic) and from
+Python, voro++ as bench/peers/voropp_periodic.cpp, freud from Python. What is measured begins with the points in memory and ends
+with volumes and neighbours there. Prints medians of wall and processor seconds, and ratios to brio in a cubic cell on one thread,
+of programs and of Python."""
 
 import argparse
 import json
@@ -25,12 +26,10 @@ def points_of(count):
     return np.random.default_rng(1).random((count, 3))
 
 
-def brio_cells(points, threads, **options):
+def brio_cells(points, cell):
     import brio
 
-    vor = brio.Voronoi(points, threads=threads, **options)
-    if "box" in options:
-        return vor.cells["volume"].sum(), len(vor.cells["face_neighbours"])
+    vor = brio.Voronoi(points, threads=1, cell=cell)
     return vor.volumes.sum(), len(vor.neighbor_points)
 
 
@@ -46,14 +45,16 @@ def freud_cells(points, cell):
 
 
 WAYS = {
-    "brio, open box, 1 thread": lambda p: brio_cells(p, 1, box=[[0, 0, 0], [1, 1, 1]]),
-    "brio, cubic cell, 1 thread": lambda p: brio_cells(p, 1, cell=np.eye(3)),
-    "brio, triclinic cell, 1 thread": lambda p: brio_cells(p @ TILTED, 1, cell=TILTED),
-    "brio, cubic cell, 2 threads": lambda p: brio_cells(p, 2, cell=np.eye(3)),
-    "freud, cubic cell": lambda p: freud_cells(p, np.eye(3)),
-    "freud, triclinic cell": lambda p: freud_cells(p @ TILTED, np.array(TILTED)),
+    "Python: brio, cubic cell": lambda p: brio_cells(p, np.eye(3)),
+    "Python: freud, cubic cell": lambda p: freud_cells(p, np.eye(3)),
+    "Python: freud, triclinic cell": lambda p: freud_cells(p @ TILTED, np.array(TILTED)),
 }
-REFERENCE = "brio, cubic cell, 1 thread"
+BRIO = {
+    "brio, open box, 1 thread": ("open", "1"),
+    "brio, cubic cell, 1 thread": ("box", "1"),
+    "brio, triclinic cell, 1 thread": ("tilted", "1"),
+    "brio, cubic cell, 2 threads": ("box", "2"),
+}
 VOROPP = {"voro++, cubic cell": np.eye(3), "voro++, triclinic cell": np.array(TILTED)}
 
 
@@ -71,6 +72,10 @@ def one(way, count):
 
 
 def measure(way, options):
+    if way in BRIO:
+        made = subprocess.run([options.brio, str(options.n), *BRIO[way]], capture_output=True, text=True, check=True)
+        row = [float(x) for x in made.stdout.split()]
+        return [row[0] + row[2], row[1] + row[3], row[4], row[5]]
     if way in VOROPP:
         cell = VOROPP[way]
         with tempfile.NamedTemporaryFile() as raw:
@@ -87,17 +92,18 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("-n", type=int, default=100000)
     parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--brio")
     parser.add_argument("--voropp")
     parser.add_argument("--one")
     options = parser.parse_args()
     if options.one:
         return one(options.one, options.n)
-    ways = list(WAYS) + (list(VOROPP) if options.voropp else [])
+    ways = list(BRIO) + (list(VOROPP) if options.voropp else []) + list(WAYS)
     try:
         import freud  # noqa: F401
     except ImportError:
         print("freud is not installed")
-        ways = [way for way in ways if not way.startswith("freud")]
+        ways = [way for way in ways if "freud" not in way]
     runs = {way: [] for way in ways}
     for _ in range(options.repeat):  # in turn, so that what else the machine does falls on all
         for way in ways:
@@ -106,7 +112,8 @@ def main():
     print(f"{options.n} uniform points: seconds of wall and processor time, ratio of these, volume, faces a point")
     for way in ways:
         wall, cpu, volume, faces = medians[way]
-        ratios = [medians[way][k] / medians[REFERENCE][k] for k in range(2)]
+        reference = medians["Python: brio, cubic cell" if way in WAYS else "brio, cubic cell, 1 thread"]
+        ratios = [medians[way][k] / reference[k] for k in range(2)]
         print(f"{way:32} {wall:8.3f} {cpu:8.3f}   {ratios[0]:6.2f} {ratios[1]:6.2f}   {volume:.12f} {faces:8.4f}")
 
 
