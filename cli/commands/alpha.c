@@ -5,6 +5,7 @@
 #include "cli/files/files.h"
 #include "cli/files/read_write.h"
 #include "cli/steps/hints.h"
+#include "cli/steps/periodic.h"
 #include "cli/run/interrupt.h"
 #include "cli/steps/properties.h"
 #include "cli/files/cloud.h"
@@ -19,6 +20,7 @@ static const double CENTRES_ROUNDING = 8; /* chosen: a centre moves by more than
 
 typedef struct arguments {
     weights_options weights;
+    periodic_options periodic;
     const char *alpha, *filtration; /* as given, or NULL */
 } arguments;
 
@@ -30,6 +32,7 @@ static const option options[] = {
     {"filtration", 0, OPTION_OUTPUT, offsetof(arguments, filtration), "FILE",
      "write all simplices with their values, sorted: lines for GUDHI; .sparse: the edges for ripser", 0},
     WEIGHTS_ROWS(arguments, weights),
+    PERIODIC_ROWS(arguments, periodic),
     {0},
 };
 
@@ -149,33 +152,111 @@ done:
     return status;
 }
 
+/* --- in space that repeats --- */
+
+static void report_periodic(run *r, const brio_alpha_complex *c, const brio_mesh *surface,
+                            const brio_periodic_shape_stats *s) {
+    const brio_alpha_shape_stats open = {.alpha = s->alpha,
+                                         .tetrahedra = s->tetrahedra,
+                                         .split = s->split,
+                                         .uncovered = s->uncovered,
+                                         .singular_vertices = s->singular_vertices,
+                                         .singular_edges = s->singular_edges,
+                                         .singular_facets = s->singular_facets};
+    report(r, c, surface, &open);
+    cli_fact_count(&r->facts, "surfaces", s->components);
+    cli_fact_integer(&r->facts, "euler", s->euler);
+    cli_fact_real(&r->facts, "area", s->area);
+    cli_fact_real(&r->facts, "volume", s->volume);
+    if (!surface->num_faces) cli_warn(r, WARNING_FULL, c->counts[3]);
+}
+
+/* Writes the simplices, named by their points. */
+static brio_status write_by_points(run *r, const char *path, const brio_periodic_alpha *complex) {
+    brio_status status = BRIO_OK;
+    brio_alpha_complex named = {0};
+    TRY(brio_periodic_alpha_by_points(r->ctx, complex, &named));
+    TRY(write_filtration(r, path, &named));
+done:
+    brio_alpha_complex_free(&named);
+    return status;
+}
+
+static brio_status make_periodic_shape(run *r, const brio_periodic_alpha *complex, double alpha, double most) {
+    brio_status status = BRIO_OK;
+    brio_mesh *surface = NULL;
+    brio_periodic_shape_stats s = {0};
+    if (isnan(alpha)) TRY(brio_periodic_alpha_auto(r->ctx, complex, &most));
+    TRY(brio_periodic_alpha_shape(r->ctx, complex, most, &surface, &s));
+    if (!isnan(alpha)) s.alpha = alpha; /* as it was given */
+    cli_lap(r, "shape");
+    report_periodic(r, complex->complex, surface, &s);
+    TRY(cli_check_interrupt(r));
+    TRY(cli_certify(r, surface, CERTIFY_OPEN));
+    TRY(cli_write(r, surface));
+done:
+    brio_mesh_free(surface);
+    return status;
+}
+
+static brio_status alpha_periodic(run *r, const brio_mesh *input, const double *weights, double alpha) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    brio_periodic *t = NULL;
+    brio_periodic_alpha *complex = NULL;
+    TRY(cli_periodic(r, &a->periodic, input, weights, &t));
+    TRY(brio_periodic_alpha_values(r->ctx, t, &complex));
+    cli_lap(r, "values");
+    if (a->filtration) warn_beyond_doubles(r, complex->complex, weights != NULL);
+    if (a->filtration) TRY(write_by_points(r, a->filtration, complex));
+    TRY(make_periodic_shape(r, complex, alpha, up_to(alpha, input)));
+done:
+    brio_periodic_alpha_free(complex);
+    brio_periodic_free(t);
+    return status;
+}
+
+/* --- the command --- */
+
+static brio_status alpha_open(run *r, const brio_mesh *input, const double *weights, double value) {
+    const arguments *a = r->arguments;
+    brio_status status = BRIO_OK;
+    brio_triangulation *t = NULL;
+    brio_alpha_complex complex = {0};
+    TRY(triangulate(r, input, weights, &t, &complex));
+    if (a->filtration) warn_beyond_doubles(r, &complex, weights != NULL);
+    if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
+    TRY(make_shape(r, input, &complex, value));
+done:
+    brio_alpha_complex_free(&complex);
+    brio_triangulation_free(t);
+    return status;
+}
+
 static brio_status alpha(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *input = NULL;
-    double *weights = NULL, value = NAN;
+    double *weights = NULL, value = NAN, bytes;
     size_t usual;
-    brio_triangulation *t = NULL;
-    brio_alpha_complex complex = {0};
     brio_status status = BRIO_OK;
+    bool periodic = cli_is_periodic(&a->periodic);
     TRY(read_alpha(r, a, &value));
     TRY(cli_check_weights_options(r, &a->weights));
+    TRY(cli_check_periodic(r, &a->periodic));
     TRY(cli_require_output(r, a->filtration != NULL));
     if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration));
     TRY(cli_read_samples(r, r->operands[0], &input));
     TRY(cli_weights(r, &a->weights, input, &weights));
     TRY(cli_usual_points(r, input, weights, false, &usual));
-    TRY(cli_require_memory(r, cli_alpha_bytes(input, usual)));
+    bytes = cli_alpha_bytes(input, usual);
+    if (periodic && cli_limits_memory(r))
+        TRY(cli_periodic_alpha_bytes(r, &a->periodic, input, weights, a->filtration != NULL, &bytes));
+    TRY(cli_require_memory(r, bytes));
+    cli_tell_cell(r, &a->periodic, input);
     cli_lap(r, "read");
-    status = triangulate(r, input, weights, &t, &complex);
-    cli_examine(r, status, input);
-    if (status != BRIO_OK) goto done;
-    if (a->filtration) warn_beyond_doubles(r, &complex, weights != NULL);
-    if (a->filtration) TRY(write_filtration(r, a->filtration, &complex));
-    status = make_shape(r, input, &complex, value);
+    status = periodic ? alpha_periodic(r, input, weights, value) : alpha_open(r, input, weights, value);
     cli_examine(r, status, input);
 done:
-    brio_alpha_complex_free(&complex);
-    brio_triangulation_free(t);
     free(weights);
     brio_mesh_free(input);
     return status;
@@ -189,7 +270,8 @@ const command cli_alpha = {
         "For points throughout a volume rather than on a surface. Alpha is a squared radius, as in the literature.",
     .examples = "brio alpha points.ply --alpha auto -o shape.ply\nthe least alpha with all points in one solid\n"
                 "brio alpha points.ply --alpha 0.01 --filtration values.txt -o shape.ply\nall simplices and their "
-                "values as well\n",
+                "values as well\n"
+                "brio alpha atoms.extxyz --periodic xyz --alpha 4 -o pores.ply\natoms in a cell that repeats\n",
     .has_output = true,
     .holds = CLI_SURFACES,
     .group = GROUP_SURFACES,

@@ -251,6 +251,10 @@ static brio_status require_memory(run *r, const arguments *a, const brio_mesh *m
     brio_edges expected = {.count = mesh->num_faces ? (size_t)mesh->face_offsets[mesh->num_faces] / 2 : 0};
     brio_delaunay_options o = library_options(r, a);
     double bytes;
+    if (cli_is_periodic(&a->periodic)) {
+        FORWARD(cli_periodic_delaunay_bytes(r, &a->periodic, mesh, weights, &bytes));
+        return cli_require_memory(r, bytes);
+    }
     FORWARD(begin_experiment(r, a, &expected));
     brio_status status = cli_delaunay_bytes(r, mesh, weights, &o, &bytes);
     brio_laboratory_end(r->lab);

@@ -103,7 +103,7 @@ static brio_status interpolate(run *r) {
     double *values = NULL;
     brio_status status = BRIO_OK;
     TRY(check_arguments(r, a));
-    TRY(cli_read_located(r, a->at, NULL, a->plane, &l));
+    TRY(cli_read_located(r, a->at, NULL, NULL, a->plane, &l));
     if (!l.points->num_vertices)
         FAIL(r, BRIO_ERR_NO_ANSWER, "%s: no points, so no values to interpolate between", r->operands[0]);
     TRY(values_of(r, l.points, a->property, &values));

@@ -1,7 +1,6 @@
 /* brio locate: the tetrahedron that holds each point of a file, and the nearest vertex. */
 #include "cli/run/commands.h"
 #include "cli/steps/located.h"
-#include "cli/steps/periodic.h"
 #include "cli/files/table.h"
 #include <stdlib.h>
 
@@ -108,7 +107,7 @@ static brio_status locate(run *r) {
     if (cli_is_periodic(&a->periodic) && a->plane != LOCATED_SPACE)
         FAIL(r, BRIO_ERR_ARGUMENT, "--plane: not in space that repeats (--cell, --periodic)");
     TRY(cli_require_table(r));
-    TRY(cli_read_located(r, a->at, &a->weights, a->plane, &l));
+    TRY(cli_read_located(r, a->at, &a->weights, &a->periodic, a->plane, &l));
     if (cli_is_periodic(&a->periodic)) {
         status = answer_periodic(r, &l);
         goto done;

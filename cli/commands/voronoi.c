@@ -155,8 +155,13 @@ static brio_status read_box(run *r, const char *text, double box[6]) {
 
 /* Refuses work over --max-memory. */
 static brio_status require_memory(run *r, const brio_mesh *mesh, const double *weights, bool vertices) {
+    const arguments *a = r->arguments;
     double delaunay;
     size_t usual;
+    if (cli_is_periodic(&a->periodic)) {
+        FORWARD(cli_periodic_cells_bytes(r, &a->periodic, mesh, weights, vertices, &delaunay));
+        return cli_require_memory(r, delaunay);
+    }
     FORWARD(cli_delaunay_bytes(r, mesh, weights, NULL, &delaunay));
     FORWARD(cli_usual_points(r, mesh, weights, false, &usual));
     return cli_require_memory(r, cli_voronoi_bytes(delaunay, usual, vertices));
@@ -267,7 +272,7 @@ static int take_cells(const brio_cells *cells, const uint64_t *site, void *user)
 
 static brio_status check_tiles(run *r, brio_cells_format format) {
     const arguments *a = r->arguments;
-    if (a->periodic.cell) return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell: not with --tiles");
+    if (cli_is_periodic(&a->periodic)) return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell, --periodic: not with --tiles");
     if (format == BRIO_CELLS_FORMAT_VTU)
         return cli_fail_output(r, "%s: --tiles writes cells to .npy and .csv", r->common.output);
     return cli_check_tiles(r, &a->weights, a->tiles);

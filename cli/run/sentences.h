@@ -98,6 +98,8 @@
     "%zu of %zu points are outside the box, so that their cells are cut off or empty: 'brio info %s' says where the "  \
     "points are"
 #define WARNING_CELL "%s has a cell, which is not used: --periodic %s lets its points repeat"
+#define WARNING_FULL                                                                                                   \
+    "all %zu tetrahedra are in the shape, which fills space and has no surface: a smaller --alpha leaves holes"
 #define WARNING_NUMBERED                                                                                               \
     "%s: its first column numbers the rows and is read as x: --columns -,x,y,z leaves it out (names behind z keep "    \
     "further columns)"

@@ -9,8 +9,9 @@
 const option_choice cli_located_planes[] = {{"xy", LOCATED_XY}, {"xz", LOCATED_ZX},   {"yz", LOCATED_YZ},
                                             {"zx", LOCATED_ZX}, {"fit", LOCATED_FIT}, {NULL, 0}};
 
-brio_status cli_read_located(run *r, const char *at, const weights_options *weights, int plane, located *l) {
-    double delaunay;
+brio_status cli_read_located(run *r, const char *at, const weights_options *weights, const periodic_options *periodic,
+                             int plane, located *l) {
+    double bytes;
     if (!at) return cli_fail(r, BRIO_ERR_ARGUMENT, "no places: --at FILE is missing");
     if (!strcmp(at, "-") && !strcmp(r->operands[0], "-"))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "points and places both want standard input");
@@ -18,11 +19,14 @@ brio_status cli_read_located(run *r, const char *at, const weights_options *weig
     FORWARD(cli_read_points(r, r->operands[0], &l->points));
     FORWARD(cli_read_points(r, at, &l->at));
     if (weights) FORWARD(cli_weights(r, weights, l->points, &l->weights));
-    if (cli_limits_memory(r)) {
-        FORWARD(cli_delaunay_bytes(r, l->points, l->weights, NULL, &delaunay));
-        FORWARD(cli_require_memory(r, cli_locate_bytes(l->points, delaunay, l->at)));
+    if (!cli_limits_memory(r)) return BRIO_OK;
+    if (periodic && cli_is_periodic(periodic)) {
+        FORWARD(cli_periodic_locate_bytes(r, periodic, l->points, l->weights, l->at, &bytes));
+    } else {
+        FORWARD(cli_delaunay_bytes(r, l->points, l->weights, NULL, &bytes));
+        bytes = cli_locate_bytes(l->points, bytes, l->at);
     }
-    return BRIO_OK;
+    return cli_require_memory(r, bytes);
 }
 
 /* Sets the frame that --plane names. */

@@ -3,6 +3,7 @@
 #ifndef BRIO_CLI_LOCATED_H
 #define BRIO_CLI_LOCATED_H
 
+#include "cli/steps/periodic.h"
 #include "cli/steps/weights.h"
 
 typedef struct located {
@@ -29,8 +30,10 @@ extern const option_choice cli_located_planes[];
      "no z", cli_located_planes}
 /* clang-format on */
 
-/** Reads IN and the file --at. Refuses the work over --max-memory.   weights  NULL: points without weights. */
-brio_status cli_read_located(run *r, const char *at, const weights_options *weights, int plane, located *out);
+/** Reads IN and the file --at. Refuses the work over --max-memory.   weights  NULL: points without weights.
+ *  periodic  NULL: points do not repeat. */
+brio_status cli_read_located(run *r, const char *at, const weights_options *weights, const periodic_options *periodic,
+                             int plane, located *out);
 
 /** Triangulates the points and makes the locator, of space or of a plane.
  *  plane  LOCATED_SPACE: with `own_plane`, points that are in a plane are located there. */

@@ -1,6 +1,7 @@
 /* Points in space that repeats: see periodic.h. */
 #include "cli/steps/periodic.h"
 #include "cli/run/sentences.h"
+#include "cli/steps/estimate.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,6 +64,54 @@ void cli_tell_cell(run *r, const periodic_options *p, const brio_mesh *points) {
     if (count) cli_warn(r, WARNING_CELL, r->operands[0], letters);
 }
 
+/* --- memory --- */
+
+brio_status cli_periodic_delaunay_bytes(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
+                                        double *bytes) {
+    brio_periodic_options o = {0};
+    double cell[9];
+    uint64_t work = 0;
+    FORWARD(take(r, p, mesh, cell, &o));
+    FORWARD(brio_estimate_periodic(r->ctx, mesh->vertices, weights, mesh->num_vertices, &o, &work));
+    *bytes = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh) + (weights ? sizeof(double) * (double)mesh->num_vertices : 0) +
+             (double)work;
+    return BRIO_OK;
+}
+
+/* Estimates what goes by the tetrahedra, of which a point has the usual number. */
+static brio_status add_bytes(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
+                             double a_point, double *bytes) {
+    size_t usual;
+    FORWARD(cli_periodic_delaunay_bytes(r, p, mesh, weights, bytes));
+    FORWARD(cli_usual_points(r, mesh, weights, false, &usual));
+    *bytes += a_point * (double)usual;
+    return BRIO_OK;
+}
+
+/* Bytes a point beyond those of the triangulation were measured on 20,000 and 100,000 uniform points. */
+
+brio_status cli_periodic_cells_bytes(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
+                                     bool vertices, double *bytes) {
+    static const double CELL = 1850, VERTICES = 1000;
+    return add_bytes(r, p, mesh, weights, CELL + (vertices ? VERTICES : 0), bytes);
+}
+
+brio_status cli_periodic_alpha_bytes(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
+                                     bool filtration, double *bytes) {
+    static const double COMPLEX = 1300, BY_POINTS = 840;
+    return add_bytes(r, p, mesh, weights, COMPLEX + (filtration ? BY_POINTS : 0), bytes);
+}
+
+brio_status cli_periodic_locate_bytes(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
+                                      const brio_mesh *places, double *bytes) {
+    static const double LOCATOR = 50, PLACE = 40;
+    FORWARD(add_bytes(r, p, mesh, weights, LOCATOR, bytes));
+    *bytes += cli_mesh_bytes(places) + PLACE * (double)places->num_vertices;
+    return BRIO_OK;
+}
+
+/* --- the triangulation --- */
+
 brio_status cli_periodic(run *r, const periodic_options *p, const brio_mesh *mesh, const double *weights,
                          brio_periodic **out) {
     brio_periodic_options o = {0};
@@ -79,6 +128,9 @@ brio_status cli_periodic(run *r, const periodic_options *p, const brio_mesh *mes
     cli_fact_count(f, "duplicates", s->duplicates);
     cli_fact_count(f, "hidden", s->hidden);
     cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_open(f, "cell", FACT_LIST);
+    for (int i = 0; i < 9; i++) cli_fact_real(f, NULL, s->cell[i]);
+    cli_fact_close(f);
     cli_fact_real(f, "cell_volume", s->cell_volume);
     cli_fact_real(f, "moved", fmax(s->moved, s->cell_moved));
     cli_fact_count(f, "triangulated", s->triangulated);

@@ -28,6 +28,17 @@ static inline bool cli_is_periodic(const periodic_options *options) {
     return options->cell || options->directions;
 }
 
+/** Estimates the triangulation, and what commands make of it; writes bytes in all.
+ *  vertices  whether the cells get vertices.   filtration  whether it is written.   places  that are located. */
+brio_status cli_periodic_delaunay_bytes(run *r, const periodic_options *options, const brio_mesh *mesh,
+                                        const double *weights, double *bytes);
+brio_status cli_periodic_cells_bytes(run *r, const periodic_options *options, const brio_mesh *mesh,
+                                     const double *weights, bool vertices, double *bytes);
+brio_status cli_periodic_alpha_bytes(run *r, const periodic_options *options, const brio_mesh *mesh,
+                                     const double *weights, bool filtration, double *bytes);
+brio_status cli_periodic_locate_bytes(run *r, const periodic_options *options, const brio_mesh *mesh,
+                                      const double *weights, const brio_mesh *places, double *bytes);
+
 /** Fails with wrong usage if --cell or --periodic is no such text. */
 brio_status cli_check_periodic(run *r, const periodic_options *options);
 

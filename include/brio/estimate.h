@@ -8,6 +8,7 @@
 #define BRIO_ESTIMATE_H
 
 #include "triangulation.h"
+#include "periodic.h"
 #include "surface.h"
 #include "medial.h"
 #include "offset.h"
@@ -29,6 +30,11 @@ BRIO_API brio_status brio_estimate_delaunay(brio_context *ctx, const double *poi
  *  brio_estimate_delaunay. */
 BRIO_API brio_status brio_estimate_tetrahedra(brio_context *ctx, const double *points, const double *weights,
                                               size_t num_points, uint64_t *tetrahedra);
+
+/** Estimates the memory of brio_delaunay_periodic: of points spread evenly about the margin. Cost and errors as
+ *  brio_estimate_delaunay, and those of brio_delaunay_periodic for a cell that it refuses. */
+BRIO_API brio_status brio_estimate_periodic(brio_context *ctx, const double *points, const double *weights,
+                                            size_t num_points, const brio_periodic_options *options, uint64_t *bytes);
 
 /** Returns the estimate for brio_delaunay2 and brio_delaunay2_flat of points without duplicates. */
 BRIO_API uint64_t brio_estimate_delaunay2(size_t num_points, int weighted);

@@ -99,11 +99,11 @@ BRIO_API const brio_image *brio_periodic_representatives(const brio_periodic *t)
 BRIO_API brio_status brio_periodic_checksum(brio_context *ctx, const brio_periodic *t, uint64_t *checksum);
 
 /** Checks a periodic triangulation exactly, without the code that made it: tetrahedra are positive; mates share facets;
- *  no vertex behind a facet is in conflict, ties included; every point has a vertex that represents it. Where all
- *  directions repeat, the volumes fill the cell, so that no vertex at all is in conflict. With fewer, the hull is
- *  convex at its edges; that space is covered only once is not checked. Where points and translates have dimension 2
- *  or less, there are no tetrahedra: that the dimension is right is checked then, and which points are vertices is
- *  not. That hidden points are hidden is not checked.
+ *  no vertex behind a facet is in conflict, ties included; every point has a vertex that represents it. Space is
+ *  covered once, so that no vertex at all is in conflict: where all directions repeat, by the sum of volumes; with
+ *  fewer, by the hull, which is convex, lies along the directions and goes round once. Where points and translates have
+ *  dimension 2 or less, there are no tetrahedra: that the dimension is right is checked then, and which points are
+ *  vertices is not. That hidden points are hidden is not checked.
  *  Returns BRIO_OK, BRIO_ERR_CHECK (the message says what is wrong and where), BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_periodic_check(brio_context *ctx, const brio_periodic *t);
@@ -123,8 +123,9 @@ typedef struct brio_periodic_alpha {
     brio_context *context;
     brio_alpha_complex *complex; /* simplices name images, ascending in each; without a triangulation */
     size_t num_images;
-    brio_image *images; /* those of brio_periodic_images first */
-    double *positions;  /* #images by 3 */
+    brio_image *images;            /* those of brio_periodic_images first */
+    double *positions;             /* #images by 3 */
+    const brio_periodic *periodic; /* this came later. Not owned; must outlive the complex */
 } brio_periodic_alpha;
 
 /** Finds the values of the simplices in the alpha filtration, as brio_alpha_values does. Of each class there is the
@@ -132,7 +133,8 @@ typedef struct brio_periodic_alpha {
  *  brio_periodic_tetrahedra. A face of a simplex is in the list, or a translate of it is. No value is greater than that
  *  of a coface, and translates have the same bits. The Euler characteristic, counts[0] - counts[1] + counts[2] -
  *  counts[3], is 0. brio_alpha_order takes the complex, and brio_write_filtration; but a program that reads
- *  such a file as a complex of its vertices does not know which images are translates of each other.
+ *  such a file as a complex of its vertices does not know which images are translates of each other:
+ *  brio_periodic_alpha_by_points makes the complex for that.
  *  out  owned by the caller, freed with brio_periodic_alpha_free; NULL on error.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (there are no tetrahedra), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY,
  *  BRIO_ERR_CANCELLED.
@@ -141,6 +143,45 @@ BRIO_API brio_status brio_periodic_alpha_values(brio_context *ctx, const brio_pe
 
 /** Frees an alpha complex; NULL is accepted. */
 BRIO_API void brio_periodic_alpha_free(brio_periodic_alpha *alpha);
+
+/** Makes the complex whose simplices name points, ascending in each: what programs for persistent homology take. It is
+ *  that of the torus if no two points are neighbours in two ways, as in cells of more than about a hundred points.
+ *  out  zeros at first; freed with brio_alpha_complex_free.
+ *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (two simplices have the same points, or one has a point twice: repeat the cell),
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_periodic_alpha_by_points(brio_context *ctx, const brio_periodic_alpha *alpha,
+                                                   brio_alpha_complex *out);
+
+/** Finds the least alpha at which the tetrahedra are one solid, joined across facets and to their translates, that has
+ *  all vertices.   Errors as brio_alpha_auto. */
+BRIO_API brio_status brio_periodic_alpha_auto(brio_context *ctx, const brio_periodic_alpha *complex, double *alpha);
+
+/** Facts of an alpha shape in space that repeats. Each class of translates counts once. */
+typedef struct brio_periodic_shape_stats {
+    size_t size;
+    double alpha;
+    size_t tetrahedra; /* in the complex */
+    size_t vertices;   /* points on the surface */
+    size_t split;     /* vertices of the surface beyond these: where parts of the solid touch, each sheet has its own */
+    size_t uncovered; /* vertices of the triangulation that are in no tetrahedron of the complex */
+    size_t singular_vertices, singular_edges, singular_facets; /* in the complex, bounding no tetrahedron of it */
+    size_t components;                                         /* of the surface */
+    int64_t euler;                                             /* vertices - edges + faces of the surface */
+    double area, volume;                                       /* of the surface; of the solid */
+} brio_periodic_shape_stats;
+
+/** Makes the boundary of an alpha shape in space that repeats: the facets between tetrahedra with values of at most
+ *  alpha and others, one of each class. Triangles are seen counterclockwise from outside. As a surface that repeats it
+ *  is closed and manifold: where parts of the solid touch in a vertex or an edge only, vertices are doubled. The mesh
+ *  is cut open where the surface goes on at a translate. It has the properties "point", "shift_a", "shift_b" and
+ *  "shift_c", which image a vertex is, and "sheet": vertices of one sheet are one vertex of the surface, and its
+ *  translates.
+ *  out    owned by the caller; without faces if the shape fills space.   stats  NULL, or receives what was found.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (alpha is NaN), BRIO_ERR_NO_ANSWER (no tetrahedron has a value of at most alpha,
+ *  or alpha is closer to 0 than brio_alpha_auto finds one), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Edelsbrunner Muecke 1994]. */
+BRIO_API brio_status brio_periodic_alpha_shape(brio_context *ctx, const brio_periodic_alpha *complex, double alpha,
+                                               brio_mesh **out, brio_periodic_shape_stats *stats);
 
 /** Answers queries of a periodic triangulation, which must outlive the locator. */
 typedef struct brio_periodic_locator brio_periodic_locator;

@@ -8,14 +8,13 @@ static int handle_coordinates(module_state *state, PyObject *object) {
     return handle_object(state, object, KIND_TRIANGULATION) ? 3 : 0;
 }
 
-static void free_alpha(void *complex) {
+void alpha_release(void *complex) {
     brio_alpha_complex_free(complex);
     free(complex);
 }
 
-/* The lists have an array for each dimension: 4 in space, 3 in the plane. */
-static PyObject *views(module_state *state, PyObject *owner, const brio_alpha_complex *a) {
-    const size_t dimensions = a->triangulation ? 4 : 3;
+PyObject *alpha_views(module_state *state, PyObject *owner, const brio_alpha_complex *a) {
+    const size_t dimensions = a->triangulation2 ? 3 : 4;
     PyObject *lists[4];
     for (int n = 0; n < 4; n++) lists[n] = PyList_New((Py_ssize_t)dimensions);
     for (size_t k = 0; k < dimensions; k++) {
@@ -38,7 +37,7 @@ static PyObject *run_values(call *c, handle *of, const input *p, const input *w,
         CALL(*c, status, brio_alpha_values(c->ctx, t, p->data, w->data, p->rows, a));
     else
         CALL(*c, status, brio_alpha_values2(c->ctx, t, p->data, w->data, p->rows, a));
-    return call_end_with(c, status, KIND_ALPHA, a, free_alpha, (PyObject *)of);
+    return call_end_with(c, status, KIND_ALPHA, a, alpha_release, (PyObject *)of);
 }
 
 /* alpha_values(t, points, weights, threads, progress): a dict of lists of arrays, and the complex. */
@@ -61,7 +60,7 @@ static PyObject *alpha_values(PyObject *module, PyObject *args) {
         owner = run_values(&c, (handle *)object, &p, &w, a);
     input_close(&p);
     input_close(&w);
-    if (owner) result = views(state, owner, a);
+    if (owner) result = alpha_views(state, owner, a);
     Py_XDECREF(owner);
     return result;
 }

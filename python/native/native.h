@@ -132,6 +132,8 @@ typedef enum {
     KIND_CELLS,
     KIND_ALPHA,
     KIND_PERIODIC,
+    KIND_PERIODIC_ALPHA,
+    KIND_PERIODIC_LOCATOR,
     KIND_MESH,
     KIND_DYNAMIC
 } kind;
@@ -163,6 +165,12 @@ extern PyType_Spec handle_spec;
 /** Returns a dict of the arrays of cells, which keep `owner` alive. */
 PyObject *cells_views(module_state *state, PyObject *owner, const brio_cells *c);
 void cells_release(void *cells);
+
+/** Returns a dict of the simplices of a complex and their values, which keep `owner` alive. The lists have an array for each
+ *  dimension: 4 in space, 3 in the plane. */
+PyObject *alpha_views(module_state *state, PyObject *owner, const brio_alpha_complex *a);
+/** Frees a complex that lies in a block of malloc. */
+void alpha_release(void *complex);
 
 /* --- the functions of the module, by file --- */
 

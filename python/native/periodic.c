@@ -1,5 +1,5 @@
 /* Triangulations and cells of points in space that repeats. */
-#include "native.h"
+#include "mesh.h"
 
 static void free_periodic(void *t) {
     brio_periodic_free(t);
@@ -116,6 +116,140 @@ static PyObject *periodic_cells(PyObject *module, PyObject *args) {
     return result;
 }
 
+/* --- alpha --- */
+
+static void free_periodic_alpha(void *a) {
+    brio_periodic_alpha_free(a);
+}
+
+static const brio_periodic_alpha *alpha_of(PyObject *module, PyObject *object) {
+    return handle_object(state_of(module), object, KIND_PERIODIC_ALPHA);
+}
+
+/* periodic_alpha(t, threads, progress): a dict of lists of arrays, the images and their positions, and the complex. */
+static PyObject *periodic_alpha(PyObject *module, PyObject *args) {
+    PyObject *object, *progress, *result = NULL;
+    int threads;
+    brio_periodic_alpha *a = NULL;
+    brio_status status;
+    call c;
+    if (!PyArg_ParseTuple(args, "OiO", &object, &threads, &progress)) return NULL;
+    const brio_periodic *t = periodic_of(module, object);
+    if (!t || call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_periodic_alpha_values(c.ctx, t, &a));
+    PyObject *owner = call_end_with(&c, status, KIND_PERIODIC_ALPHA, a, free_periodic_alpha, object);
+    if (!owner) return NULL;
+    module_state *state = state_of(module);
+    PyObject *images = array_new(state, owner, layout_of(a->images, 'i', a->num_images, 4));
+    PyObject *positions = array_new(state, owner, layout_of(a->positions, 'd', a->num_images, 3));
+    if (images && positions) result = alpha_views(state, owner, a->complex);
+    if (result &&
+        (PyDict_SetItemString(result, "images", images) || PyDict_SetItemString(result, "positions", positions)))
+        Py_CLEAR(result);
+    Py_XDECREF(images);
+    Py_XDECREF(positions);
+    Py_DECREF(owner);
+    return result;
+}
+
+/* periodic_alpha_by_points(complex): a dict as of alpha_values. */
+static PyObject *periodic_alpha_by_points(PyObject *module, PyObject *object) {
+    PyObject *result = NULL, *owner;
+    brio_status status;
+    call c;
+    const brio_periodic_alpha *a = alpha_of(module, object);
+    if (!a) return NULL;
+    brio_alpha_complex *named = calloc(1, sizeof *named);
+    if (!named) return PyErr_NoMemory();
+    named->size = sizeof *named;
+    if (call_begin(&c, state_of(module), 0, Py_None)) {
+        free(named);
+        return NULL;
+    }
+    CALL(c, status, brio_periodic_alpha_by_points(c.ctx, a, named));
+    owner = call_end_with(&c, status, KIND_ALPHA, named, alpha_release, NULL);
+    if (owner) result = alpha_views(state_of(module), owner, named);
+    Py_XDECREF(owner);
+    return result;
+}
+
+static PyObject *periodic_alpha_auto(PyObject *module, PyObject *object) {
+    double alpha = 0;
+    brio_status status;
+    call c;
+    const brio_periodic_alpha *a = alpha_of(module, object);
+    if (!a || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, brio_periodic_alpha_auto(c.ctx, a, &alpha));
+    return call_end(&c, status) ? NULL : PyFloat_FromDouble(alpha);
+}
+
+/* periodic_alpha_shape(complex, alpha): a mesh, and counts in a dict. */
+static PyObject *periodic_alpha_shape(PyObject *module, PyObject *args) {
+    PyObject *object, *result;
+    double alpha;
+    brio_periodic_shape_stats s = {.size = sizeof s};
+    brio_mesh *mesh = NULL;
+    brio_status status;
+    call c;
+    if (!PyArg_ParseTuple(args, "Od", &object, &alpha)) return NULL;
+    const brio_periodic_alpha *a = alpha_of(module, object);
+    if (!a || call_begin(&c, state_of(module), 0, Py_None)) return NULL;
+    CALL(c, status, brio_periodic_alpha_shape(c.ctx, a, alpha, &mesh, &s));
+    result = call_end_with_mesh(&c, status, mesh);
+#define COUNT(name) #name, (Py_ssize_t)s.name
+    return result ? Py_BuildValue("(N{s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:d,s:d})", result, COUNT(tetrahedra),
+                                  COUNT(vertices), COUNT(split), COUNT(uncovered), COUNT(singular_vertices),
+                                  COUNT(singular_edges), COUNT(singular_facets), COUNT(components), COUNT(euler),
+                                  "area", s.area, "volume", s.volume)
+                  : NULL;
+#undef COUNT
+}
+
+/* --- locations --- */
+
+static void free_periodic_locator(void *l) {
+    brio_periodic_locator_free(l);
+}
+
+static PyObject *periodic_locator(PyObject *module, PyObject *args) {
+    PyObject *object, *progress;
+    int threads;
+    brio_periodic_locator *l = NULL;
+    brio_status status;
+    call c;
+    if (!PyArg_ParseTuple(args, "OiO", &object, &threads, &progress)) return NULL;
+    const brio_periodic *t = periodic_of(module, object);
+    if (!t || call_begin(&c, state_of(module), threads, progress)) return NULL;
+    CALL(c, status, brio_periodic_locator_new(c.ctx, t, &l));
+    return call_end_with(&c, status, KIND_PERIODIC_LOCATOR, l, free_periodic_locator, object);
+}
+
+/* periodic_locate(locator, queries, nearest, out, threads, progress): out has a row of four numbers a query. */
+static PyObject *periodic_locate(PyObject *module, PyObject *args) {
+    PyObject *object, *queries, *array, *progress;
+    int threads, nearest, failed = -1;
+    input q, out;
+    call c;
+    if (!PyArg_ParseTuple(args, "OOiOiO", &object, &queries, &nearest, &array, &threads, &progress)) return NULL;
+    const brio_periodic_locator *l = handle_object(state_of(module), object, KIND_PERIODIC_LOCATOR);
+    if (!l || input_open(&q, queries, "queries", 'd', 3)) return NULL;
+    if (output_open(&out, array, "out", 'i', 4)) {
+        input_close(&q);
+        return NULL;
+    }
+    if (!input_has_rows(&out, "out", q.rows) && !call_begin(&c, state_of(module), threads, progress)) {
+        brio_status status;
+        CALL(c, status,
+             nearest ? brio_periodic_locator_least_power(c.ctx, l, q.data, q.rows, out.data)
+                     : brio_periodic_locator_tetrahedra(c.ctx, l, q.data, q.rows, out.data));
+        failed = call_end(&c, status);
+    }
+    input_close(&q);
+    input_close(&out);
+    if (failed) return NULL;
+    Py_RETURN_NONE;
+}
+
 PyMethodDef periodic_methods[] = {
     {"periodic", periodic, METH_VARARGS, "periodic(points, weights, cell, open, threads, progress): a handle."},
     {"periodic_facts", periodic_facts, METH_O, "What is known of it, in a dict."},
@@ -123,5 +257,13 @@ PyMethodDef periodic_methods[] = {
     {"periodic_checksum", periodic_checksum, METH_O, "A hash that depends on no origin and no order."},
     {"periodic_check", periodic_check, METH_O, "Checks it exactly."},
     {"periodic_cells", periodic_cells, METH_VARARGS, "periodic_cells(t, box, vertices, threads, progress): a dict."},
+    {"periodic_alpha", periodic_alpha, METH_VARARGS, "periodic_alpha(t, threads, progress): a dict, and the complex."},
+    {"periodic_alpha_by_points", periodic_alpha_by_points, METH_O, "The complex whose simplices name points."},
+    {"periodic_alpha_auto", periodic_alpha_auto, METH_O, "The least alpha of one solid with all vertices."},
+    {"periodic_alpha_shape", periodic_alpha_shape, METH_VARARGS,
+     "periodic_alpha_shape(complex, alpha): a mesh, counts."},
+    {"periodic_locator", periodic_locator, METH_VARARGS, "periodic_locator(t, threads, progress): a handle."},
+    {"periodic_locate", periodic_locate, METH_VARARGS,
+     "periodic_locate(locator, queries, nearest, out, threads, progress)"},
     {NULL, NULL, 0, NULL},
 };

@@ -13,7 +13,6 @@
 #include "base/union_find.h"
 #include <math.h>
 
-/* The cells are tetrahedra or triangles, as numbers: `corners` vertices and as many mates, handles 4 * cell + slot. */
 typedef struct {
     const uint32_t *numbers;
     size_t corners;
@@ -40,35 +39,23 @@ static void add(growth *g, uint32_t cell) {
     }
 }
 
-/* Begins with the cells of a complex. Returns the number of its points. */
-static size_t begin(const brio_alpha_complex *c, growth *g) {
-    if (c->triangulation) {
-        g->numbers = (const uint32_t *)brio_triangulation_tetrahedra(c->triangulation);
-        g->corners = 4;
-    } else {
-        g->numbers = (const uint32_t *)brio_triangulation2_triangles(c->triangulation2);
-        g->corners = 3;
-    }
-    g->value = c->values[g->corners - 1];
-    g->num_finite = c->counts[g->corners - 1];
-    return c->triangulation ? brio_triangulation_stats(c->triangulation)->points
-                            : brio_triangulation2_stats(c->triangulation2)->points;
-}
-
 static int by_index(uint32_t a, uint32_t b, const void *user) {
     (void)user;
     return (a > b) - (a < b);
 }
 
-brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha) {
-    BRIO_DOOR;
+brio_status brio_alpha_auto_of(brio_context *ctx, const brio_alpha_complex *complex, const brio_alpha_cells *cells,
+                               double *alpha) {
     brio_status status = BRIO_OK;
-    growth g = {.sets = 0};
-    size_t points = begin(complex, &g), n = g.num_finite;
+    size_t n = complex->counts[cells->corners - 1];
+    growth g = {.numbers = cells->numbers,
+                .corners = cells->corners,
+                .value = complex->values[cells->corners - 1],
+                .num_finite = n};
     uint32_t *order = NULL;
     BRIO_TRY(BRIO_ALLOC(ctx, order, n));
     BRIO_TRY(BRIO_ALLOC(ctx, g.set, n));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, g.added, n + points));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, g.added, n + cells->num_points));
     for (uint32_t i = 0; i < n; i++) order[i] = g.set[i] = i;
     BRIO_TRY(brio_sort_rows(ctx, &(brio_row_order){g.value, 1, by_index, NULL}, order, n));
     for (size_t i = 0; i < n; i++) {
@@ -86,4 +73,20 @@ done:
     brio_release(ctx, g.set);
     brio_release(ctx, g.added);
     return status;
+}
+
+brio_status brio_alpha_auto(brio_context *ctx, const brio_alpha_complex *complex, double *alpha) {
+    BRIO_DOOR;
+    brio_alpha_cells cells = {.corners = 4};
+    if (complex->triangulation) {
+        cells.numbers = (const uint32_t *)brio_triangulation_tetrahedra(complex->triangulation);
+        cells.num_points = brio_triangulation_stats(complex->triangulation)->points;
+    } else {
+        BRIO_EXPECT(ctx, complex->triangulation2, BRIO_ERR_ARGUMENT,
+                    "the complex is of space that repeats: brio_periodic_alpha_auto takes it");
+        cells.corners = 3;
+        cells.numbers = (const uint32_t *)brio_triangulation2_triangles(complex->triangulation2);
+        cells.num_points = brio_triangulation2_stats(complex->triangulation2)->points;
+    }
+    return brio_alpha_auto_of(ctx, complex, &cells, alpha);
 }

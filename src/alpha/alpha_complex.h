@@ -34,6 +34,16 @@ typedef struct brio_alpha_input {
  *  Returns as brio_alpha_values. */
 brio_status brio_alpha_of_classes(brio_context *ctx, const brio_alpha_input *input, brio_alpha_complex *out);
 
+/** Tetrahedra or triangles, as numbers: `corners` vertices and as many mates, handles 4 * cell + slot. */
+typedef struct brio_alpha_cells {
+    const uint32_t *numbers;
+    size_t corners, num_points;
+} brio_alpha_cells;
+
+/** Finds what brio_alpha_auto does.   cells  of the complex, finite ones first.   Returns as brio_alpha_auto. */
+brio_status brio_alpha_auto_of(brio_context *ctx, const brio_alpha_complex *complex, const brio_alpha_cells *cells,
+                               double *alpha);
+
 /** Refuses an alpha closer to 0 than the least normal double: squared radii have few bits or none there, and those that
  *  differ become equal. Accepts any alpha where a vertex has a value that is not so small: weights do that.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER. */

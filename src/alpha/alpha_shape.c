@@ -170,7 +170,8 @@ brio_status brio_alpha_shape(brio_context *ctx, const double *points, const brio
     brio_status status = BRIO_OK;
     shape s = {.ctx = ctx, .complex = complex, .alpha = alpha};
     *out = NULL;
-    BRIO_REQUIRE(ctx, complex->triangulation, BRIO_ERR_ARGUMENT, "the complex is of points in the plane");
+    BRIO_REQUIRE(ctx, complex->triangulation, BRIO_ERR_ARGUMENT,
+                 "the complex is of points in the plane, or of space that repeats");
     s.t = brio_tetrahedra_of(complex->triangulation);
     s.num_points = brio_triangulation_stats(complex->triangulation)->points;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_alpha_shape_stats, stats));

@@ -59,6 +59,7 @@
 #define BRIO_FIRST_brio_spanning_tree_stats   tree_seconds
 #define BRIO_FIRST_brio_surface_options       pieces
 #define BRIO_FIRST_brio_surface_stats         rounding
+#define BRIO_FIRST_brio_periodic_shape_stats  volume
 #define BRIO_FIRST_brio_tile_part             num_tetrahedra
 #define BRIO_FIRST_brio_tiles_options         key
 #define BRIO_FIRST_brio_ranks_options         key

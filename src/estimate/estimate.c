@@ -8,6 +8,7 @@
 #include "base/versioned.h"
 #include "estimate/triangulation_size.h"
 #include "order/canonical_points.h"
+#include "periodic/periodic.h"
 #include "reconstruct/surface/method.h"
 #include "triangulation/insertion_part.h"
 #include "triangulation/triangulation.h"
@@ -25,6 +26,11 @@ static const double THREADS_BYTES_A_POINT = 4, THREADS_BYTES_A_TETRAHEDRON = 1.2
 /* In the plane: record, index in the input, representative, two triangles; with weights two marks, a triangle of each
  * vertex and a list of the points that may be hidden. */
 static const double PLANE_BYTES_A_POINT = 88, PLANE_BYTES_A_WEIGHT = 10;
+
+/* In space that repeats: a translate with its position; a point in the domain and the shift to it. Then, while classes
+ * are made, the tetrahedra of all, the class of each and a mark; and the classes, with room to grow. Measured. */
+static const double IMAGE_BYTES = 60, HOME_BYTES_A_POINT = 36;
+static const double RESULT_BYTES_A_TETRAHEDRON = 37, FOLD_BYTES_A_TETRAHEDRON = 42;
 
 static const double SUBDIVIDE_BYTES_A_FACE = 76; /* of the result, a certificate included */
 static const double ISO_BYTES_A_VERTEX = 71;
@@ -64,6 +70,25 @@ brio_status brio_estimate_delaunay(brio_context *ctx, const double *points, cons
     double sequence = weights ? sequence_bytes(ctx, n, &o) : 0;
     double location = part ? part->bytes(part->user, n) : 0;
     *bytes = bytes_of(delaunay_bytes(n, &size, sequence, brio_context_threads(ctx) > 1) + location);
+    return BRIO_OK;
+}
+
+brio_status brio_estimate_periodic(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                                   const brio_periodic_options *options, uint64_t *bytes) {
+    BRIO_DOOR;
+    brio_triangulation_size size = {0};
+    double images = 0, n = (double)num_points;
+    *bytes = 0;
+    BRIO_FORWARD(brio_refuse_points(ctx, points, num_points));
+    BRIO_FORWARD(brio_periodic_count(ctx, points, num_points, options, &images));
+    BRIO_FORWARD(brio_estimate_size(ctx, points, weights, num_points, &size));
+    double share = n > 0 ? images / n : 0;
+    const brio_triangulation_size all = {share * size.tetrahedra, share * size.hidden};
+    double image = IMAGE_BYTES + (weights ? sizeof(double) : 0);
+    double work =
+        delaunay_bytes(images, &all, weights ? SEQUENCE_BYTES_A_POINT * images : 0, brio_context_threads(ctx) > 1);
+    double fold = RESULT_BYTES_A_TETRAHEDRON * all.tetrahedra + FOLD_BYTES_A_TETRAHEDRON * size.tetrahedra;
+    *bytes = bytes_of(HOME_BYTES_A_POINT * n + image * images + fmax(work, fold));
     return BRIO_OK;
 }
 

@@ -10,6 +10,7 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "base/versioned.h"
 #include "periodic/periodic.h"
 #include "triangulation/tetrahedra.h"
 #include <string.h>
@@ -120,6 +121,7 @@ brio_status brio_periodic_alpha_values(brio_context *ctx, const brio_periodic *t
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, made, 1));
     made->size = sizeof *made;
     made->context = ctx;
+    made->periodic = t;
     BRIO_TRY(find(&c, made));
     *out = made;
     made = NULL;
@@ -132,5 +134,111 @@ done:
     brio_release(ctx, c.x);
     brio_release(ctx, c.weight);
     brio_release(ctx, c.own);
+    return status;
+}
+
+brio_status brio_periodic_alpha_auto(brio_context *ctx, const brio_periodic_alpha *a, double *alpha) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    const brio_periodic *t = a->periodic;
+    brio_tetrahedron *tet = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, tet, t->stats.tetrahedra + 1));
+    for (size_t c = 0; c < t->stats.tetrahedra; c++) {
+        tet[c] = t->tet[c];
+        for (int i = 0; i < 4; i++) tet[c].vertex[i] = t->images.list[tet[c].vertex[i]].point;
+    }
+    BRIO_TRY(
+        brio_alpha_auto_of(ctx, a->complex, &(brio_alpha_cells){(const uint32_t *)tet, 4, t->stats.points}, alpha));
+done:
+    brio_release(ctx, tet);
+    return status;
+}
+
+/* --- simplices by their points --- */
+
+typedef struct {
+    const uint32_t *vertex;
+    size_t corners;
+} simplex_rows;
+
+static int compare_rows(uint32_t a, uint32_t b, const void *user) {
+    const simplex_rows *r = user;
+    for (size_t i = 0; i < r->corners; i++) {
+        uint32_t x = r->vertex[a * r->corners + i], y = r->vertex[b * r->corners + i];
+        if (x != y) return x < y ? -1 : 1;
+    }
+    return 0;
+}
+
+/* Refuses simplices that have a point twice, or two of them with the same points. */
+static brio_status refuse_doubles(brio_context *ctx, const brio_alpha_complex *c, size_t k) {
+    brio_status status = BRIO_OK;
+    const simplex_rows rows = {c->simplices[k], k + 1};
+    uint32_t *order = NULL;
+    BRIO_TRY(BRIO_ALLOC(ctx, order, c->counts[k] + 1));
+    for (size_t n = 0; n < c->counts[k]; n++) order[n] = (uint32_t)n;
+    BRIO_TRY(brio_sort_many_indices(ctx, order, c->counts[k], compare_rows, &rows));
+    for (size_t n = 0; n < c->counts[k]; n++) {
+        const uint32_t *v = rows.vertex + order[n] * (k + 1);
+        bool doubles = n > 0 && compare_rows(order[n - 1], order[n], &rows) == 0;
+        for (size_t i = 1; i <= k; i++) doubles |= v[i - 1] == v[i];
+        BRIO_REQUIRE(ctx, !doubles, BRIO_ERR_NO_ANSWER,
+                     "the cell is too small for simplices named by their points: point %u is a neighbour of itself, or "
+                     "of another point in two ways; repeat the cell",
+                     v[0]);
+    }
+done:
+    brio_release(ctx, order);
+    return status;
+}
+
+/* Makes a complex of the same values, whose simplices may be named anew. */
+static brio_status copy_complex(brio_context *ctx, const brio_alpha_complex *from, brio_alpha_complex *to) {
+    size_t total = 0, corners = (size_t)(from->simplices[3] - from->simplices[0]) + 4 * from->counts[3];
+    for (int k = 0; k < 4; k++) total += from->counts[k];
+    to->context = ctx;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, to->simplices[0], corners));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, to->values[0], total));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, to->solid[0], total));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, to->gabriel[0], total));
+    memcpy(to->simplices[0], from->simplices[0], corners * sizeof **from->simplices);
+    memcpy(to->values[0], from->values[0], total * sizeof **from->values);
+    memcpy(to->solid[0], from->solid[0], total * sizeof **from->solid);
+    memcpy(to->gabriel[0], from->gabriel[0], total * sizeof **from->gabriel);
+    for (int k = 0; k < 4; k++) {
+        to->counts[k] = from->counts[k];
+        to->simplices[k] = to->simplices[0] + (from->simplices[k] - from->simplices[0]);
+        to->values[k] = to->values[0] + (from->values[k] - from->values[0]);
+        to->solid[k] = to->solid[0] + (from->solid[k] - from->solid[0]);
+        to->gabriel[k] = to->gabriel[0] + (from->gabriel[k] - from->gabriel[0]);
+    }
+    return BRIO_OK;
+}
+
+/* Names the vertices of a simplex by their points, ascending. */
+static void name_points(const brio_image *images, uint32_t *v, size_t corners) {
+    for (size_t i = 0; i < corners; i++) {
+        uint32_t point = images[v[i]].point;
+        size_t at = i;
+        for (; at > 0 && v[at - 1] > point; at--) v[at] = v[at - 1];
+        v[at] = point;
+    }
+}
+
+brio_status brio_periodic_alpha_by_points(brio_context *ctx, const brio_periodic_alpha *a, brio_alpha_complex *out) {
+    BRIO_DOOR;
+    brio_status status = BRIO_OK;
+    brio_alpha_complex mine = {.size = sizeof mine, .context = ctx};
+    brio_status size = BRIO_CHECK_OWNER(ctx, brio_alpha_complex, out, triangulation2);
+    if (size != BRIO_OK) return size;
+    BRIO_TRY(copy_complex(ctx, a->complex, &mine));
+    for (size_t k = 0; k < 4; k++) {
+        for (size_t n = 0; n < mine.counts[k]; n++) name_points(a->images, mine.simplices[k] + n * (k + 1), k + 1);
+        BRIO_TRY(refuse_doubles(ctx, &mine, k));
+    }
+done:
+    if (status != BRIO_OK) brio_alpha_complex_free(&mine);
+    if (status != BRIO_OK) mine = (brio_alpha_complex){.size = sizeof mine};
+    BRIO_GIVE(brio_alpha_complex, out, &mine);
     return status;
 }

@@ -203,16 +203,55 @@ static void find_used(brio_lattice *l) {
         }
 }
 
+/* Short vectors of a lattice, up to their signs: sums of the basis with factors -1, 0 and 1. */
+typedef struct {
+    double list[13][3];
+    int count;
+} short_vectors;
+
+static void list_short(const brio_lattice *l, short_vectors *w) {
+    w->count = 0;
+    for (int n = 14; n < 27; n++) { /* factors in base 3; the others are the negatives */
+        int factor[3] = {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1};
+        bool used = true;
+        for (int i = l->rank; i < 3; i++) used &= factor[2 - i] == 0;
+        if (!used) continue;
+        for (int k = 0; k < 3; k++) {
+            w->list[w->count][k] = 0;
+            for (int i = 0; i < l->rank; i++) w->list[w->count][k] += factor[2 - i] * l->basis[i][k];
+        }
+        w->count++;
+    }
+}
+
+/* Returns a bound on |d . x| in twice the lattice's Voronoi cell, from the slabs of three vectors: d is a sum of these.
+ * INFINITY if they span too little. */
+static double bound_by(const brio_lattice *l, const double *d, const double *const *v) {
+    double cross[3][3], sum = 0;
+    for (int i = 0; i < 3; i++) brio_cross(v[(i + 1) % 3], v[(i + 2) % 3], cross[i]);
+    double det = brio_dot(v[0], cross[0]), plain[3];
+    brio_cross(l->basis[1], l->basis[2], plain);
+    if (!(fabs(det) > fabs(brio_dot(l->basis[0], plain)) / 2)) return INFINITY; /* a multiple of it, for a lattice */
+    for (int i = 0; i < l->rank; i++) sum += fabs(brio_dot(d, cross[i]) / det) * brio_dot(v[i], v[i]);
+    return sum;
+}
+
 /* Bounds how far two points of a tetrahedron differ. Each is in the lattice's Voronoi cell about the other's, which the
- * slabs of the basis vectors hold: |b_i . x| <= |b_i|^2 / 2. */
+ * slabs |w . x| <= |w|^2 / 2 of short vectors w hold. The best three of these give the maximum (a linear program). */
 static void find_range(brio_lattice *l, const double *reach) {
+    short_vectors w;
+    list_short(l, &w);
     for (int i = 0; i < l->rank; i++) {
-        double slack = 1;
-        l->range[i] = 0;
-        for (int j = 0; j < l->rank; j++)
-            l->range[i] += fabs(brio_dot(l->dual[i], l->dual[j])) * brio_dot(l->basis[j], l->basis[j]);
+        double slack = 1, least = INFINITY;
+        for (int a = 0; a < w.count; a++)
+            for (int b = l->rank > 1 ? a + 1 : 0; b < (l->rank > 1 ? w.count : 1); b++)
+                for (int c = l->rank > 2 ? b + 1 : 0; c < (l->rank > 2 ? w.count : 1); c++) {
+                    const double *v[3] = {w.list[a], l->rank > 1 ? w.list[b] : l->basis[1],
+                                          l->rank > 2 ? w.list[c] : l->basis[2]};
+                    least = fmin(least, bound_by(l, l->dual[i], v));
+                }
         for (int k = 0; k < 3; k++) slack += fabs(l->dual[i][k]) * reach[k];
-        l->range[i] += (l->range[i] + slack) * 0x1p-44; /* rounding, and vectors that are not quite upright */
+        l->range[i] = least + (least + slack) * 0x1p-44; /* rounding, and vectors that are not quite upright */
     }
 }
 

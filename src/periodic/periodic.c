@@ -220,6 +220,20 @@ done:
     return status;
 }
 
+/* Takes the options, refuses wrong ones, and makes what a triangulation begins with: its lattice. */
+static brio_status begin(brio_context *ctx, const double *points, size_t n, const brio_periodic_options *options,
+                         brio_periodic_options *o, brio_periodic **out) {
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_periodic_options, options, o));
+    BRIO_EXPECT(ctx, o->cell, BRIO_ERR_ARGUMENT, "the options have no cell");
+    BRIO_EXPECT(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_int is not 0");
+    BRIO_EXPECT(ctx, o->halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o->halo);
+    BRIO_EXPECT(ctx, n < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", n);
+    BRIO_FORWARD(brio_refuse_not_finite(ctx, points, NULL, n, NULL));
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, *out, 1));
+    (*out)->ctx = ctx;
+    return brio_lattice_new(ctx, o, points, n, &(*out)->lattice);
+}
+
 brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                    const brio_periodic_options *options, brio_periodic **out) {
     BRIO_DOOR;
@@ -228,21 +242,30 @@ brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, cons
     brio_periodic *t = NULL;
     double start = brio_seconds();
     *out = NULL;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_periodic_options, options, &o));
-    BRIO_REQUIRE(ctx, o.cell, BRIO_ERR_ARGUMENT, "the options have no cell");
-    BRIO_REQUIRE(ctx, !o.reserved_int, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_int is not 0");
-    BRIO_REQUIRE(ctx, o.halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o.halo);
-    BRIO_REQUIRE(ctx, num_points < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", num_points);
-    BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
-    t->ctx = ctx;
-    BRIO_TRY(brio_lattice_new(ctx, &o, points, num_points, &t->lattice));
+    BRIO_TRY(begin(ctx, points, num_points, options, &o, &t));
+    if (weights) BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
     BRIO_TRY(build(t, points, weights, num_points, &o));
     t->images.lattice = &t->lattice;
     t->stats.seconds = brio_seconds() - start;
     *out = t;
     t = NULL;
 done:
+    brio_periodic_free(t);
+    return status;
+}
+
+brio_status brio_periodic_count(brio_context *ctx, const double *points, size_t num_points,
+                                const brio_periodic_options *options, double *count) {
+    brio_periodic_options o = {0};
+    brio_status status = BRIO_OK;
+    brio_periodic *t = NULL;
+    double(*home)[3] = NULL;
+    BRIO_TRY(begin(ctx, points, num_points, options, &o, &t));
+    BRIO_TRY(bring_home(t, points, num_points, &home));
+    brio_stars_task task = {&t->lattice, (const double(*)[3])home, NULL, num_points, o.halo > 0 ? o.halo : HALO, 0};
+    *count = brio_stars_count(&task);
+done:
+    brio_release(ctx, home);
     brio_periodic_free(t);
     return status;
 }

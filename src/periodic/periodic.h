@@ -39,6 +39,13 @@ typedef struct brio_stars_task {
 brio_status brio_stars_new(brio_context *ctx, const brio_stars_task *task, brio_stars *stars);
 void brio_stars_free(brio_stars *stars);
 
+/** Returns the number of points and translates that brio_stars_new triangulates at first. */
+double brio_stars_count(const brio_stars_task *task);
+
+/** Counts them for a call of brio_delaunay_periodic.   Returns as it does. */
+brio_status brio_periodic_count(brio_context *ctx, const double *points, size_t num_points,
+                                const brio_periodic_options *options, double *count);
+
 /* --- the result --- */
 
 struct brio_periodic {

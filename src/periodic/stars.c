@@ -39,13 +39,12 @@ typedef struct {
 /* --- what is triangulated first --- */
 
 /* Returns the spacing of points that fill their box, the domain's span and what they reach beyond it. */
-static double spacing_of(const brio_images *m) {
-    const brio_lattice *l = m->lattice;
-    double side[3] = {0, 0, 0}, product = 1, most = 0, n = (double)m->num_points;
+static double spacing_of(const brio_lattice *l, const double (*home)[3], size_t num_points) {
+    double side[3] = {0, 0, 0}, product = 1, most = 0, n = (double)num_points;
     for (int i = 0; i < 3; i++) {
         double low = INFINITY, high = -INFINITY, unit = 1 / brio_length(l->dual[i]);
-        for (size_t p = 0; p < m->num_points && i >= l->rank; p++) {
-            double share = brio_lattice_share(l, i, m->x[p]);
+        for (size_t p = 0; p < num_points && i >= l->rank; p++) {
+            double share = brio_lattice_share(l, i, home[p]);
             low = fmin(low, share), high = fmax(high, share);
         }
         side[i] = i < l->rank ? unit : (high - low) * unit;
@@ -62,17 +61,24 @@ static double spacing_of(const brio_images *m) {
     return most;
 }
 
-/* Appends the translates of point p that are in K. */
-static brio_status add_translates(const layer *y, uint32_t p) {
-    brio_images *m = &y->s->images;
-    int32_t from[3] = {0, 0, 0}, to[3] = {0, 0, 0}, s[3];
-    for (int i = 0; i < y->lattice->rank; i++) {
-        double share = brio_lattice_share(y->lattice, i, m->x[p]);
+/* Finds the shifts of the translates in K of a position in the domain. */
+static void find_shifts(const layer *y, const double *x, int32_t *from, int32_t *to) {
+    for (int i = 0; i < 3; i++) {
+        from[i] = to[i] = 0;
+        if (i >= y->lattice->rank) continue;
+        double share = brio_lattice_share(y->lattice, i, x);
         from[i] = (int32_t)ceil(-y->margin[i] - share);
         to[i] = (int32_t)floor(1 + y->margin[i] - share);
         if (from[i] > 0) from[i] = 0;
         if (to[i] < 0) to[i] = 0;
     }
+}
+
+/* Appends the translates of point p that are in K. */
+static brio_status add_translates(const layer *y, uint32_t p) {
+    brio_images *m = &y->s->images;
+    int32_t from[3], to[3], s[3];
+    find_shifts(y, m->x[p], from, to);
     for (s[0] = from[0]; s[0] <= to[0]; s[0]++)
         for (s[1] = from[1]; s[1] <= to[1]; s[1]++)
             for (s[2] = from[2]; s[2] <= to[2]; s[2]++)
@@ -80,15 +86,31 @@ static brio_status add_translates(const layer *y, uint32_t p) {
     return BRIO_OK;
 }
 
-static brio_status add_margin(layer *y, double halo) {
-    double width = halo * spacing_of(&y->s->images);
+static void set_margin(layer *y, const double (*home)[3], double halo) {
+    double width = halo * spacing_of(y->lattice, home, y->num_points);
     for (int i = 0; i < y->lattice->rank; i++)
         y->margin[i] = fmin(width * brio_length(y->lattice->dual[i]), y->lattice->range[i]);
+}
+
+static brio_status add_margin(layer *y, double halo) {
+    set_margin(y, (const double(*)[3])y->s->images.x, halo);
     for (size_t p = 0; p < y->num_points; p++) {
         BRIO_FORWARD(add_translates(y, (uint32_t)p));
         BRIO_FORWARD(brio_look(y->ctx, 1));
     }
     return BRIO_OK;
+}
+
+double brio_stars_count(const brio_stars_task *task) {
+    layer y = {.lattice = task->lattice, .num_points = task->num_points};
+    double count = 0;
+    set_margin(&y, task->home, task->halo);
+    for (size_t p = 0; p < y.num_points; p++) {
+        int32_t from[3], to[3];
+        find_shifts(&y, task->home[p], from, to);
+        count += (to[0] - from[0] + 1.0) * (to[1] - from[1] + 1.0) * (to[2] - from[2] + 1.0);
+    }
+    return count;
 }
 
 static brio_status triangulate(layer *y, uint64_t seed) {

@@ -172,6 +172,7 @@ ROWS = {
     "WARNING_OUTSIDE": ("voronoi few.xyz --box 0,0,0,0.2,1,1 -o out.csv", 0,
                         ["{hint}", Silent("voronoi few.xyz --box 0,0,0,1,1,1 -o out.csv")]),
     "WARNING_CELL": ("voronoi atoms.extxyz -o out.csv", 0, [Silent("voronoi atoms.extxyz --periodic xyz -o out.csv")]),
+    "WARNING_FULL": ("alpha few.xyz --cell 9,9,9 --alpha 1000 -o out.ply", 0, [Silent("alpha few.xyz --cell 9,9,9 --alpha auto -o out.ply")]),
     "WARNING_NUMBERED": ("info ids.xyz", 0, [Silent("info ids.xyz --columns -,x,y,z")]),
     "WARNING_ROUNDED": ("info numbers.csv", 0, [Silent("info numbers.csv --columns x,y,z,-")]),
 }

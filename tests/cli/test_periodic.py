@@ -1,6 +1,7 @@
 """brio delaunay and voronoi --cell: points in space that repeats."""
 
 import random
+import re
 
 from brio_cli import CliTest, main
 
@@ -96,6 +97,32 @@ class Periodic(CliTest):
         self.assertEqual({row["tetrahedron"] for row in rows(out)}, {-1})
         self.usage("--plane: not in space that repeats", "locate", self.path("a.xyz"), "--at", at, "--cell", "1,1,1", "--plane", "xy",
                    "-o", out)
+
+    def test_surfaces_that_repeat(self):
+        """A grid without one point has a hole, at the border of the cell as in its middle; the filtration is that of the torus."""
+        grid = [(x, y, z) for x in range(4) for y in range(4) for z in range(4)]
+        out, values = self.path("out.ply"), self.path("values.txt")
+        for hole in [(0, 0, 0), (2, 1, 2)]:
+            points = self.xyz("a.xyz", [p for p in grid if p != hole])
+            facts = self.facts("alpha", points, "--cell", "4,4,4", "--alpha", "0.75", "-o", out, "--filtration", values)
+            self.assertEqual((facts["faces"], facts["surfaces"], facts["euler"], facts["tetrahedra"]), (8, 1, 2, facts["tetrahedra"]))
+            self.assertAlmostEqual(facts["volume"], 64 - 4 / 3, 12)
+            self.assertEqual(facts["cell"], [4, 0, 0, 0, 4, 0, 0, 0, 4])
+            with open(values) as f:
+                lines = [line.split() for line in f]
+            self.assertEqual(sum((-1) ** int(line[0]) for line in lines), 0)
+            self.assertEqual(len({tuple(line[1:-1]) for line in lines}), len(lines))
+            self.assertTrue({"point", "shift_a", "sheet"} <= set(self.facts("info", out)["properties"]))
+        self.expect(3, "alpha", self.xyz("b.xyz", grid[:2]), "--cell", "4,4,4", "--alpha", "1", "--filtration", values, "-o", out)
+        self.usage("has no cell", "alpha", points, "--periodic", "xyz", "--alpha", "1", "-o", out)
+
+    def test_memory_is_estimated(self):
+        points = self.xyz("a.xyz", self.points(20000))
+        for command, least in [(("delaunay",), 15), (("voronoi", "-o", self.path("x.csv")), 45), (("alpha", "--alpha", "auto", "-o", self.path("x.ply")), 35),
+                               (("locate", "--at", points, "-o", self.path("x.csv")), 15)]:
+            run = self.expect(4, command[0], points, *command[1:], "--cell", "1,1,1", "--max-memory", "4M")
+            needed = re.search("about ([0-9.]+) MiB", run.err)
+            self.assertTrue(needed and least < float(needed[1]) < 2 * least, run.err)
 
     def test_output_names_points_and_translates(self):
         points, out = self.xyz("a.xyz", self.points(20)), self.path("out.vtu")

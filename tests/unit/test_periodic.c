@@ -2,6 +2,7 @@
  * the classes; cells of lattices; invariance under what may change; every number of directions. */
 #include "base/rng.h"
 #include "harness.h"
+#include "periodic/periodic.h"
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -423,6 +424,85 @@ static void flat_points_are_checked(void) {
         }
 }
 
+/* Some reduced bases of face-centred lattices were refused: the bound on the translates that matter was too coarse. */
+static void every_basis_of_a_lattice_has_a_result(void) {
+    brio_rng rng = brio_rng_new(29);
+    static const int lattices[] = {2, 3, 4, 8};
+    for (int round = 0; round < (BRIEF_TESTS ? 20 : 100); round++) {
+        double cell[9];
+        memcpy(cell, CELLS[lattices[round % 4]], sizeof cell);
+        for (int step = 0; step < 12; step++) {
+            int to = below(&rng, 3), from = (to + 1 + below(&rng, 2)) % 3, n = below(&rng, 5) - 2;
+            for (int k = 0; k < 3; k++) cell[3 * to + k] += n * cell[3 * from + k];
+        }
+        crystal c = random_crystal(&rng, cell, 1 + (size_t)round % 3, 64, false);
+        brio_periodic *t = build(&c);
+        if (t) check(t, "a basis");
+        brio_periodic_free(t);
+    }
+}
+
+/* Makes the triangulation of a cell of twice the length into one that covers the plain cell's space twice: each class is
+ * there twice, and all looks right from near. `twice` has points n to 2n - 1 at those of `once` moved by its vector a.
+ * Returns the triangulation, whose arrays the caller frees, or whose tetrahedra are NULL on error. */
+static brio_periodic cover_twice(const brio_periodic *once, const brio_periodic *twice) {
+    brio_periodic out = *once;
+    size_t n = once->stats.points, count = twice->stats.tetrahedra + twice->stats.hull_facets;
+    out.stats.tetrahedra = twice->stats.tetrahedra, out.stats.hull_facets = twice->stats.hull_facets;
+    out.tet = malloc(count * sizeof *out.tet);
+    EXPECT(brio_images_new(ctx, &once->lattice, (const double(*)[3])twice->images.x, NULL, n, &out.images) == BRIO_OK);
+    for (size_t t = 0; t < count; t++) {
+        out.tet[t] = twice->tet[t];
+        uint32_t *v = out.tet[t].vertex;
+        int32_t shift[4][3], from[3];
+        for (int k = 0; k < 4; k++) {
+            if (v[k] == BRIO_INFINITE) continue;
+            const brio_image *i = &twice->images.list[v[k]];
+            memcpy(shift[k], i->shift, sizeof shift[k]);
+            shift[k][0] = 2 * shift[k][0] + (i->point >= n);
+        }
+        memcpy(from, shift[brio_images_least(&twice->images, v, 4)], sizeof from);
+        for (int k = 0; k < 4; k++) {
+            if (v[k] == BRIO_INFINITE) continue;
+            uint32_t point = twice->images.list[v[k]].point % (uint32_t)n;
+            for (int a = 0; a < 3; a++) shift[k][a] -= from[a];
+            EXPECT(brio_images_find(&out.images, point, shift[k], &v[k]) == BRIO_OK);
+        }
+    }
+    return out;
+}
+
+/* With fewer than three directions the check did not find that space was covered twice. Squares of small cells' sides
+ * are no doubles. */
+static void space_is_covered_once(void) {
+    enum { FEW = 12 };
+    static const double cells[2][9] = {{1, 0, 0, 0.25, 4, 0, 0, 0.5, 4}, {2, 0, 0, 0.25, 4, 0, 0, 0.5, 4}};
+    brio_rng rng = brio_rng_new(17);
+    for (int directions = 1; directions <= 3; directions++) {
+        crystal c[2] = {random_crystal(&rng, cells[0], FEW, 64, false)};
+        c[1] = c[0];
+        set_cell(&c[1], cells[1]);
+        c[1].count = 2 * FEW;
+        memcpy(c[1].points + 3 * FEW, c[0].points, 3 * FEW * sizeof(double));
+        for (size_t p = FEW; p < 2 * FEW; p++) c[1].points[3 * p]++;
+        for (size_t i = 0; i < 3 * MOST + 9; i++)
+            for (int j = 0; j < 2; j++)
+                *(i < 9 ? &c[j].cell[i] : &c[j].points[i - 9]) *= directions == 1 ? 0x1p-300 : 0x1p-200;
+        brio_periodic *t[2];
+        for (int i = 0; i < 2; i++) {
+            for (int k = 0; k < 3; k++) c[i].periodic[k] = k < directions;
+            t[i] = build(&c[i]);
+            check(t[i], "covered once");
+        }
+        brio_periodic wrong = cover_twice(t[0], t[1]);
+        EXPECT(brio_periodic_check(ctx, &wrong) == BRIO_ERR_CHECK && strstr(brio_message(ctx), "fill their space 2"),
+               "%d directions: %s", directions, brio_message(ctx));
+        brio_images_free(&wrong.images);
+        free(wrong.tet);
+        for (int i = 0; i < 2; i++) brio_periodic_free(t[i]);
+    }
+}
+
 static void no_points_have_a_result(void) {
     crystal c = {.count = 0};
     set_cell(&c, CELLS[4]);
@@ -476,6 +556,8 @@ SUITE(test_periodic) {
     RUN(halos_do_not_matter);
     RUN(shifts_fit_or_are_refused);
     RUN(flat_points_are_checked);
+    RUN(every_basis_of_a_lattice_has_a_result);
+    RUN(space_is_covered_once);
     RUN(no_points_have_a_result);
     RUN(wrong_options_are_refused);
     brio_context_free(ctx);

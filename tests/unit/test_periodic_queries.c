@@ -196,6 +196,162 @@ static void flat_points_have_no_alpha_complex(void) {
     brio_periodic_free(t);
 }
 
+/* --- shapes --- */
+
+/* A directed edge of a surface that repeats: sheets, and the shift of the end relative to the beginning. */
+typedef struct {
+    uint32_t sheet[2];
+    int32_t shift[3];
+} surface_edge;
+
+static int compare_edges(const void *a, const void *b) {
+    return memcmp(a, b, sizeof(surface_edge));
+}
+
+/* Expects that each directed edge is there once, and once the other way: the surface is a closed oriented manifold. */
+static void is_closed(const brio_mesh *m) {
+    const uint32_t *sheet = brio_mesh_property(m, "sheet")->data;
+    const int32_t *shift[3] = {brio_mesh_property(m, "shift_a")->data, brio_mesh_property(m, "shift_b")->data,
+                               brio_mesh_property(m, "shift_c")->data};
+    size_t count = 3 * m->num_faces, wrong = 0;
+    surface_edge *edge[2];
+    for (int way = 0; way < 2; way++) {
+        edge[way] = calloc(count + 1, sizeof **edge);
+        for (size_t c = 0; c < count; c++) {
+            uint32_t v[2] = {m->face_vertices[c], m->face_vertices[c % 3 == 2 ? c - 2 : c + 1]};
+            for (int k = 0; k < 2; k++) edge[way][c].sheet[k] = sheet[v[k ^ way]];
+            for (int k = 0; k < 3; k++) edge[way][c].shift[k] = shift[k][v[1 ^ way]] - shift[k][v[way]];
+        }
+        qsort(edge[way], count, sizeof **edge, compare_edges);
+    }
+    for (size_t c = 1; c < count; c++) wrong += !compare_edges(&edge[0][c - 1], &edge[0][c]);
+    EXPECT(wrong == 0, "%zu of %zu edges are there twice", wrong, count);
+    EXPECT(!memcmp(edge[0], edge[1], count * sizeof **edge), "an edge has no other side");
+    free(edge[0]), free(edge[1]);
+}
+
+/* Returns whether the tetrahedra of at most alpha are one set that has all vertices. */
+static bool is_one_solid(const sample *s, const double *value, double alpha) {
+    const brio_tetrahedron *tet = brio_periodic_tetrahedra(s->t);
+    const brio_image *image = brio_periodic_images(s->t);
+    size_t n = brio_periodic_facts(s->t)->tetrahedra, first = n, met = 0;
+    bool seen[POINTS] = {false}, *in = calloc(n + 1, 1), all = true;
+    for (size_t i = 0; i < n; i++)
+        if (value[i] <= alpha) first = i;
+    if (first < n) in[first] = true;
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (size_t i = 0; i < n; i++)
+            for (int k = 0; k < 4 && !in[i] && value[i] <= alpha; k++)
+                if ((tet[i].mate[k] >> 2) < n && in[tet[i].mate[k] >> 2]) in[i] = grows = true;
+    }
+    for (size_t i = 0; i < n; i++) {
+        all &= in[i] || value[i] > alpha;
+        for (int k = 0; k < 4 && in[i]; k++) seen[image[tet[i].vertex[k]].point] = true;
+    }
+    for (size_t p = 0; p < POINTS; p++) met += seen[p];
+    free(in);
+    return all && met == brio_periodic_facts(s->t)->vertices;
+}
+
+static void has_shapes(sample s) {
+    brio_periodic_alpha *a = NULL;
+    double least = 0;
+    EXPECT(brio_periodic_alpha_values(ctx, s.t, &a) == BRIO_OK, "%s", brio_message(ctx));
+    const double *value = a->complex->values[3];
+    EXPECT(brio_periodic_alpha_auto(ctx, a, &least) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(is_one_solid(&s, value, least) && !is_one_solid(&s, value, nextafter(least, -INFINITY)), "auto: %g", least);
+    for (size_t i = 0; i < a->complex->counts[3]; i += 3) {
+        brio_mesh *m = NULL;
+        brio_periodic_shape_stats f = {.size = sizeof f};
+        EXPECT(brio_periodic_alpha_shape(ctx, a, value[i], &m, &f) == BRIO_OK, "%s", brio_message(ctx));
+        if (!m) continue;
+        is_closed(m);
+        double volume = brio_periodic_facts(s.t)->cell_volume;
+        bool full = f.tetrahedra == a->complex->counts[3] && !brio_periodic_facts(s.t)->hull_facets;
+        EXPECT(full ? m->num_faces == 0 && fabs(f.volume / volume - 1) < 1e-12 : m->num_faces > 0, "%g", f.volume);
+        EXPECT((f.components == 0) == (m->num_faces == 0) && f.euler <= 2 * (int64_t)f.components, "a surface");
+        brio_mesh_free(m);
+    }
+    brio_periodic_alpha_free(a);
+    brio_periodic_free(s.t);
+}
+
+static void surfaces_that_repeat_are_closed(void) {
+    has_shapes(make(11, CUBE, "xyz", 1 << 20, false));
+    has_shapes(make(12, TILTED, "xyz", 1 << 20, true));
+    has_shapes(make(13, CUBE, "xyz", 4, false));
+    has_shapes(make(14, TILTED, "xy", 1 << 20, false));
+    has_shapes(make(15, CUBE, "y", 8, false));
+}
+
+/* In a cell so wide that nothing repeats, shapes are those of open space. */
+static void shapes_in_a_wide_cell_are_the_usual_ones(void) {
+    enum { N = 300 };
+    static const double wide[9] = {64, 0, 0, 0, 64, 0, 0, 0, 64};
+    double points[3 * N];
+    brio_rng rng = brio_rng_new(19);
+    for (size_t i = 0; i < 3 * N; i++) points[i] = brio_rng_below(&rng, 1 << 20) / (double)(1 << 20);
+    brio_periodic_options o = {.size = sizeof o, .cell = wide};
+    brio_periodic *p = NULL;
+    brio_periodic_alpha *a = NULL;
+    brio_triangulation *t = NULL;
+    brio_alpha_complex c = {.size = sizeof c};
+    EXPECT(brio_delaunay_periodic(ctx, points, NULL, N, &o, &p) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_periodic_alpha_values(ctx, p, &a) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_delaunay(ctx, points, NULL, N, NULL, &t) == BRIO_OK);
+    EXPECT(brio_alpha_values(ctx, t, points, NULL, N, &c) == BRIO_OK);
+    for (double alpha = 0.005; alpha < 0.05; alpha *= 1.2) {
+        brio_mesh *m[2] = {NULL, NULL};
+        brio_periodic_shape_stats ours = {.size = sizeof ours};
+        brio_alpha_shape_stats usual = {.size = sizeof usual};
+        EXPECT(brio_periodic_alpha_shape(ctx, a, alpha, &m[0], &ours) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_alpha_shape(ctx, points, &c, alpha, &m[1], &usual) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(m[0]->num_faces == m[1]->num_faces && m[0]->num_vertices == m[1]->num_vertices &&
+                   ours.split == usual.split && ours.singular_edges == usual.singular_edges,
+               "%g: %zu and %zu faces, %zu and %zu vertices", alpha, m[0]->num_faces, m[1]->num_faces,
+               m[0]->num_vertices, m[1]->num_vertices);
+        brio_mesh_free(m[0]), brio_mesh_free(m[1]);
+    }
+    EXPECT(brio_periodic_alpha_shape(ctx, a, NAN, &(brio_mesh *){NULL}, NULL) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_periodic_alpha_shape(ctx, a, 0, &(brio_mesh *){NULL}, NULL) == BRIO_ERR_NO_ANSWER);
+    EXPECT(brio_alpha_auto(ctx, a->complex, &(double){0}) == BRIO_ERR_ARGUMENT, "the complex of a space that repeats");
+    brio_alpha_complex_free(&c);
+    brio_triangulation_free(t);
+    brio_periodic_alpha_free(a);
+    brio_periodic_free(p);
+}
+
+static void simplices_have_names_by_points_where_they_differ(void) {
+    enum { N = 200 };
+    double points[3 * N];
+    brio_rng rng = brio_rng_new(23);
+    for (size_t i = 0; i < 3 * N; i++) points[i] = brio_rng_double(&rng);
+    for (size_t n = 5; n <= N; n += N - 5) {
+        brio_periodic_options o = {.size = sizeof o, .cell = CUBE};
+        brio_periodic *t = NULL;
+        brio_periodic_alpha *a = NULL;
+        brio_alpha_complex c = {.size = sizeof c};
+        EXPECT(brio_delaunay_periodic(ctx, points, NULL, n, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_periodic_alpha_values(ctx, t, &a) == BRIO_OK, "%s", brio_message(ctx));
+        brio_status status = brio_periodic_alpha_by_points(ctx, a, &c);
+        EXPECT(status == (n < N ? BRIO_ERR_NO_ANSWER : BRIO_OK), "%s", brio_message(ctx));
+        size_t wrong = 0;
+        for (size_t k = 0; k < 4 && status == BRIO_OK; k++)
+            for (size_t i = 0; i < c.counts[k]; i++)
+                for (size_t j = 0; j <= k; j++) {
+                    const uint32_t *v = c.simplices[k] + i * (k + 1), *w = a->complex->simplices[k] + i * (k + 1);
+                    bool found = false;
+                    for (size_t l = 0; l <= k; l++) found |= a->images[w[l]].point == v[j];
+                    wrong += !found || (j > 0 && v[j - 1] >= v[j]) || c.values[k][i] != a->complex->values[k][i];
+                }
+        EXPECT(wrong == 0 && (status != BRIO_OK || c.counts[0] == n), "%zu corners", wrong);
+        brio_alpha_complex_free(&c);
+        brio_periodic_alpha_free(a);
+        brio_periodic_free(t);
+    }
+}
+
 /* --- locations --- */
 
 static double power(const sample *s, size_t p, const int32_t *shift, const double *q) {
@@ -275,6 +431,9 @@ SUITE(test_periodic_queries) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return 1;
     RUN(alpha_is_that_of_many_copies);
     RUN(flat_points_have_no_alpha_complex);
+    RUN(surfaces_that_repeat_are_closed);
+    RUN(shapes_in_a_wide_cell_are_the_usual_ones);
+    RUN(simplices_have_names_by_points_where_they_differ);
     RUN(places_are_in_their_tetrahedra);
     brio_context_free(ctx);
     return harness_end();

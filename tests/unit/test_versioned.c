@@ -222,6 +222,8 @@ ENDS_WITH(brio_ranks_traffic, waited_seconds);
 ENDS_WITH(brio_tile_part, num_tetrahedra);
 ENDS_WITH(brio_periodic_options, reserved_int);
 ENDS_WITH(brio_periodic_stats, seconds);
+ENDS_WITH(brio_periodic_alpha, periodic);
+ENDS_WITH(brio_periodic_shape_stats, volume);
 
 static void statuses_have_words_of_their_own(void) {
     static const brio_status all[] = {BRIO_OK,        BRIO_ERR_ARGUMENT,  BRIO_ERR_NOT_FINITE, BRIO_ERR_NO_ANSWER,

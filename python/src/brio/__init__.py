@@ -10,7 +10,7 @@ from ._halfspaces import HalfspaceIntersection
 from ._hull import ConvexHull
 from ._interpolate import LinearNDInterpolator, NaturalNeighbourInterpolator, griddata
 from ._mesh import Certificate, Coverage, Distance, Mesh, simplify
-from ._periodic import PeriodicDelaunay, PeriodicVoronoi
+from ._periodic import PeriodicAlphaComplex, PeriodicAlphaShape, PeriodicDelaunay, PeriodicVoronoi
 from ._points import outliers, thin
 from ._reconstruct import BallUnion, Surface, ball_union, medial_axis, offset, oriented_normals, reconstruct
 from ._spherical import SphericalVoronoi
@@ -22,7 +22,8 @@ from .errors import *  # noqa: F403
 __all__ = [
     "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Curve", "Delaunay", "Distance",
     "DynamicDelaunay",
-    "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "Page", "Picture", "PeriodicDelaunay", "PeriodicVoronoi",
+    "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "Page", "PeriodicAlphaComplex",
+    "PeriodicAlphaShape", "PeriodicDelaunay", "PeriodicVoronoi", "Picture",
     "SphericalVoronoi", "Surface",
     "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
     "offset", "oriented_normals", "outliers", "picture", "read", "reconstruct", "simplify", "spanning_tree", "thin", "view", "write",

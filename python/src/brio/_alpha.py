@@ -103,18 +103,20 @@ class AlphaComplex:
         return _native.mesh(vertices, offsets, corners, None, np.ascontiguousarray(place[border]), {}, None, {}), counts
 
 
-def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0,
-                  progress: bool | Progress | None = None) -> AlphaComplex:
+def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0, progress: bool | Progress | None = None,
+                  cell: Any = None, periodic: Any = True) -> Any:
     """Computes the alpha filtration of points in the plane or in space or, with weights, the weighted one.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3)
     weights : array_like, shape (n,), optional
+    cell, periodic
+        Of points in space that repeats: as of PeriodicDelaunay.
 
     Returns
     -------
-    AlphaComplex
+    AlphaComplex, or PeriodicAlphaComplex with a cell
 
     Examples
     --------
@@ -125,6 +127,11 @@ def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0,
     >>> sorted(complex.values[1].tolist())
     [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]
     """
+    if cell is not None:
+        from ._periodic import PeriodicAlphaComplex, PeriodicDelaunay
+
+        tri = PeriodicDelaunay(points, weights, cell=cell, periodic=periodic, threads=threads, progress=progress)
+        return PeriodicAlphaComplex(tri, threads=threads, progress=progress)
     return AlphaComplex(Delaunay(points, weights, threads=threads, progress=progress))
 
 
@@ -141,6 +148,8 @@ class AlphaShape(Mesh):
         A squared radius; the default is the least one of a single solid (in the plane, region) that has all vertices.
     weights, threads, progress
         As for Delaunay.
+    cell, periodic
+        Of points in space that repeats: the result is a PeriodicAlphaShape.
 
     Attributes
     ----------
@@ -164,6 +173,13 @@ class AlphaShape(Mesh):
     alpha: float
     counts: dict[str, int]
     complex: AlphaComplex
+
+    def __new__(cls, points: Any = None, alpha: float | None = None, weights: Any = None, *, cell: Any = None,
+                **options: Any) -> Any:
+        if cell is None:
+            return super().__new__(cls)
+        complex = alpha_complex(points, weights, cell=cell, **options)
+        return complex.shape(complex.auto_alpha() if alpha is None else alpha)
 
     def __init__(self, points: Any, alpha: float | None = None, weights: Any = None, *, threads: int = 0,
                  progress: bool | Progress | None = None) -> None:

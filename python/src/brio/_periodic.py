@@ -1,5 +1,6 @@
 """Triangulations and cells of points in space that repeats."""
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
@@ -7,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_box, as_floats, as_rows, as_weights, freeze_all, frozen
+from ._arrays import Floats, as_box, as_floats, as_number, as_queries, as_rows, as_weights, freeze_all, frozen
 from ._calls import Progress
+from ._mesh import Mesh
 from .errors import ArgumentError, CheckError
 
 Ints = NDArray[np.int64]
@@ -156,6 +158,62 @@ class PeriodicDelaunay:
     def checksum(self) -> int:
         return int(_native.periodic_checksum(self._handle))
 
+    @cached_property
+    def _locator(self) -> Any:
+        return _native.periodic_locator(self._handle, 0, None)
+
+    def _locate(self, xi: Any, nearest: bool) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        rows, shape = as_queries(xi, 3)
+        found = np.empty((len(rows), 4), np.int32)
+        _native.periodic_locate(self._locator, rows, int(nearest), found, 0, None)
+        return found[:, 0].reshape(shape), found[:, 1:].reshape((*shape, 3))
+
+    def find_simplex(self, xi: Any) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """Finds the simplex that holds each position, exactly: its index, and the shift by which it has to be moved.
+
+        Positions may lie in any cell. Where not all directions repeat, positions outside have the index -1.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 3)
+
+        Returns
+        -------
+        simplices, shifts : ndarrays of int32, shapes (...) and (..., 3)
+            Position k is in ``simplices[k]``, moved by ``shifts[k] @ cell``.
+
+        Examples
+        --------
+        >>> import brio
+        >>> tri = brio.Delaunay([[0, 0, 0]], cell=[1, 1, 1])
+        >>> first, other = (tri.find_simplex([0.5, 0.2, z]) for z in (0.1, 5.1))
+        >>> int(first[0] - other[0]), (other[1] - first[1]).tolist()
+        (0, [0, 0, 5])
+        """
+        return self._locate(xi, False)
+
+    def nearest(self, xi: Any) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        """Finds the nearest vertex of each position or, with weights, the vertex of least power distance.
+
+        Parameters
+        ----------
+        xi : array_like, shape (..., 3)
+
+        Returns
+        -------
+        points, shifts : ndarrays of int32, shapes (...) and (..., 3)
+            The vertex is ``points[k] + shifts[k] @ cell``.
+
+        Examples
+        --------
+        >>> import brio
+        >>> tri = brio.Delaunay([[0.1, 0, 0], [0.5, 0.5, 0.5]], cell=[1, 1, 1])
+        >>> point, shift = tri.nearest([0.9, 0, 3])
+        >>> int(point), shift.tolist()
+        (0, [1, 0, 3])
+        """
+        return self._locate(xi, True)
+
     def check(self) -> bool:
         """Checks the triangulation exactly, without the code that made it."""
         try:
@@ -250,3 +308,110 @@ class PeriodicVoronoi:
 
     def __repr__(self) -> str:
         return f"<brio.PeriodicVoronoi of {self.npoints} points: {len(self.neighbor_points)} faces>"
+
+
+class PeriodicAlphaComplex:
+    """The simplices of a triangulation in space that repeats, one of each class of translates, with their values.
+
+    ``brio.alpha_complex(points, cell=...)`` makes it. A simplex enters the alpha complex at its value, a squared radius.
+
+    Parameters
+    ----------
+    tri : PeriodicDelaunay
+
+    Attributes
+    ----------
+    image_points, image_shifts, image_positions : ndarrays
+        The translates that simplices name, as of PeriodicDelaunay; there are more of them here.
+    simplices : list of 4 ndarrays of uint32, shapes (n, 1) to (n, 4)
+        Indices of images. Vertices, edges, triangles and tetrahedra; these come in the order of ``tri.simplices``.
+    values, solid, gabriel : lists of 4 ndarrays
+        As of AlphaComplex.
+
+    Examples
+    --------
+    >>> import brio
+    >>> complex = brio.alpha_complex([[0, 0, 0]], cell=[1, 1, 1])
+    >>> [len(part) for part in complex.values], complex.auto_alpha()
+    ([1, 7, 12, 6], 0.75)
+    """
+
+    ndim = 3
+
+    def __init__(self, tri: PeriodicDelaunay, *, threads: int = 0, progress: bool | Progress | None = None) -> None:
+        if not isinstance(tri, PeriodicDelaunay):
+            raise ArgumentError(f"tri: a brio.Delaunay with a cell is wanted, not {type(tri).__name__}")
+        self.tri = tri
+        with _calls.reporting(progress) as report:
+            views = _native.periodic_alpha(tri._handle, threads, report)
+        self._complex = views["complex"]
+        images = np.asarray(views["images"])
+        self.image_points, self.image_shifts = images[:, 0], images[:, 1:]
+        self.image_positions: Floats = np.asarray(views["positions"])
+        self.simplices: list[NDArray[np.uint32]] = [np.asarray(view) for view in views["simplices"]]
+        self.values: list[Floats] = [np.asarray(view) for view in views["values"]]
+        self.solid: list[Floats] = [np.asarray(view) for view in views["solid"]]
+        self.gabriel: list[NDArray[np.bool_]] = [np.asarray(view) for view in views["gabriel"]]
+        freeze_all(self.__dict__)
+
+    @property
+    def points(self) -> Floats:
+        return self.tri.points
+
+    def auto_alpha(self) -> float:
+        """The least alpha whose tetrahedra, joined with their translates, are one solid that has all vertices."""
+        alpha: float = _native.periodic_alpha_auto(self._complex)
+        return alpha
+
+    def filtration(self) -> Iterator[tuple[tuple[int, ...], float]]:
+        """The simplices by their points, with their values, as they enter: the filtration of a torus.
+
+        Raises NoAnswerError where two simplices have the same points, as in a cell of few: repeat the cell then.
+        """
+        named = _native.periodic_alpha_by_points(self._complex)
+        order = np.empty(sum(len(part) for part in self.values), np.uint32)
+        _native.alpha_order(named["complex"], order)
+        simplices = [tuple(row) for part in named["simplices"] for row in np.asarray(part).tolist()]
+        values = [value for part in self.values for value in part.tolist()]
+        for number in order.tolist():
+            yield simplices[number], values[number]
+
+    def shape(self, alpha: float) -> "PeriodicAlphaShape":
+        """The alpha shape for `alpha`, a squared radius: see PeriodicAlphaShape."""
+        alpha = as_number(alpha, "alpha")
+        handle, counts = _native.periodic_alpha_shape(self._complex, alpha)
+        shape: PeriodicAlphaShape = PeriodicAlphaShape._of(handle)
+        shape.alpha, shape.counts, shape.complex = alpha, counts, self
+        return shape
+
+    def __repr__(self) -> str:
+        return f"<brio.PeriodicAlphaComplex of {len(self.points)} points: {sum(map(len, self.values))} simplices>"
+
+
+class PeriodicAlphaShape(Mesh):
+    """The alpha shape of points in space that repeats: the border of the tetrahedra of at most alpha, a Mesh.
+
+    ``brio.AlphaShape(points, alpha, cell=...)`` makes it. The surface is closed; the mesh has one triangle of each class of
+    translates, and is cut open where the surface goes on at a translate. Its `properties` say which translate a vertex
+    is ("point", "shift_a", "shift_b", "shift_c"); vertices of one "sheet" are one vertex of the surface.
+
+    Attributes
+    ----------
+    alpha : float
+    counts : dict
+        As of AlphaShape, and of the surface in a cell: "components", "euler" (vertices - edges + faces), "area", and the
+        "volume" of the solid.
+    complex : PeriodicAlphaComplex
+
+    Examples
+    --------
+    >>> import brio, itertools
+    >>> grid = list(itertools.product(range(4), repeat=3))
+    >>> shape = brio.AlphaShape(grid[1:], 0.75, cell=[4, 4, 4])  # a grid without one point
+    >>> round(64 - shape.counts["volume"], 9), shape.counts["euler"]
+    (1.333333333, 2)
+    """
+
+    alpha: float
+    counts: dict[str, Any]
+    complex: PeriodicAlphaComplex
