@@ -1,5 +1,6 @@
 /* Alpha complexes and locations in space that repeats, against many copies and all translates. */
 #include "base/rng.h"
+#include "failing_allocator.h"
 #include "harness.h"
 #include <math.h>
 #include <stdbool.h>
@@ -352,6 +353,37 @@ static void simplices_have_names_by_points_where_they_differ(void) {
     }
 }
 
+static brio_status run_shapes(brio_context *own) {
+    enum { N = 60 };
+    static double points[3 * N];
+    brio_rng rng = brio_rng_new(31);
+    for (size_t i = 0; i < 3 * N; i++) points[i] = brio_rng_double(&rng);
+    brio_periodic_options o = {.size = sizeof o, .cell = CUBE};
+    brio_periodic *t = NULL;
+    brio_periodic_alpha *a = NULL;
+    brio_alpha_complex c = {.size = sizeof c};
+    brio_mesh *m = NULL;
+    double alpha = 0;
+    uint64_t bytes;
+    brio_status status = brio_estimate_periodic(own, points, NULL, N, &o, &bytes);
+    if (status == BRIO_OK) status = brio_delaunay_periodic(own, points, NULL, N, &o, &t);
+    if (status == BRIO_OK) status = brio_periodic_check(own, t);
+    if (status == BRIO_OK) status = brio_periodic_alpha_values(own, t, &a);
+    if (status == BRIO_OK) status = brio_periodic_alpha_auto(own, a, &alpha);
+    if (status == BRIO_OK) status = brio_periodic_alpha_shape(own, a, alpha, &m, NULL);
+    if (status == BRIO_OK) status = brio_periodic_alpha_by_points(own, a, &c);
+    if (status == BRIO_ERR_NO_ANSWER) status = BRIO_OK; /* simplices that have the same points */
+    brio_alpha_complex_free(&c);
+    brio_mesh_free(m);
+    brio_periodic_alpha_free(a);
+    brio_periodic_free(t);
+    return status;
+}
+
+static void memory_that_runs_out(void) {
+    expect_clean_failures(run_shapes);
+}
+
 /* --- locations --- */
 
 static double power(const sample *s, size_t p, const int32_t *shift, const double *q) {
@@ -434,6 +466,7 @@ SUITE(test_periodic_queries) {
     RUN(surfaces_that_repeat_are_closed);
     RUN(shapes_in_a_wide_cell_are_the_usual_ones);
     RUN(simplices_have_names_by_points_where_they_differ);
+    RUN(memory_that_runs_out);
     RUN(places_are_in_their_tetrahedra);
     brio_context_free(ctx);
     return harness_end();
