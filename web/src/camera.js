@@ -13,7 +13,7 @@ export class Camera {
     }
     /** Takes the distance from which a scene of that radius is seen whole; stays where it was moved to. */
     fit(radius) {
-        const home = 3.9 * Math.max(1, radius / 1.45);
+        const home = 3.9 * Math.max(1, radius / 1.3);
         if (this.distance === this.home) this.distance = home;
         this.home = home;
     }
