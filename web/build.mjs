@@ -15,10 +15,11 @@ const require = createRequire(new URL("../out/web-env/package.json", here));
 const { buildSync, transformSync } = require("esbuild");
 const text = name => readFileSync(new URL(name, here), "utf8");
 
+// Lines that begin with blanks are those of shaders.
 const bundled = name => buildSync({
     entryPoints: [fileURLToPath(new URL(name, here))], bundle: true, minify: true, write: false, format: "iife", target: "es2022", charset: "utf8",
     legalComments: "none", external: ["node:*"], define: { "import.meta.url": "''" }, // of the package's ways to find its files
-}).outputFiles[0].text.trim().replaceAll("</", "<\\/");
+}).outputFiles[0].text.trim().replace(/\n +/g, "\n").replaceAll("</", "<\\/");
 const styled = css => transformSync(css, { loader: "css", minify: true, charset: "utf8" }).code.trim();
 const body = text("src/page.html").replace(/\n\s*/g, "\n").replace(/<!--(?!DATA)[^>]*-->\n/g, "");
 const filled = (page, style, program, hash) => page.replace("/*STYLE*/", () => style).replace("/*PROGRAM*/", () => program).replace("HASH", hash);

@@ -8,12 +8,19 @@ export class Camera {
     constructor() {
         this.up = 2;
         this.parallel = false;
+        this.home = 3.9; // the distance at first
         this.reset();
+    }
+    /** Takes the distance from which a scene of that radius is seen whole; stays where it was moved to. */
+    fit(radius) {
+        const home = 3.9 * Math.max(1, radius / 1.3);
+        if (this.distance === this.home) this.distance = home;
+        this.home = home;
     }
     reset() {
         this.yaw = -0.6;
         this.pitch = 0.45;
-        this.distance = 3.9;
+        this.distance = this.home;
         this.target = [0, 0, 0];
     }
     /** The axes of the view: to the right, upwards, towards the eye. */

@@ -15,7 +15,7 @@ export function defaultState(layer) {
         source: "plain", map: "viridis", low: 0, high: 1, alpha: 0.3, explode: 0, balls: false,
     };
     if (layer.hasPieces) state.nonmanifold = false; // edges of cells have many faces by their nature
-    if (layer.filtration) Object.assign(state, { boundary: false, nonmanifold: false, flipped: false, flat: true, points: true });
+    if (layer.filtration) Object.assign(state, { boundary: false, nonmanifold: false, flipped: false, flat: true, points: true, alpha: layer.filtration.start });
     if (colours) state.source = "colours";
     else if (layer.colours("f")) state.source = "face-colours";
     else if (layer.hasPieces && m.face_properties.some(p => p.name === "volume")) state.source = m.face_properties.find(p => p.name === "volume").block;

@@ -73,6 +73,11 @@ export class Layer {
         for (const p of list) values.push(Float64Array.from(await this.property("f", p), x => Number.isNaN(x) ? Infinity : x));
         const sorted = Float64Array.from(values[1]).sort(); // when the solid changes
         this.filtration = { appears: values[0], solid: values[1], vanishes: values[2], levels: sorted.filter((x, i) => x < Infinity && x !== sorted[i - 1]) };
+        // It begins where every point is a corner of the solid.
+        const first = new Float64Array(this.meta.vertices).fill(Infinity);
+        this.triangles.forEach((v, i) => { first[v] = Math.min(first[v], values[1][this.faceAt(Math.floor(i / 3))]); });
+        const start = first.reduce((a, x) => x < Infinity && x > a ? x : a, -Infinity), levels = this.filtration.levels;
+        this.filtration.start = Math.min(1, (levels.findIndex(x => x >= start) + 0.5) / Math.max(1, levels.length));
     }
     /** The triangles at a value alpha: of the boundary of the solid, and the singular ones; `of` has the face of each of both. */
     alphaShape(alpha) {
