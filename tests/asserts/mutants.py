@@ -42,8 +42,6 @@ MUTANTS = [
      "dynamic/store.c"),
     ("a hand hides a vertex", "L8 of live.h", "dynamic/place.c",
      "if (d->zone) return brio_give_up(d, BRIO_TRY_ALONE);", "", "test_dynamic_threads", "dynamic/store.c"),
-    ("walks start at a slot that a hand has left", "L8 of live.h", "dynamic/together.c", "brio_live_start(d);", "",
-     "test_dynamic_threads", "dynamic/store.c"),
     ("new triangles are joined to the wrong edge", "I3 of plane_store.h", "plane/plane_insert.c",
      "brio_edge_of(before, 1)", "brio_edge_of(before, 2)", "test_plane", "plane/plane_insert.c"),
     ("the cut of a face has no end", "I1 of polyhedron.h", "cells/polyhedron.c",
