@@ -18,7 +18,7 @@
 
 /* TURNS: most cuts; they end with one after which at most 1/FEW of the samples change. FIRST_BITS, PASSES: of the
  * descent. All chosen on generated solids. */
-enum { TURNS = 4, FEW = 10000, FIRST_BITS = 9, PASSES = 3, NODES_A_THREAD = 1 << 12 };
+enum { TURNS = 4, FEW = 10000, FIRST_BITS = 8, PASSES = 3, NODES_A_THREAD = 1 << 12 };
 
 /* A sample is contested if its violated votes are over this share of its votes. Chosen on generated solids. */
 static const double CONTESTED = 0.4;
