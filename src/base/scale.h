@@ -4,6 +4,7 @@
 
 #include "base/context.h"
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 /** Returns 2^exponent for exponents of normal numbers, -1022 to 1023, without a call. */
@@ -45,5 +46,27 @@ brio_status brio_scale(brio_context *ctx, const double *x, size_t n, int exponen
 /** Scales the vertices of a result in place. Returns BRIO_OK, or BRIO_ERR_NO_ANSWER if doubles cannot hold a
  *  coordinate. */
 brio_status brio_scale_vertices(brio_context *ctx, double *vertices, size_t num_vertices, int exponent);
+
+/** A unit of sums that do not depend on the order of the numbers: sums of whole multiples of a power of two. Each
+ *  number is rounded by itself, so parts of them can be summed apart, by threads or by tiles. */
+typedef struct {
+    double unit;
+    double most; /* units that one number has at most */
+} brio_sum_unit;
+
+/** Returns the least unit in which `count` numbers of magnitudes up to `greatest` have a sum below 2^62.
+ *  greatest, count  of all numbers, in every part. */
+static inline brio_sum_unit brio_sum_unit_for(double greatest, size_t count) {
+    int bits = 1;
+    while (bits < 61 && count >> bits > 0) bits++;
+    int exponent = brio_exponent(greatest) - (62 - bits);
+    return (brio_sum_unit){brio_power_of_two(exponent < -1022 ? -1022 : exponent), brio_power_of_two(62 - bits)};
+}
+
+/** Returns a number in units: what is not a number is 0, what is beyond the greatest counts as that. */
+static inline int64_t brio_in_units(brio_sum_unit u, double x) {
+    double units = floor(x / u.unit + 0.5);
+    return isnan(units) ? 0 : (int64_t)(units < -u.most ? -u.most : units > u.most ? u.most : units);
+}
 
 #endif

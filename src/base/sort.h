@@ -1,9 +1,10 @@
 /* Sorting: radix sorts, and keys by their rank, in linear time (sort.c); sorts of keys and of indices in
- * place (heap_sort.c). */
+ * place (heap_sort.c); keys of numbers, hashes of positions. */
 #ifndef BRIO_BASE_SORT_H
 #define BRIO_BASE_SORT_H
 
 #include "base/context.h"
+#include "base/rng.h"
 
 /** Sorts n pairs by key; the sort is stable.   keys  below 2^bits.   Workspace: 12 n bytes. Looks.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY or BRIO_ERR_CANCELLED: then keys and values are in no order, and some may be
@@ -38,6 +39,14 @@ brio_status brio_key_of_rank(brio_context *ctx, const uint64_t *keys, size_t n, 
 
 /** Returns a key; keys as unsigned numbers sort as the doubles do. -0 and 0 have one key. */
 uint64_t brio_double_key(double x);
+
+/** Returns the hash of a position. Places that are compared by their hashes are in an order that no list gives: it is
+ *  the same whatever the places are numbered by, and whatever other places there are. -0 and 0 have one hash. */
+static inline uint64_t brio_position_hash(const double p[3]) {
+    uint64_t hash = 0;
+    for (int k = 0; k < 3; k++) hash = brio_hash(hash, brio_double_key(p[k]));
+    return hash;
+}
 
 /** An order of the rows of an array: by their first number, then by `compare`. */
 typedef struct {

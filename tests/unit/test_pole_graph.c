@@ -166,7 +166,8 @@ static void make_graph(random_graph *r, brio_context *ctx, uint64_t seed) {
         r->fixed[p] = brio_rng_below(&rng, 5) == 0;
     }
     r->first[NODES] = count;
-    r->g = (brio_signed_graph){.ctx = ctx, .count = NODES, .position = r->centre, .first = r->first, .edge = r->edge};
+    r->g = (brio_signed_graph){
+        .ctx = ctx, .count = NODES, .position = r->centre, .exponent = 10, .first = r->first, .edge = r->edge};
 }
 
 static void check_blocks(const random_graph *r, const brio_node_blocks *b) {
@@ -182,13 +183,15 @@ static void check_blocks(const random_graph *r, const brio_node_blocks *b) {
         places++;
     }
     EXPECT(places == b->count);
+    for (size_t i = 0, end = 0; i < b->num_blocks; end += b->end[i] - b->begin[i], i++)
+        EXPECT(b->end[i] > b->begin[i] && b->end[i] - b->begin[i] <= (size_t)1 << b->bits && end <= b->count);
     for (uint32_t p = 0; p < NODES; p++)
         for (size_t e = r->first[p]; e < r->first[p + 1] && !r->fixed[p]; e++) {
             uint32_t q = r->edge[e].node, here = b->place[p], there = b->place[q];
             if (r->edge[e].weight != 0 && brio_label_violates(r->label, p, r->edge[e]))
-                EXPECT(here != BRIO_NO_PLACE && round[here >> b->bits] != SIZE_MAX, "violated edge of pole %u", p);
-            if (here == BRIO_NO_PLACE || there == BRIO_NO_PLACE || here >> b->bits == there >> b->bits) continue;
-            size_t mine = round[here >> b->bits], other = round[there >> b->bits];
+                EXPECT(here != BRIO_NO_PLACE && round[b->of[here]] != SIZE_MAX, "violated edge of pole %u", p);
+            if (here == BRIO_NO_PLACE || there == BRIO_NO_PLACE || b->of[here] == b->of[there]) continue;
+            size_t mine = round[b->of[here]], other = round[b->of[there]];
             EXPECT(mine != other || mine == SIZE_MAX, "poles %u and %u change together", p, q);
         }
 }
@@ -248,7 +251,7 @@ static void settled_blocks_have_least_energy(void) {
         make_graph(&r, ctx, trial);
         EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, BITS, trial, &b) == BRIO_OK);
         for (size_t block = 0; block < b.num_blocks; block++) {
-            size_t begin = brio_node_block_begin(&b, block), size = brio_node_block_begin(&b, block + 1) - begin;
+            size_t begin = b.begin[block], size = b.end[block] - begin;
             double before = energy_of(&r), least = least_energy(&r, b.node + begin, size);
             roof.undecided = 0;
             EXPECT(brio_roof_settle(&roof, &r.g, &b, block, r.label) == BRIO_OK);

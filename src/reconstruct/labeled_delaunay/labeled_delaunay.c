@@ -22,7 +22,7 @@
  * were
  *                          measured on generated solids (vote_weight.c). */
 #include "base/memory.h"
-#include "base/rng.h"
+#include "base/sort.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/surface/method.h"
@@ -395,9 +395,7 @@ static brio_status take_few(const brio_reconstruction *r, brio_reconstruction *f
     BRIO_TRY(BRIO_ALLOC(r->ctx, few->points, 3 * r->num_points));
     for (size_t p = 0; p < r->num_points; p++) {
         const double *from = r->points + 3 * p;
-        uint64_t hash = 0;
-        for (size_t k = 0; k < 3; k++) hash = brio_hash(hash, brio_double_key(from[k]));
-        if (hash % FEW != 0) continue;
+        if (brio_position_hash(from) % FEW != 0) continue;
         memcpy(few->points + 3 * few->num_points++, from, 3 * sizeof *from);
     }
 done:

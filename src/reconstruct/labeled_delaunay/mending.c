@@ -8,11 +8,19 @@
  * a sample counts once for each fan. The price of a part rises from next to nothing, so that what the votes decide
  * clearly is decided first.
  *
- * Every flip lowers the sum, so the work ends. Stars that no price mends are left to cocone/manifold_stars.c. */
+ * Every flip lowers the sum, so the work ends. Stars that no price mends are left to cocone/manifold_stars.c.
+ *
+ * At each price all singular samples have their turn, then those that were queued meanwhile, and so on. Each turn goes
+ * in the order of the samples' hashes (hash_order.h), and hashes decide between moves and paths that are as good. A
+ * move at a sample depends on the labels of the stars of the star's samples. So what happens at a sample depends on
+ * samples at most two edges away that have less hashes, and on no number of a sample or a tetrahedron.
+ *
+ * Based on: Jones, Plassmann. A parallel graph coloring heuristic. SIAM J. Sci. Comput. 1993 (hashes as priorities). */
 #include "reconstruct/labeled_delaunay/mending.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
+#include "reconstruct/labeled_delaunay/hash_order.h"
 #include <string.h>
 
 /* MOST: tetrahedra that are flipped together. PRICES: the price is a quarter of a log-odds at first and doubles. SMALL:
@@ -143,6 +151,16 @@ void brio_mending_forget(brio_mending *m) {
 
 /* --- one star --- */
 
+static uint64_t hash_of(const brio_mending *m, const move *x) {
+    uint64_t sum = 0;
+    for (int i = 0; i < x->size; i++) sum += brio_tet_hash(m->flips->g->dual, x->tet[i]);
+    return sum;
+}
+
+static bool is_better(const brio_mending *m, const move *a, const move *b) {
+    return a->gain != b->gain ? a->gain > b->gain : a->gain > 0 && hash_of(m, a) < hash_of(m, b);
+}
+
 /* Keeps a move if it is better than the best one so far. */
 static brio_status consider(brio_mending *m, move *x, int64_t price, move *best) {
     brio_status status = BRIO_OK;
@@ -161,7 +179,7 @@ static brio_status consider(brio_mending *m, move *x, int64_t price, move *best)
         twice += 2 * (after.fans - m->fans[sample[i]]);
     }
     x->gain = price * fewer - cost + HANDLE / 4 * twice;
-    if (fewer > 0 && x->gain > best->gain) *best = *x;
+    if (fewer > 0 && is_better(m, x, best)) *best = *x;
 done:
     brio_take_back(f, from);
     return status;
@@ -184,6 +202,11 @@ typedef struct {
     bool done[BRIO_STAR_ROOM];
 } paths;
 
+static bool is_less(const brio_mending *m, const brio_star_parts *s, int i, int j) {
+    const brio_pole_vectors *v = m->flips->g->dual;
+    return brio_tet_hash(v, brio_star_tet(s->at[i])) < brio_tet_hash(v, brio_star_tet(s->at[j]));
+}
+
 static int nearest_open(const brio_star_parts *s, const paths *w) {
     int best = -1;
     for (int i = 0; i < (int)s->size; i++)
@@ -191,6 +214,8 @@ static int nearest_open(const brio_star_parts *s, const paths *w) {
     return best;
 }
 
+/* Offers the neighbours of tetrahedron i of a star the path through it. Each step costs at least 1: so tetrahedra of
+ * one cost offer each other nothing, and their order does not matter. */
 static void step_from(brio_mending *m, uint32_t sample, const brio_star_parts *s, uint8_t label, int i, paths *w) {
     const brio_tetrahedron *t = &m->flips->g->dual->t.tet[brio_star_tet(s->at[i])];
     for (int k = 0; k < 4; k++) {
@@ -201,7 +226,8 @@ static void step_from(brio_mending *m, uint32_t sample, const brio_star_parts *s
         if (!there && other >= m->flips->num_finite) continue;
         int64_t cost = there ? 0 : brio_flip_cost(m->flips, other);
         cost = w->cost[i] + 1 + (cost > 0 ? cost : 0);
-        if (cost < w->cost[j]) w->cost[j] = cost, w->from[j] = (int16_t)i;
+        if (cost < w->cost[j] || (cost == w->cost[j] && is_less(m, s, i, w->from[j])))
+            w->cost[j] = cost, w->from[j] = (int16_t)i;
     }
 }
 
@@ -216,12 +242,12 @@ static bool take_path(brio_mending *m, uint32_t sample, const brio_star_parts *s
         w.done[i] = false;
         m->flips->place[brio_star_tet(s->at[i])] = (uint16_t)i;
     }
-    while (end < 0 && (at = nearest_open(s, &w)) >= 0) {
+    while ((at = nearest_open(s, &w)) >= 0 && (end < 0 || w.cost[at] == w.cost[end])) {
         w.done[at] = true;
-        if (m->flips->label[brio_star_tet(s->at[at])] == label && s->part[at] != part)
-            end = at;
-        else
+        if (m->flips->label[brio_star_tet(s->at[at])] != label || s->part[at] == part)
             step_from(m, sample, s, label, at, &w);
+        else if (end < 0 || is_less(m, s, at, end))
+            end = at;
     }
     for (size_t i = 0; i < s->size; i++) m->flips->place[brio_star_tet(s->at[i])] = BRIO_NOT_IN_STAR;
     for (int i = end < 0 ? -1 : w.from[end]; i >= 0; i = w.from[i])
@@ -279,15 +305,21 @@ done:
     return status;
 }
 
-/* Looks at the queued samples and at those that are queued meanwhile, at one price. Those that stay singular are in the
- * queue at the end. */
+/* Lets the queued samples have their turn, and those that are queued meanwhile, at one price. Those that stay singular
+ * are in the queue at the end. */
 static brio_status mend_at(brio_mending *m, int64_t price) {
     brio_status status = BRIO_OK;
+    const brio_label_flips *f = m->flips;
     size_t left = 0;
-    for (size_t i = 0; i < m->size; i++) {
-        uint32_t p = m->queue[i];
-        m->queued[p] = 0;
-        BRIO_TRY(mend_star(m, p, price));
+    for (size_t begin = 0, end; begin < m->size; begin = end) {
+        end = m->size;
+        BRIO_TRY(
+            brio_sort_many_indices(f->ctx, m->queue + begin, end - begin, brio_compare_hashes, f->g->dual->points));
+        for (size_t i = begin; i < end; i++) {
+            uint32_t p = m->queue[i];
+            m->queued[p] = 0;
+            BRIO_TRY(mend_star(m, p, price));
+        }
     }
     for (size_t i = 0; i < m->size; i++) {
         uint32_t p = m->queue[i];
@@ -300,18 +332,10 @@ done:
     return status;
 }
 
-static int compare_numbers(uint32_t a, uint32_t b, const void *user) {
-    (void)user;
-    return a < b ? -1 : a > b;
-}
-
 brio_status brio_mend(brio_mending *m) {
     brio_status status = BRIO_OK;
     int64_t price = BRIO_FLIP_UNIT / 4;
-    for (int i = 0; i < PRICES && m->size > 0; i++, price *= 2) {
-        BRIO_TRY(brio_sort_many_indices(m->flips->ctx, m->queue, m->size, compare_numbers, NULL));
-        BRIO_TRY(mend_at(m, price));
-    }
+    for (int i = 0; i < PRICES && m->size > 0; i++, price *= 2) BRIO_TRY(mend_at(m, price));
 done:
     return status;
 }

@@ -6,11 +6,13 @@
  * Based on: Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000. */
 #include "base/memory.h"
 #include "base/vector.h"
+#include "base/scale.h"
 #include "reconstruct/cocone/rim_axes.h"
 #include "reconstruct/cocone/triangle.h"
 #include "reconstruct/labeled_delaunay/reconstruction.h"
 #include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* In log-odds, what the sign of a sample's sheet weighs, of an open surface or beside evidence. Chosen on scans of
  * models that nothing else was measured on. */
@@ -95,20 +97,28 @@ done:
     return status;
 }
 
+/* Returns what a sample of an infinite tetrahedron tells of the side beyond its facet, by the facet's area. */
+static double told_of_side(const brio_pole_vectors *v, const float *own, size_t tet, int k) {
+    const uint32_t *s = v->t.tet[tet].vertex;
+    double area =
+        brio_triangle_area(v->points + 3 * (size_t)s[0], v->points + 3 * (size_t)s[1], v->points + 3 * (size_t)s[2]);
+    double to[3];
+    brio_towards_centre(v, tet, s[k], to);
+    return brio_dot(to, v->plane + 4 * (size_t)s[k]) * (double)own[s[k]] * area;
+}
+
 bool brio_hull_looks_inwards(const brio_pole_vectors *v, const float *own) {
-    double inwards = 0, outwards = 0;
-    for (size_t tet = v->num_finite; tet < v->t.count; tet++) {
-        const uint32_t *s = v->t.tet[tet].vertex;
-        double area = brio_triangle_area(v->points + 3 * (size_t)s[0], v->points + 3 * (size_t)s[1],
-                                         v->points + 3 * (size_t)s[2]);
+    double greatest = 0;
+    int64_t inwards = 0, outwards = 0;
+    for (size_t tet = v->num_finite; tet < v->t.count; tet++)
+        for (int k = 0; k < 3; k++) greatest = fmax(greatest, fabs(told_of_side(v, own, tet, k)));
+    brio_sum_unit unit = brio_sum_unit_for(greatest, 3 * (v->t.count - v->num_finite));
+    for (size_t tet = v->num_finite; tet < v->t.count; tet++)
         for (int k = 0; k < 3; k++) {
-            double to[3];
-            brio_towards_centre(v, tet, s[k], to);
-            double along = brio_dot(to, v->plane + 4 * (size_t)s[k]) * (double)own[s[k]] * area;
-            *(along < 0 ? &inwards : &outwards) += fabs(along);
+            int64_t told = brio_in_units(unit, told_of_side(v, own, tet, k));
+            *(told < 0 ? &inwards : &outwards) += llabs(told);
         }
-    }
-    return inwards > INWARDS * outwards;
+    return (double)inwards > INWARDS * (double)outwards;
 }
 
 void brio_compare_with_evidence(brio_reconstruction *r) {

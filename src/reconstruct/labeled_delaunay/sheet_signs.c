@@ -8,7 +8,10 @@
  *
  * What is told of samples, by normals or places of scanners, adds up within a piece. Pieces stay apart that contradict
  * each other more, in log-odds, than they are tied. In the end each looks where it is told to, or else where the hull
- * does.
+ * does, or else as its root does.
+ *
+ * The root of a piece is its sample of the least hash (hash_order.h), and hashes decide between ties that weigh the
+ * same. Sums are those of whole numbers. So signs depend on no number of a sample or a tetrahedron.
  *
  * Poles are not asked: they tell that the back of a sheet sees the front of what is behind it, which makes one of the
  * two look away from the scanner. In a closed surface they would be right, but there neighbours tell enough.
@@ -23,6 +26,7 @@
 #include "base/team.h"
 #include "base/vector.h"
 #include "reconstruct/labeled_delaunay/axis_agreement.h"
+#include "reconstruct/labeled_delaunay/hash_order.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,8 +34,8 @@
 /* FARTHEST: in spacings, of samples that are tied: the lesser of the two, so that a stray is tied to nothing. FIRST,
  * LAST: limits, in log-odds. ALONG: hull samples with a cosine under this tell nothing of the outside. UNIT: one
  * log-odds. All chosen on scans of models that nothing else was measured on; 4 spacings tie what lies one behind the
- * other. */
-static const double FARTHEST = 2.5, FIRST = 6, LAST = 1.5, ALONG = 0.5, UNIT = 1024;
+ * other. TOLD_UNIT: one log-odds of what is told. */
+static const double FARTHEST = 2.5, FIRST = 6, LAST = 1.5, ALONG = 0.5, UNIT = 1024, TOLD_UNIT = 0x1p24;
 
 enum { TETS_A_THREAD = 1 << 12, MOST_WEIGHT = 1 << 30 };
 
@@ -59,7 +63,7 @@ typedef struct {
     size_t count;
     uint32_t *up;   /* #P: 2 * parent, plus 1 if the parent's sign is opposite */
     uint32_t *best; /* #P: of roots, the greatest tie */
-    double *told;   /* #P, or NULL: of roots, the sum of what is told of their pieces */
+    int64_t *told;  /* #P, or NULL: of roots, the sum of what is told of their pieces, in TOLD_UNIT */
 } signing;
 
 /* --- ties --- */
@@ -168,8 +172,7 @@ static void lift_ties(signing *s) {
     s->count = count;
 }
 
-static int32_t sum_of(int32_t a, int32_t b) {
-    int64_t sum = (int64_t)a + b;
+static int32_t bounded(int64_t sum) {
     return (int32_t)(sum > MOST_WEIGHT ? MOST_WEIGHT : sum < -MOST_WEIGHT ? -MOST_WEIGHT : sum);
 }
 
@@ -190,12 +193,12 @@ static brio_status add_ties(signing *s) {
         order[i] = (uint32_t)i;
     }
     BRIO_TRY(brio_radix_sort(s->ctx, key, order, s->count, 2 * bits));
-    for (size_t i = 0; i < s->count; i++) {
-        tie x = s->ties[order[i]];
-        if (i > 0 && key[i] == key[i - 1])
-            sums[count - 1].weight = sum_of(sums[count - 1].weight, x.weight);
-        else
-            sums[count++] = x;
+    for (size_t i = 0; i < s->count; count++) {
+        int64_t sum = 0;
+        size_t first = i;
+        for (; i < s->count && key[i] == key[first]; i++) sum += s->ties[order[i]].weight;
+        sums[count] = s->ties[order[first]];
+        sums[count].weight = bounded(sum);
     }
     for (size_t i = 0; i < count; i++) s->ties[i] = sums[i];
     s->count = count;
@@ -210,43 +213,87 @@ done:
  * not. */
 static double lost(const signing *s, uint32_t a, uint32_t b, bool opposite) {
     if (!s->told) return 0;
-    return fabs(s->told[a]) + fabs(s->told[b]) - fabs(s->told[a] + (opposite ? -s->told[b] : s->told[b]));
+    int64_t both = s->told[a] + (opposite ? -s->told[b] : s->told[b]);
+    return (double)(llabs(s->told[a]) + llabs(s->told[b]) - llabs(both)) / TOLD_UNIT;
 }
 
 static bool is_worth(const signing *s, uint32_t i) {
     return abs(s->ties[i].weight) > UNIT * lost(s, s->ties[i].a, s->ties[i].b, s->ties[i].weight < 0);
 }
 
-static void offer(const signing *s, uint32_t root, uint32_t i) {
-    uint32_t best = s->best[root];
-    if (best == NO_TIE || abs(s->ties[i].weight) > abs(s->ties[best].weight)) s->best[root] = i;
+/* Returns whether sample p has a less hash than q. */
+static bool comes_before(const signing *s, uint32_t p, uint32_t q) {
+    return brio_compare_hashes(p, q, s->v->points) < 0;
 }
 
-/* Joins each piece with the one that it is tied to most. Of ties that weigh the same the first one counts, so these
- * make no circles. Returns how many pieces vanish. */
-static size_t join_pieces(const signing *s, double limit) {
-    size_t joined = 0;
+static uint32_t other_end(const tie *x, uint32_t root) {
+    return x->a == root ? x->b : x->a;
+}
+
+/* Lets a root have tie i if it is its best one so far. Of two that weigh the same the other end decides: this is the
+ * order of the pairs, the less end first, so ties that weigh the same make no circles. */
+static void offer(const signing *s, uint32_t root, uint32_t i) {
+    const tie *x = &s->ties[i], *best = s->best[root] == NO_TIE ? NULL : &s->ties[s->best[root]];
+    if (!best || abs(x->weight) > abs(best->weight) ||
+        (abs(x->weight) == abs(best->weight) && comes_before(s, other_end(x, root), other_end(best, root))))
+        s->best[root] = i;
+}
+
+/* Joins the pieces of a tie, if it is still worth that. Returns whether it is. */
+static bool join(const signing *s, tie x) {
+    uint32_t a = find_root(s, x.a), b = find_root(s, x.b);
+    uint32_t opposite = (a & 1) ^ (b & 1) ^ (x.weight < 0);
+    if (a >> 1 == b >> 1 || abs(x.weight) <= UNIT * lost(s, a >> 1, b >> 1, opposite)) return false;
+    bool first = comes_before(s, a >> 1, b >> 1);
+    uint32_t up = (first ? a : b) >> 1, down = (first ? b : a) >> 1;
+    s->up[down] = up << 1 | opposite;
+    if (s->told) s->told[up] += opposite ? -s->told[down] : s->told[down];
+    return true;
+}
+
+/* Lists the roots whose best tie is over a limit. Where things are told, what is joined first changes what is worth
+ * joining: so the best ties come first, and of those that weigh the same the root of the least hash. */
+static brio_status list_best(const signing *s, double limit, uint32_t *root, size_t *count) {
+    brio_status status = BRIO_OK;
+    uint64_t *key = NULL;
+    *count = 0;
+    for (size_t p = 0; p < s->v->num_points; p++)
+        if (s->best[p] != NO_TIE && abs(s->ties[s->best[p]].weight) >= UNIT * limit) root[(*count)++] = (uint32_t)p;
+    if (!s->told) goto done;
+    BRIO_TRY(BRIO_ALLOC(s->ctx, key, *count));
+    for (size_t i = 0; i < *count; i++) key[i] = brio_position_hash(s->v->points + 3 * (size_t)root[i]);
+    BRIO_TRY(brio_radix_sort(s->ctx, key, root, *count, 64));
+    for (size_t i = 0; i < *count; i++) key[i] = (uint64_t)(MOST_WEIGHT - abs(s->ties[s->best[root[i]]].weight));
+    BRIO_TRY(brio_radix_sort(s->ctx, key, root, *count, 32));
+done:
+    brio_release(s->ctx, key);
+    return status;
+}
+
+/* Joins each piece with the one that it is tied to most.   joined  receives how many pieces vanish. */
+static brio_status join_pieces(const signing *s, double limit, size_t *joined) {
+    brio_status status = BRIO_OK;
+    uint32_t *root = NULL;
+    size_t count;
+    *joined = 0;
     for (size_t p = 0; p < s->v->num_points; p++) s->best[p] = NO_TIE;
     for (uint32_t i = 0; i < s->count; i++)
         if (is_worth(s, i)) offer(s, s->ties[i].a, i), offer(s, s->ties[i].b, i);
-    for (size_t p = 0; p < s->v->num_points; p++) {
-        if (s->best[p] == NO_TIE) continue;
-        tie x = s->ties[s->best[p]];
-        uint32_t a = find_root(s, x.a), b = find_root(s, x.b);
-        if (abs(x.weight) < UNIT * limit || a >> 1 == b >> 1) continue;
-        uint32_t opposite = (a & 1) ^ (b & 1) ^ (x.weight < 0);
-        if (abs(x.weight) <= UNIT * lost(s, a >> 1, b >> 1, opposite)) continue;
-        s->up[b >> 1] = (a & ~UINT32_C(1)) ^ opposite;
-        if (s->told) s->told[a >> 1] += opposite ? -s->told[b >> 1] : s->told[b >> 1];
-        joined++;
-    }
-    return joined;
+    BRIO_TRY(BRIO_ALLOC(s->ctx, root, s->v->num_points));
+    BRIO_TRY(list_best(s, limit, root, &count));
+    for (size_t i = 0; i < count; i++) *joined += join(s, s->ties[s->best[root[i]]]);
+done:
+    brio_release(s->ctx, root);
+    return status;
 }
 
 static brio_status join_all(signing *s) {
     brio_status status = BRIO_OK;
+    size_t joined;
     for (double limit = FIRST; limit >= LAST; limit /= 2)
-        while (join_pieces(s, limit) > 0) {
+        for (;;) {
+            BRIO_TRY(join_pieces(s, limit, &joined));
+            if (joined == 0) break;
             lift_ties(s);
             BRIO_TRY(add_ties(s));
         }
@@ -281,7 +328,7 @@ brio_status brio_sign_sheets(brio_context *ctx, const brio_pole_vectors *v, cons
     BRIO_TRY(BRIO_ALLOC(ctx, s.best, n));
     if (told) BRIO_TRY(BRIO_ALLOC(ctx, s.told, n));
     for (size_t p = 0; p < n; p++) s.up[p] = (uint32_t)(2 * p);
-    for (size_t p = 0; p < n && told; p++) s.told[p] = (double)told[p];
+    for (size_t p = 0; p < n && told; p++) s.told[p] = (int64_t)(TOLD_UNIT * (double)told[p]);
     BRIO_TRY(list_ties(&s));
     BRIO_TRY(join_all(&s));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, outwards, n));

@@ -23,8 +23,8 @@
 #include "reconstruct/labeled_delaunay/vote_weight.h"
 #include <math.h>
 
-/* PARTS: sums of the energy that are added up in order. All chosen. */
-enum { TETS_A_THREAD = 1 << 11, SAMPLES_A_THREAD = 1 << 12, PARTS = 256, SLICE = 1 << 20 };
+/* All chosen. */
+enum { TETS_A_THREAD = 1 << 11, SAMPLES_A_THREAD = 1 << 12, SLICE = 1 << 20 };
 
 /* In log-odds, of a facet of the area of an equilateral triangle whose sides are one spacing: AREA is its weight in any
  * case, DOUBT is added if its samples see both of its tetrahedra in one direction. Larger facets weigh more, up to
@@ -226,16 +226,21 @@ void brio_vote_graph_free(brio_vote_graph *g) {
 
 /* --- energy --- */
 
+/* Returns a weight in whole numbers: sums have room for 2^33 edges. */
+static int64_t whole(float weight) {
+    return (int64_t)(0x1p28 * (double)weight + 0.5);
+}
+
 /* Sums |weight| over the violated edges of a tetrahedron, those across a facet only to tetrahedra of higher number. */
-static double violated_at(const brio_vote_graph *g, const uint8_t *label, uint32_t tet) {
+static int64_t violated_at(const brio_vote_graph *g, const uint8_t *label, uint32_t tet) {
     const brio_tetrahedron *t = &g->dual->t.tet[tet];
-    double sum = label[tet] == BRIO_LABEL_INNER ? (double)brio_hull_vote(g, tet) : 0;
+    int64_t sum = label[tet] == BRIO_LABEL_INNER ? whole(brio_hull_vote(g, tet)) : 0;
     for (int i = 0; i < 4; i++) {
         uint32_t other = brio_tet_of(t->mate[i]);
         float vote = g->vote[tet][i];
         if (vote != 0 && (label[tet] == label[g->dual->t.count + t->vertex[i]]) == (vote < 0))
-            sum += fabs((double)vote);
-        if (other > tet && label[tet] != label[other]) sum += (double)g->facet[tet][i];
+            sum += whole(fabsf(vote));
+        if (other > tet && label[tet] != label[other]) sum += whole(g->facet[tet][i]);
     }
     return sum;
 }
@@ -243,30 +248,24 @@ static double violated_at(const brio_vote_graph *g, const uint8_t *label, uint32
 typedef struct {
     const brio_vote_graph *g;
     const uint8_t *label;
-    double part[PARTS];
+    int64_t all;
 } energy;
 
-static void sum_parts(void *user, size_t begin, size_t end, int thread) {
+static void sum_tets(void *user, size_t begin, size_t end, int thread) {
     energy *e = user;
-    size_t size = e->g->dual->t.count, samples = e->g->dual->num_points;
+    int64_t sum = 0;
     (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        e->part[i] = 0;
-        for (size_t tet = brio_part(size, (int)i, PARTS); tet < brio_part(size, (int)i + 1, PARTS); tet++)
-            e->part[i] += violated_at(e->g, e->label, (uint32_t)tet);
-        for (size_t p = brio_part(samples, (int)i, PARTS); e->g->own && p < brio_part(samples, (int)i + 1, PARTS); p++)
-            if ((e->g->own[p] < 0) == (e->label[size + p] == BRIO_LABEL_OUTER))
-                e->part[i] += fabs((double)e->g->own[p]);
-    }
+    for (size_t tet = begin; tet < end; tet++) sum += violated_at(e->g, e->label, (uint32_t)tet);
+    __atomic_fetch_add(&e->all, sum, __ATOMIC_RELAXED);
 }
 
-/* Sums in PARTS parts for every number of threads, so that the rounding does not depend on the threads. */
+/* Adds whole numbers, so that the sum does not depend on the threads. */
 brio_status brio_vote_energy(const brio_vote_graph *g, const uint8_t *label, double *out) {
     energy e = {.g = g, .label = label};
-    double sum = 0;
-    int threads = brio_threads(g->ctx, g->dual->t.count, TETS_A_THREAD);
-    brio_status status = brio_for_chunks(g->ctx, threads, PARTS, 1, sum_parts, &e);
-    for (int i = 0; status == BRIO_OK && i < PARTS; i++) sum += e.part[i];
-    *out = sum;
+    size_t size = g->dual->t.count;
+    brio_status status = brio_for(g->ctx, brio_threads(g->ctx, size, TETS_A_THREAD), size, sum_tets, &e);
+    for (size_t p = 0; p < g->dual->num_points && g->own; p++)
+        if ((g->own[p] < 0) == (label[size + p] == BRIO_LABEL_OUTER)) e.all += whole(fabsf(g->own[p]));
+    *out = 0x1p-28 * (double)e.all;
     return status;
 }

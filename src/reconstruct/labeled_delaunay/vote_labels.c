@@ -13,12 +13,12 @@
 #include "base/team.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
 #include "reconstruct/labeled_delaunay/vote_region.h"
-#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* TURNS: most cuts; they end with one after which at most 1/FEW of the samples change. FIRST_BITS, PASSES: of the
  * descent. All chosen on generated solids. */
-enum { TURNS = 4, FEW = 10000, FIRST_BITS = 9, PASSES = 3, NODES_A_THREAD = 1 << 12 };
+enum { TURNS = 4, FEW = 10000, FIRST_BITS = 8, PASSES = 3, NODES_A_THREAD = 1 << 12 };
 
 /* A sample is contested if its violated votes are over this share of its votes. Chosen on generated solids. */
 static const double CONTESTED = 0.4;
@@ -33,15 +33,20 @@ typedef struct {
 
 /* --- one turn --- */
 
+/* Returns a weight in whole numbers: a star has less than 2^30 tetrahedra, so the sum of its votes has room. */
+static int64_t whole(float weight) {
+    return (int64_t)(0x1p32 * (double)weight);
+}
+
 /* Returns the sum of the weights of a sample's votes for outer, less those for inner.   all  receives the sum of their
  * magnitudes. */
-static double tally(const voting *v, size_t sample, double *all) {
-    double outer = (double)brio_own_vote(v->g, sample);
-    *all = fabs(outer);
+static int64_t tally(const voting *v, size_t sample, int64_t *all) {
+    int64_t outer = whole(brio_own_vote(v->g, sample));
+    *all = llabs(outer);
     for (size_t i = v->g->first[sample]; i < v->g->first[sample + 1]; i++) {
-        double weight = (double)brio_star_vote(v->g, v->g->star[i]);
+        int64_t weight = whole(brio_star_vote(v->g, v->g->star[i]));
         outer += v->label[brio_star_tet(v->g->star[i])] == BRIO_LABEL_OUTER ? weight : -weight;
-        *all += fabs(weight);
+        *all += llabs(weight);
     }
     return outer;
 }
@@ -49,10 +54,10 @@ static double tally(const voting *v, size_t sample, double *all) {
 static void turn_part(void *user, size_t begin, size_t end, int thread) {
     voting *v = user;
     size_t turned = 0;
-    double all;
+    int64_t all;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        double outer = tally(v, p, &all);
+        int64_t outer = tally(v, p, &all);
         uint8_t label = outer > 0 ? BRIO_LABEL_OUTER : outer < 0 ? BRIO_LABEL_INNER : v->label[v->num_tets + p];
         turned += label != v->label[v->num_tets + p];
         v->label[v->num_tets + p] = label;
@@ -97,8 +102,8 @@ static void free_contested(void *user, size_t begin, size_t end, int thread) {
     const voting *v = user;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        double all, outer = tally(v, p, &all);
-        if (!(all - fabs(outer) > 2 * CONTESTED * all)) continue;
+        int64_t all, outer = tally(v, p, &all);
+        if (!((double)(all - llabs(outer)) > 2 * CONTESTED * (double)all)) continue;
         for (size_t i = v->g->first[p]; i < v->g->first[p + 1]; i++) {
             uint32_t tet = brio_star_tet(v->g->star[i]);
             for (int k = 0; k < 4 && tet < v->num_finite; k++) free_star(v, v->g->dual->t.tet[tet].vertex[k]);

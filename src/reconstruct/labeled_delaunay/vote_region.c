@@ -65,12 +65,16 @@ static void number_nodes(const copier *c) {
     if (c->g->own) c->number[nodes] = (uint32_t)++c->out->count;
 }
 
+/* Finds the place of a sample, or the centroid of a tetrahedron: in whole numbers, so that the order of its samples
+ * does not matter. Coordinates are at most 1. */
 static void place(const brio_vote_graph *g, uint32_t node, double at[3]) {
     const brio_pole_vectors *v = g->dual;
     bool sample = node >= v->t.count;
-    for (int k = 0; k < 3; k++) {
-        at[k] = sample ? v->points[3 * (node - v->t.count) + (size_t)k] : 0;
-        for (int i = 0; i < 4 && !sample; i++) at[k] += v->points[3 * (size_t)v->t.tet[node].vertex[i] + (size_t)k] / 4;
+    for (size_t k = 0; k < 3; k++) {
+        int64_t sum = 0;
+        for (int i = 0; i < 4 && !sample; i++)
+            sum += (int64_t)(0x1p56 * v->points[3 * (size_t)v->t.tet[node].vertex[i] + k]);
+        at[k] = sample ? v->points[3 * (node - v->t.count) + k] : 0x1p-58 * (double)sum;
     }
 }
 

@@ -27,7 +27,7 @@ void brio_vote_region_free(brio_vote_region *r);
 
 /** Returns the region without the arrays that only it has; it must outlive the result. */
 static inline brio_signed_graph brio_vote_region_signs(const brio_vote_region *r) {
-    return (brio_signed_graph){r->ctx, r->count, r->position, r->first, r->edge};
+    return (brio_signed_graph){r->ctx, r->count, r->position, 0, r->first, r->edge};
 }
 
 #endif

@@ -9,15 +9,19 @@
  * patch whose flip is known to deform the boundary only (simple_flips.c) leaves the Euler characteristic, and is not
  * weighed.
  *
- * The energy alone cannot do this, because it knows nothing of topology: it is a sum over tetrahedra and facets. */
+ * The energy alone cannot do this, because it knows nothing of topology: it is a sum over tetrahedra and facets.
+ *
+ * The patches of a cut are listed before any is flipped, and go in the order of their hashes (hash_order.h). So what
+ * becomes of one depends on those beside it, and on no number of a tetrahedron. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "base/memory.h"
+#include "reconstruct/labeled_delaunay/hash_order.h"
 #include "reconstruct/labeled_delaunay/simple_flips.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
 #include <stdlib.h>
 
-/* BIASES: cuts for each label. MOST_PATCH: tetrahedra of a patch. NEARBY: tetrahedra
- * looked at until those next to a patch are connected. All chosen. */
+/* BIASES: cuts for each label. MOST_PATCH: tetrahedra of a patch. NEARBY: while no more tetrahedra were looked at,
+ * their neighbours are, too, until those next to a patch are connected. All chosen. */
 enum { BIASES = 3, MOST_PATCH = BRIO_MOST_SIMPLE, NEARBY = 4096 };
 
 /* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with
@@ -38,8 +42,12 @@ typedef struct {
     uint8_t *leaning; /* #T: the labels of the cut with a bias */
     uint32_t *seen;   /* #T: the last stamp of each tetrahedron */
     uint32_t stamp;
-    uint32_t patch[MOST_PATCH], front[NEARBY];
-    size_t patch_size, removed;
+    uint32_t front[4 * NEARBY];
+    uint32_t *tet;  /* the patches of the cut, one after another */
+    size_t *first;  /* where each begins */
+    uint64_t *hash; /* of each */
+    size_t size, num_patches, room, first_room, hash_room;
+    size_t removed;
 } search;
 
 /* --- patches --- */
@@ -60,38 +68,75 @@ static bool leans(const search *s, uint32_t tet, uint8_t label) {
     return tet < s->f->num_finite && s->f->label[tet] == label && s->leaning[tet] != label;
 }
 
-/* Collects the patch of a tetrahedron, and marks it as done. Returns false if it is too large. */
-static bool collect_patch(search *s, uint32_t first, uint8_t label) {
-    bool fits = true;
-    s->patch[0] = first;
-    s->patch_size = 1;
-    s->leaning[first] = label;
-    for (size_t i = 0; i < s->patch_size; i++)
+/* Sorts the tetrahedra of a patch by their hashes, and returns the hash of the patch. */
+static uint64_t sort_by_hash(const search *s, uint32_t *tet, size_t count) {
+    uint64_t key[MOST_PATCH], sum = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t moved = tet[i];
+        uint64_t hash = brio_tet_hash(s->f->g->dual, moved);
+        size_t at = i;
+        for (; at > 0 && key[at - 1] > hash; at--) key[at] = key[at - 1], tet[at] = tet[at - 1];
+        key[at] = hash, tet[at] = moved;
+        sum += hash;
+    }
+    return sum;
+}
+
+/* Lists the patch of a tetrahedron, and marks it as done. Leaves it out if it is too large. */
+static brio_status list_patch(search *s, uint32_t seed, uint8_t label) {
+    brio_status status = BRIO_OK;
+    size_t begin = s->size;
+    uint64_t hash;
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->tet, s->room, begin + 1));
+    s->tet[s->size++] = seed;
+    s->leaning[seed] = label;
+    for (size_t i = begin; i < s->size; i++) {
+        BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->tet, s->room, s->size + 4));
         for (int k = 0; k < 4; k++) {
-            uint32_t other = brio_tet_of(s->t->tet[s->patch[i]].mate[k]);
+            uint32_t other = brio_tet_of(s->t->tet[s->tet[i]].mate[k]);
             if (!leans(s, other, label)) continue;
-            if (s->patch_size == MOST_PATCH) {
-                fits = false;
-                continue;
-            }
             s->leaning[other] = label;
-            s->patch[s->patch_size++] = other;
+            s->tet[s->size++] = other;
         }
-    return fits;
+    }
+    if (s->size - begin > MOST_PATCH) {
+        s->size = begin;
+        return BRIO_OK;
+    }
+    hash = sort_by_hash(s, s->tet + begin, s->size - begin);
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->first, s->first_room, s->num_patches + 2));
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->hash, s->hash_room, s->num_patches + 1));
+    s->hash[s->num_patches] = hash;
+    s->first[s->num_patches] = begin;
+    s->first[++s->num_patches] = s->size;
+done:
+    return status;
+}
+
+/* Lists the patches of tetrahedra with a label that have the other one if the votes lean to it. */
+static brio_status list_patches(search *s, uint8_t label) {
+    brio_status status = BRIO_OK;
+    s->size = s->num_patches = 0;
+    for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
+        if (leans(s, tet, label)) BRIO_TRY(list_patch(s, tet, label));
+done:
+    return status;
 }
 
 /* --- what a flip does to the topology --- */
 
 /* Marks the tetrahedra with a label next to flips [from, size) with a stamp. Returns their number.
- * first  receives one of them. */
+ * first  receives the one of the least hash. */
 static size_t mark_next_to(search *s, size_t from, uint8_t label, uint32_t stamp, uint32_t *first) {
     size_t count = 0;
+    uint64_t least = 0;
     for (size_t i = from; i < s->f->size; i++)
         for (int k = 0; k < 4; k++) {
             uint32_t other = brio_tet_of(s->t->tet[s->f->flipped[i]].mate[k]);
             if (s->f->label[other] != label || s->seen[other] == stamp) continue;
+            uint64_t hash = brio_tet_hash(s->f->g->dual, other);
+            if (count == 0 || hash < least) least = hash, *first = other;
             s->seen[other] = stamp;
-            *first = other;
             count++;
         }
     return count;
@@ -99,30 +144,34 @@ static size_t mark_next_to(search *s, size_t from, uint8_t label, uint32_t stamp
 
 typedef enum { APART, TOGETHER, NOTHING } neighbours;
 
-/* Returns whether the tetrahedra with a label next to flips are connected nearby, or whether there are none. */
+/* Returns whether the tetrahedra with a label next to flips are connected nearby, or whether there are none. Looks ring
+ * after ring round one of them, each as a whole: so the order within a ring does not matter. */
 static neighbours look_next_to(search *s, size_t from, uint8_t label) {
     uint32_t wanted = ++s->stamp, done = ++s->stamp;
-    size_t size = 1, left = mark_next_to(s, from, label, wanted, s->front);
+    size_t size = 1, ring = 1, left = mark_next_to(s, from, label, wanted, s->front);
     if (left == 0) return NOTHING;
     s->seen[s->front[0]] = done;
     left--;
-    for (size_t i = 0; i < size && left > 0; i++)
+    for (size_t i = 0; i < size && left > 0; i++) {
+        if (i == ring && size > NEARBY) break;
+        if (i == ring) ring = size;
         for (int k = 0; k < 4; k++) {
             uint32_t other = brio_tet_of(s->t->tet[s->front[i]].mate[k]);
-            if (s->f->label[other] != label || s->seen[other] == done || size == NEARBY) continue;
+            if (s->f->label[other] != label || s->seen[other] == done) continue;
             left -= s->seen[other] == wanted;
             s->seen[other] = done;
             s->front[size++] = other;
         }
+    }
     return left == 0 ? TOGETHER : APART;
 }
 
 /* --- one patch --- */
 
-static brio_status flip_patch(search *s) {
+static brio_status flip_patch(search *s, const uint32_t *patch, size_t count) {
     brio_status status = BRIO_OK;
     size_t from = s->f->size;
-    for (size_t i = 0; i < s->patch_size; i++) BRIO_TRY(brio_flip(s->f, s->patch[i]));
+    for (size_t i = 0; i < count; i++) BRIO_TRY(brio_flip(s->f, patch[i]));
     BRIO_TRY(brio_mending_look(s->m, from, s->f->size));
     BRIO_TRY(brio_mend(s->m));
 done:
@@ -138,12 +187,12 @@ static bool is_worth(search *s, uint8_t label, size_t from, int64_t cost, int64_
 }
 
 /* Flips a patch, and takes the flips back unless they are worth their energy. */
-static brio_status weigh_patch(search *s, uint8_t label) {
+static brio_status weigh_patch(search *s, const uint32_t *patch, size_t count, uint8_t label) {
     brio_status status = BRIO_OK;
     size_t from = s->f->size, singular = s->m->singular;
     int64_t energy = s->f->energy, twice = s->f->faces - 2 * s->m->all_fans;
     brio_mending_forget(s->m);
-    BRIO_TRY(flip_patch(s));
+    BRIO_TRY(flip_patch(s, patch, count));
     size_t to = s->f->size;
     twice += 2 * s->m->all_fans - s->f->faces;
     bool worth = s->m->singular <= singular && is_worth(s, label, from, s->f->energy - energy, twice);
@@ -155,15 +204,32 @@ done:
     return status;
 }
 
+/* Leaves out what other patches have flipped since. Returns how many tetrahedra are left. */
+static size_t keep_label(const search *s, uint32_t *patch, size_t count, uint8_t label) {
+    size_t kept = 0;
+    for (size_t i = 0; i < count; i++)
+        if (s->f->label[patch[i]] == label) patch[kept++] = patch[i];
+    return kept;
+}
+
 /* Weighs the patches of tetrahedra with a label that have the other one if the votes lean to it. */
 static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(brio_progress(s->f->ctx, "handles", 1));
+    brio_context *ctx = s->f->ctx;
+    uint32_t *order = NULL;
+    BRIO_TRY(brio_progress(ctx, "handles", 1));
     BRIO_TRY(brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning));
-    for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
-        if (leans(s, tet, label) && collect_patch(s, tet, label) && !brio_flips_deform(s->m, s->patch, s->patch_size))
-            BRIO_TRY(weigh_patch(s, label));
+    BRIO_TRY(list_patches(s, label));
+    BRIO_TRY(BRIO_ALLOC(ctx, order, s->num_patches));
+    for (size_t i = 0; i < s->num_patches; i++) order[i] = (uint32_t)i;
+    BRIO_TRY(brio_radix_sort(ctx, s->hash, order, s->num_patches, 64));
+    for (size_t i = 0; i < s->num_patches; i++) {
+        uint32_t *patch = s->tet + s->first[order[i]];
+        size_t count = keep_label(s, patch, s->first[order[i] + 1] - s->first[order[i]], label);
+        if (count > 0 && !brio_flips_deform(s->m, patch, count)) BRIO_TRY(weigh_patch(s, patch, count, label));
+    }
 done:
+    brio_release(ctx, order);
     return status;
 }
 
@@ -191,6 +257,9 @@ done:
         brio_release(ctx, s->leaning);
         brio_release(ctx, s->open);
         brio_release(ctx, s->seen);
+        brio_release(ctx, s->tet);
+        brio_release(ctx, s->first);
+        brio_release(ctx, s->hash);
     }
     brio_release(ctx, s);
     return status;

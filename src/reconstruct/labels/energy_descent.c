@@ -16,9 +16,8 @@
 #include "reconstruct/labels/roof_duality.h"
 #include <math.h>
 
-/* FEW: the passes end with one that flips at most 1/FEW of all nodes flipped so far. PARTS: sums of the energy that are
- * added up in order. All chosen. */
-enum { FEW = 100, NODES_A_THREAD = 512, PARTS = 256, NODES_A_SUM = 2048 };
+/* FEW: the passes end with one that flips at most 1/FEW of all nodes flipped so far. All chosen. */
+enum { FEW = 100, NODES_A_THREAD = 512, NODES_A_SUM = 2048 };
 
 typedef struct {
     const brio_signed_graph *g;
@@ -111,38 +110,34 @@ brio_status brio_lower_energy(const brio_signed_graph *g, const uint8_t *fixed, 
 
 /* --- energy --- */
 
-/* Sums |weight| over the violated edges from node p to nodes of higher number, so that each edge counts once. */
-static double violated_at(const brio_signed_graph *g, const uint8_t *label, size_t p) {
-    double sum = 0;
+/* Sums |weight| over the violated edges from node p to nodes of higher number, so that each edge counts once. In whole
+ * numbers: sums have room for 2^33 edges. */
+static int64_t violated_at(const brio_signed_graph *g, const uint8_t *label, size_t p) {
+    int64_t sum = 0;
     for (size_t e = g->first[p]; e < g->first[p + 1]; e++)
         if (g->edge[e].node > p && brio_label_violates(label, (uint32_t)p, g->edge[e]))
-            sum += fabs((double)g->edge[e].weight);
+            sum += (int64_t)(0x1p28 * fabs((double)g->edge[e].weight) + 0.5);
     return sum;
 }
 
 typedef struct {
     const brio_signed_graph *g;
     const uint8_t *label;
-    double part[PARTS];
+    int64_t all;
 } energy;
 
-static void sum_parts(void *user, size_t begin, size_t end, int thread) {
+static void sum_nodes(void *user, size_t begin, size_t end, int thread) {
     energy *e = user;
+    int64_t sum = 0;
     (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        size_t to = brio_part(e->g->count, (int)i + 1, PARTS);
-        double sum = 0;
-        for (size_t p = brio_part(e->g->count, (int)i, PARTS); p < to; p++) sum += violated_at(e->g, e->label, p);
-        e->part[i] = sum;
-    }
+    for (size_t p = begin; p < end; p++) sum += violated_at(e->g, e->label, p);
+    __atomic_fetch_add(&e->all, sum, __ATOMIC_RELAXED);
 }
 
-/* Sums in PARTS parts for every number of threads, so that the rounding does not depend on the threads. */
+/* Adds whole numbers, so that the sum does not depend on the threads. */
 brio_status brio_label_energy(const brio_signed_graph *g, const uint8_t *label, double *out) {
     energy e = {.g = g, .label = label};
-    double sum = 0;
-    brio_status status = brio_for_chunks(g->ctx, brio_threads(g->ctx, g->count, NODES_A_SUM), PARTS, 1, sum_parts, &e);
-    for (int i = 0; status == BRIO_OK && i < PARTS; i++) sum += e.part[i];
-    *out = sum;
+    brio_status status = brio_for(g->ctx, brio_threads(g->ctx, g->count, NODES_A_SUM), g->count, sum_nodes, &e);
+    *out = 0x1p-28 * (double)e.all;
     return status;
 }

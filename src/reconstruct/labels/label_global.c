@@ -2,12 +2,13 @@
  * labels contradict, with the balanced weights of the graph of poles. It starts from the greedy labels, which
  * energy_descent.c improves. */
 #include "base/memory.h"
+#include "base/scale.h"
 #include "reconstruct/labels/labeling.h"
 #include <math.h>
 #include <string.h>
 
 /* All chosen: see brio_energy_descent. */
-enum { PASSES = 5, FIRST_BITS = 9 };
+enum { PASSES = 5, FIRST_BITS = 8 };
 
 /* Sets a pole to outer and certain if its centre is beyond the samples' bounding box by half its radius or more
  * (docs/decisions/008-balanced-weights.md). Five sixths of such a ball are outside the box, and a solid is inside the
@@ -33,6 +34,7 @@ brio_status brio_label_global(const brio_pole_graph *g, uint8_t *label, brio_lab
     brio_signed_graph signs = brio_pole_signs(g);
     brio_energy_descent descent = {.first_bits = FIRST_BITS, .passes = PASSES, .from = 0.6};
     uint8_t *before = NULL, *certain = NULL;
+    signs.exponent = brio_exponent(brio_greatest(signs.position, 3 * n));
     BRIO_TRY(brio_label_greedy(g, label, stats));
     BRIO_TRY(BRIO_ALLOC(g->ctx, certain, n));
     BRIO_TRY(BRIO_ALLOC(g->ctx, before, n));

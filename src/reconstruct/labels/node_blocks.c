@@ -1,21 +1,31 @@
 /* Blocks of nodes for the improvement of labels.
  *
  * Only nodes near violated edges take part, because a set of nodes whose flip lowers the energy has a violated edge on
- * its border. The nodes are sorted along a Hilbert curve through a cube at a random place, and the sorted list is cut
- * into runs. Poles that one cube separates, another cube keeps together. Two blocks that an edge joins must not change
- * at the same time, so the blocks are coloured, and a colour is a round. */
+ * its border. Space is halved at multiples of powers of two, in x, y and z in turn, until a cell has few nodes: a cell
+ * is a block. The grid is shifted by a random vector. Nodes that one grid separates, another one keeps together. Two
+ * blocks that an edge joins must not change at the same time, so the blocks are coloured, and a colour is a round. The
+ * order in which blocks choose colours is that of a hash of their cells.
+ *
+ * So a block depends on the nodes of its cell and of the cell twice as large, and its round on blocks beside it that
+ * have less hashes, and so on along a chain, which is short. Nodes elsewhere change neither.
+ *
+ * Based on: Morton. A computer oriented geodetic data base and a new technique in file sequencing. IBM 1966 (the order
+ *           in which cells are lists of neighbours).
+ *           Jones, Plassmann. A parallel graph coloring heuristic. SIAM J. Sci. Comput. 1993 (hashes as
+ *           priorities). */
 #include "reconstruct/labels/node_blocks.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/scale.h"
 #include "base/sort.h"
 #include "base/team.h"
-#include "order/hilbert.h"
+#include "predicates/predicates.h"
 #include <math.h>
 #include <string.h>
 
-/* HOPS: a node of a block is at most this many edges from a node with a violated edge. CURVE_BITS: the curve has
- * 2^CURVE_BITS cells on each side of the cube. All are chosen, except OUTSIDE. */
-enum { HOPS = 3, OUTSIDE = 255, CURVE_BITS = 11, NODES_A_THREAD = 1024, NODES_A_CHUNK = 1024 };
+/* HOPS: a node of a block is at most this many edges from a node with a violated edge. Chosen, as the next two.
+ * GRID_BITS: of each coordinate on the grid. LEVELS: of halvings in one direction, so that all fit into a key. */
+enum { HOPS = 3, OUTSIDE = 255, NODES_A_THREAD = 1024, NODES_A_CHUNK = 1024, GRID_BITS = 60, LEVELS = 21 };
 
 /* What one thread finds: the pairs of blocks that an edge joins, as higher number << 32 | lower number. */
 typedef struct {
@@ -25,14 +35,24 @@ typedef struct {
 } joiner;
 
 typedef struct {
+    uint64_t hash; /* of its cell */
+    size_t begin, end;
+} found_block;
+
+typedef struct {
     const brio_signed_graph *g;
     const uint8_t *label, *fixed;
     int threads;     /* of all loops here */
     uint8_t hop;     /* the depth of the nodes whose neighbours are reached now */
     joiner *joiners; /* one for each thread */
     brio_status joined;
-    double *points;   /* positions of the nodes of the region, and two corners of the cube */
-    uint8_t *depth;   /* #nodes: edges from the nearest node with a violated edge, or OUTSIDE */
+    uint64_t shift[3];   /* of the grid */
+    uint64_t (*cell)[3]; /* of each node of the region: where it is on the grid; then the keys alone */
+    int top;             /* the highest bit in which these differ */
+    uint64_t *key;       /* of each node of the region: its cells of all levels, the largest first */
+    uint8_t *depth;      /* #nodes: edges from the nearest node with a violated edge, or OUTSIDE */
+    found_block *found;
+    size_t num_found, found_room;
     uint8_t *trouble; /* #blocks: 1 if one of the block's nodes has a violated edge */
     uint64_t *pair;   /* the pairs of all threads, sorted */
     size_t num_pairs;
@@ -96,49 +116,137 @@ done:
     return status;
 }
 
-/* --- along a curve --- */
+/* --- cells --- */
 
-/* Appends two opposite corners of a cube to the n points. The cube has twice the size of the points and contains them
- * at a random place. */
-static void draw_cube(double *points, size_t n, uint64_t draw) {
-    double low[3], high[3], side = 0;
-    for (size_t k = 0; k < 3; k++) {
-        low[k] = high[k] = points[k];
-        for (size_t i = 1; i < n; i++) {
-            low[k] = points[3 * i + k] < low[k] ? points[3 * i + k] : low[k];
-            high[k] = points[3 * i + k] > high[k] ? points[3 * i + k] : high[k];
-        }
-        side = fmax(side, high[k] - low[k]);
-    }
-    brio_rng rng = brio_rng_new(draw);
-    for (size_t k = 0; k < 3; k++) {
-        points[3 * n + k] = low[k] - side * brio_rng_double(&rng);
-        points[3 * n + 3 + k] = points[3 * n + k] + 2 * side;
-    }
+static uint64_t on_grid(const finder *f, uint32_t node, int k) {
+    double x = f->g->position[3 * (size_t)node + (size_t)k] * brio_scale_to_one(f->g->exponent);
+    x = fmax(-1, fmin(1, x)) * (double)(INT64_C(1) << GRID_BITS);
+    return f->shift[k] + (uint64_t)((INT64_C(1) << GRID_BITS) + (int64_t)x);
 }
 
-static void copy_positions(void *user, size_t begin, size_t end, int thread) {
+static void find_places(void *user, size_t begin, size_t end, int thread) {
     const finder *f = user;
     (void)thread;
     for (size_t i = begin; i < end; i++)
-        memcpy(f->points + 3 * i, f->g->position + 3 * (size_t)f->out->node[i], 3 * sizeof *f->points);
+        for (int k = 0; k < 3; k++) f->cell[i][k] = on_grid(f, f->out->node[i], k);
 }
 
-static brio_status sort_along_curve(finder *f, uint64_t draw) {
+/* Returns the 3 * LEVELS bits that say in which half a node is, at each level in x, y and z, from the top down. */
+static uint64_t key_of(const finder *f, const uint64_t cell[3]) {
+    uint64_t key = 0;
+    for (int level = 0; level < LEVELS; level++)
+        for (int k = 0; k < 3; k++) key = key << 1 | (f->top < level ? 0 : cell[k] >> (f->top - level) & 1);
+    return key;
+}
+
+static void find_keys(void *user, size_t begin, size_t end, int thread) {
+    const finder *f = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) f->key[i] = key_of(f, f->cell[i]);
+}
+
+/* Finds the highest bit in which nodes differ. */
+static void find_top(finder *f) {
+    uint64_t differ = 0;
+    for (size_t i = 1; i < f->out->count; i++)
+        for (int k = 0; k < 3; k++) differ |= f->cell[i][k] ^ f->cell[0][k];
+    f->top = 0;
+    while (differ >> f->top > 1) f->top++;
+}
+
+static brio_status sort_by_cells(finder *f, uint64_t draw) {
     brio_status status = BRIO_OK;
     brio_node_blocks *b = f->out;
-    uint64_t *keys = NULL;
-    size_t n = b->count;
-    BRIO_TRY(BRIO_ALLOC(b->ctx, f->points, 3 * (n + 2)));
-    BRIO_TRY(BRIO_ALLOC(b->ctx, keys, n + 2));
-    BRIO_TRY(brio_for(b->ctx, f->threads, n, copy_positions, f));
-    draw_cube(f->points, n, draw);
-    BRIO_TRY(brio_hilbert_keys(b->ctx, f->points, n + 2, CURVE_BITS, keys));
-    BRIO_TRY(brio_radix_sort(b->ctx, keys, b->node, n, 3 * CURVE_BITS));
+    brio_rng rng = brio_rng_new(draw);
+    for (int k = 0; k < 3; k++) f->shift[k] = brio_rng_next(&rng) >> (64 - GRID_BITS);
+    BRIO_TRY(BRIO_ALLOC(b->ctx, f->cell, b->count));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, f->key, b->count));
+    BRIO_TRY(brio_for(b->ctx, f->threads, b->count, find_places, f));
+    find_top(f);
+    BRIO_TRY(brio_for(b->ctx, f->threads, b->count, find_keys, f));
+    brio_release(b->ctx, f->cell);
+    f->cell = NULL;
+    BRIO_TRY(brio_radix_sort(b->ctx, f->key, b->node, b->count, 3 * LEVELS));
 done:
-    brio_release(b->ctx, f->points);
-    f->points = NULL;
-    brio_release(b->ctx, keys);
+    return status;
+}
+
+/* Appends a block.   levels  how often its cell was halved. */
+static brio_status add_block(finder *f, size_t begin, size_t end, int levels) {
+    brio_status status = BRIO_OK;
+    brio_node_blocks *b = f->out;
+    uint64_t hash = 0;
+    BRIO_TRY(BRIO_RESERVE(b->ctx, f->found, f->found_room, f->num_found + 1));
+    for (int k = 0; k < 3; k++) {
+        int low = f->top + 1 - (levels + 2 - k) / 3;
+        hash = brio_hash(hash, on_grid(f, b->node[begin], k) >> (low > 0 ? low : 0));
+        hash = brio_hash(hash, (uint64_t)low);
+    }
+    f->found[f->num_found++] = (found_block){hash, begin, end};
+done:
+    return status;
+}
+
+static int compare_positions(uint32_t a, uint32_t b, const void *user) {
+    const double *position = user;
+    return brio_lexicographic(position + 3 * (size_t)a, position + 3 * (size_t)b);
+}
+
+/* Halves a cell until no part has over 2^bits nodes. Where nodes are too close together for that, their positions in
+ * ascending order are cut into runs.   levels  how often it was halved. */
+static brio_status halve(finder *f, size_t begin, size_t end, int levels) {
+    brio_status status = BRIO_OK;
+    size_t most = (size_t)1 << f->out->bits;
+    while (end - begin > most && levels < 3 * LEVELS) {
+        uint64_t bit = UINT64_C(1) << (3 * LEVELS - 1 - levels++);
+        size_t low = begin, high = end;
+        while (low < high) {
+            size_t middle = low + (high - low) / 2;
+            if (f->key[middle] & bit)
+                high = middle;
+            else
+                low = middle + 1;
+        }
+        if (low == begin || low == end) continue;
+        BRIO_TRY(halve(f, begin, low, levels));
+        begin = low;
+    }
+    if (end - begin > most)
+        BRIO_TRY(
+            brio_sort_many_indices(f->out->ctx, f->out->node + begin, end - begin, compare_positions, f->g->position));
+    for (size_t next; begin < end; begin = next) {
+        next = end - begin > most ? begin + most : end;
+        BRIO_TRY(add_block(f, begin, next, levels));
+    }
+done:
+    return status;
+}
+
+static int compare_blocks(uint32_t a, uint32_t b, const void *user) {
+    const found_block *x = (const found_block *)user + a, *y = (const found_block *)user + b;
+    if (x->hash != y->hash) return x->hash < y->hash ? -1 : 1;
+    return (x->begin > y->begin) - (x->begin < y->begin);
+}
+
+/* Divides the region into blocks, and numbers them in the order of their hashes. */
+static brio_status list_blocks(finder *f) {
+    brio_status status = BRIO_OK;
+    brio_node_blocks *b = f->out;
+    uint32_t *order = NULL;
+    BRIO_TRY(b->count > 0 ? halve(f, 0, b->count, 0) : BRIO_OK);
+    b->num_blocks = f->num_found;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, order, b->num_blocks));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, b->begin, b->num_blocks));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, b->end, b->num_blocks));
+    BRIO_TRY(BRIO_ALLOC(b->ctx, b->of, b->count));
+    for (size_t i = 0; i < b->num_blocks; i++) order[i] = (uint32_t)i;
+    BRIO_TRY(brio_sort_many_indices(b->ctx, order, b->num_blocks, compare_blocks, f->found));
+    for (uint32_t i = 0; i < b->num_blocks; i++) {
+        b->begin[i] = f->found[order[i]].begin, b->end[i] = f->found[order[i]].end;
+        for (size_t n = b->begin[i]; n < b->end[i]; n++) b->of[n] = i;
+    }
+done:
+    brio_release(b->ctx, order);
     return status;
 }
 
@@ -155,10 +263,9 @@ static brio_status set_places(const finder *f) {
 
 static brio_status find_trouble(finder *f) {
     brio_node_blocks *b = f->out;
-    b->num_blocks = (b->count + ((size_t)1 << b->bits) - 1) >> b->bits;
     brio_status status = BRIO_ALLOC_ZERO(b->ctx, f->trouble, b->num_blocks);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < b->count; i++) f->trouble[i >> b->bits] |= f->depth[b->node[i]] == 0;
+    for (size_t i = 0; i < b->count; i++) f->trouble[b->of[i]] |= f->depth[b->node[i]] == 0;
     return BRIO_OK;
 }
 
@@ -167,10 +274,10 @@ static brio_status join(const finder *f, joiner *j, uint32_t block) {
     const brio_signed_graph *g = f->g;
     const brio_node_blocks *b = f->out;
     brio_status status = BRIO_OK;
-    for (size_t i = brio_node_block_begin(b, block); i < brio_node_block_begin(b, block + 1); i++)
+    for (size_t i = b->begin[block]; i < b->end[block]; i++)
         for (size_t e = g->first[b->node[i]]; e < g->first[b->node[i] + 1]; e++) {
-            uint32_t place = b->place[g->edge[e].node], other = place >> b->bits;
-            if (place == BRIO_NO_PLACE || other >= block || j->seen[other] == block + 1 || !f->trouble[other]) continue;
+            uint32_t place = b->place[g->edge[e].node], other = place == BRIO_NO_PLACE ? block : b->of[place];
+            if (other >= block || j->seen[other] == block + 1 || !f->trouble[other]) continue;
             j->seen[other] = block + 1;
             BRIO_TRY(BRIO_RESERVE(b->ctx, j->pair, j->capacity, j->count + 1));
             j->pair[j->count++] = (uint64_t)block << 32 | other;
@@ -269,11 +376,15 @@ brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *lab
     finder f = {.g = g, .label = label, .fixed = fixed, .threads = threads, .out = out};
     *out = (brio_node_blocks){.ctx = g->ctx, .bits = bits};
     BRIO_TRY(list_region(&f));
-    if (out->count > (size_t)1 << bits) BRIO_TRY(sort_along_curve(&f, draw));
+    BRIO_TRY(sort_by_cells(&f, draw));
+    BRIO_TRY(list_blocks(&f));
     BRIO_TRY(set_places(&f));
     BRIO_TRY(divide_into_rounds(&f));
 done:
     brio_release(g->ctx, f.depth);
+    brio_release(g->ctx, f.cell);
+    brio_release(g->ctx, f.key);
+    brio_release(g->ctx, f.found);
     brio_release(g->ctx, f.trouble);
     brio_release(g->ctx, f.pair);
     return status;
@@ -282,6 +393,9 @@ done:
 void brio_node_blocks_free(brio_node_blocks *b) {
     brio_release(b->ctx, b->node);
     brio_release(b->ctx, b->place);
+    brio_release(b->ctx, b->of);
+    brio_release(b->ctx, b->begin);
+    brio_release(b->ctx, b->end);
     brio_release(b->ctx, b->first_round);
     brio_release(b->ctx, b->block);
 }

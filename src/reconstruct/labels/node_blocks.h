@@ -4,35 +4,33 @@
 
 #include "reconstruct/labels/signed_graph.h"
 
-/** Block b has the nodes node[b << bits] to node[((b + 1) << bits) - 1]; the last block may have fewer.
+/** Block b has the nodes node[begin[b]] to node[end[b] - 1], at most 2^bits.
  *  I1  No edge of the graph joins two blocks of a round, so threads can work on the blocks of a round side by side.
  *  I2  A block is in one round if an edge of one of its nodes is violated, otherwise in none.
- *  I3  Nothing here depends on the number of threads. */
+ *  I3  Nothing here depends on the number of threads. The blocks and their rounds depend on the positions of nodes, and
+ *      not on their numbers. */
 typedef struct {
     brio_context *ctx;
     size_t count;    /* of all blocks together */
     uint32_t *node;  /* count: the nodes, block after block */
     uint32_t *place; /* #nodes of the graph: the index of the node in node[], or BRIO_NO_PLACE */
+    uint32_t *of;    /* count: the block of node[i] */
     int bits;
     size_t num_blocks, num_rounds;
+    size_t *begin, *end; /* #blocks */
     size_t *first_round; /* #rounds + 1: round r is block[first_round[r]] to block[first_round[r + 1] - 1] */
     uint32_t *block;
 } brio_node_blocks;
 
 enum { BRIO_NO_PLACE = UINT32_MAX };
 
-/** Divides the nodes that are at most 3 edges away from a violated edge into blocks of 2^bits nodes that are near each
- *  other. Poles p with fixed[p] != 0 are left out.
+/** Divides the nodes that are at most 3 edges away from a violated edge into blocks of at most 2^bits nodes that are
+ *  near each other. Poles p with fixed[p] != 0 are left out.
  *  draw  the seed that places the borders between blocks.
  *  out   to be freed with brio_node_blocks_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
                                   uint64_t draw, brio_node_blocks *out);
 void brio_node_blocks_free(brio_node_blocks *b);
-
-/** Returns the index in node[] where a block begins. The block ends where the next block begins. */
-static inline size_t brio_node_block_begin(const brio_node_blocks *b, size_t block) {
-    return block < b->num_blocks ? block << b->bits : b->count;
-}
 
 #endif

@@ -74,8 +74,8 @@ done:
 static brio_status list_block(brio_roof *r, const brio_signed_graph *g, const brio_node_blocks *b, size_t block,
                               const uint8_t *label) {
     brio_status status = BRIO_OK;
-    size_t begin = brio_node_block_begin(b, block);
-    r->size = (uint32_t)(brio_node_block_begin(b, block + 1) - begin);
+    size_t begin = b->begin[block];
+    r->size = (uint32_t)(b->end[block] - begin);
     r->num_near = 0;
     BRIO_TRY(BRIO_RESERVE(g->ctx, r->node, r->node_capacity, r->size));
     BRIO_TRY(BRIO_RESERVE(g->ctx, r->settled, r->settled_capacity, r->size));
@@ -157,7 +157,7 @@ static void flip(brio_roof *r, uint8_t *label) {
 brio_status brio_roof_settle(brio_roof *r, const brio_signed_graph *g, const brio_node_blocks *b, size_t block,
                              uint8_t *label) {
     brio_status status = BRIO_OK;
-    const uint32_t *node = b->node + brio_node_block_begin(b, block);
+    const uint32_t *node = b->node + b->begin[block];
     BRIO_TRY(list_block(r, g, b, block, label));
     settle_nodes(r);
     number_open(r);

@@ -16,6 +16,7 @@ typedef struct {
     brio_context *ctx;
     size_t count;           /* of nodes */
     const double *position; /* #nodes by 3: nodes that an edge joins should be near each other */
+    int exponent;           /* positions are below 2^exponent */
     const size_t *first;    /* #nodes + 1: the edges of node p are edge[first[p]] to edge[first[p + 1] - 1] */
     const brio_signed_edge *edge;
 } brio_signed_graph;

@@ -23,6 +23,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "base/vector.h"
+#include "base/scale.h"
 #include "mesh/twins.h"
 #include "reconstruct/cocone/triangle.h"
 #include "reconstruct/labels/max_flow.h"
@@ -74,6 +75,7 @@ typedef struct {
     int32_t *rim;      /* 3 #F: of the edge of each half-edge */
     uint8_t *part;
     uint32_t *queue; /* the triangles of all holes, one hole after another */
+    brio_sum_unit of_areas, of_usual_areas;
     brio_hole_list *holes;
 } cutting;
 
@@ -155,20 +157,49 @@ static uint64_t bits_of(double x) {
     return bits;
 }
 
+static double usual_area_of(const cutting *c, size_t f) {
+    return area_of(c->net, f) / c->usual[f] / c->usual[f];
+}
+
+/* Finds the units that areas are summed in: of all triangles, and of those in holes against what is usual there. */
+static void find_units(cutting *c) {
+    double area = 0, usual = 0;
+    for (size_t f = 0; f < c->net->num_faces; f++) {
+        area = fmax(area, area_of(c->net, f));
+        if (c->part[f] == BRIO_TRIANGLE_GONE && isfinite(usual_area_of(c, f))) usual = fmax(usual, usual_area_of(c, f));
+    }
+    c->of_areas = brio_sum_unit_for(area, c->net->num_faces);
+    c->of_usual_areas = brio_sum_unit_for(usual, c->net->num_faces);
+}
+
+/* The sums over the triangles of a hole, in units. */
+typedef struct {
+    int64_t area, facing, viewing, usual_area;
+} hole_sums;
+
+static void take_sums(const cutting *c, const hole_sums *s, brio_hole *hole) {
+    hole->area = (double)s->area * c->of_areas.unit;
+    hole->usual_area = (double)s->usual_area * c->of_usual_areas.unit;
+    hole->facing = s->area > 0 ? (double)s->facing / (double)s->area : 1;
+    hole->viewing = s->area > 0 ? (double)s->viewing / (double)s->area : 1;
+}
+
 /* Lists the triangles of the hole of f in the queue, from `begin` to *end, and measures it. */
 static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *end) {
     brio_hole hole = {.widest = f};
+    hole_sums sums = {0};
     c->part[f] = BRIO_TRIANGLE_BRIDGE;
     c->queue[begin] = f;
     *end = begin + 1;
     for (size_t i = begin; i < *end; i++) {
         uint32_t g = c->queue[i];
         double ratio = c->radius[g] / c->usual[g], area = area_of(c->net, g);
-        if (ratio > hole.ratio) hole.ratio = ratio, hole.widest = g;
-        hole.area += area;
-        hole.facing += area * brio_net_facing(c->net, g);
-        hole.viewing += area * brio_net_viewing(c->net, g);
-        hole.usual_area += area / c->usual[g] / c->usual[g];
+        bool ties = ratio == hole.ratio && brio_net_hash(c->net, g) < brio_net_hash(c->net, hole.widest);
+        if (ratio > hole.ratio || ties) hole.ratio = ratio, hole.widest = g;
+        sums.area += brio_in_units(c->of_areas, area);
+        sums.facing += brio_in_units(c->of_areas, area * brio_net_facing(c->net, g));
+        sums.viewing += brio_in_units(c->of_areas, area * brio_net_viewing(c->net, g));
+        sums.usual_area += brio_in_units(c->of_usual_areas, usual_area_of(c, g));
         hole.open |= c->rule->choice == BRIO_HOLES_WIDER && c->radius[g] > c->rule->most;
         for (uint32_t k = 0; k < 3; k++) {
             if (!brio_net_has_twin(c->net, 3 * (size_t)g + k)) continue;
@@ -178,8 +209,7 @@ static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *e
             c->queue[(*end)++] = other;
         }
     }
-    hole.facing = hole.area > 0 ? hole.facing / hole.area : 1;
-    hole.viewing = hole.area > 0 ? hole.viewing / hole.area : 1;
+    take_sums(c, &sums, &hole);
     return hole;
 }
 
@@ -211,15 +241,16 @@ done:
  * area. Holes behind whose rims samples go on prove nothing. */
 static double proof_of(const cutting *c) {
     const brio_hole_list *l = c->holes;
-    double all = 0, unlikely = 0, proof = 0;
-    for (size_t f = 0; f < c->net->num_faces; f++) all += area_of(c->net, f);
+    double proof = 0;
+    int64_t all = 0, unlikely = 0;
+    for (size_t f = 0; f < c->net->num_faces; f++) all += brio_in_units(c->of_areas, area_of(c->net, f));
     for (size_t i = 0; i < l->count; i++) {
         const brio_hole *h = &l->hole[i];
         if (!h->unlikely || h->beyond > BEYOND) continue;
-        unlikely += h->area;
+        unlikely += (int64_t)(h->area / c->of_areas.unit);
         proof = fmax(proof, fmin(h->ratio / PROOF, h->usual_area / PROOF_AREA));
     }
-    return all > 0 ? fmax(proof, unlikely / (PROOF_SHARE * all)) : proof;
+    return all > 0 ? fmax(proof, (double)unlikely / (PROOF_SHARE * (double)all)) : proof;
 }
 
 /* Finds how wide circles outside of unlikely holes are, against what is usual there: all but a hundredth are under it.
@@ -267,10 +298,11 @@ done:
     return status;
 }
 
-static brio_status list_holes(const cutting *c) {
+static brio_status list_holes(cutting *c) {
     brio_status status = BRIO_OK;
     brio_hole_list *l = c->holes;
     size_t *end = NULL, capacity = 0, listed = 0;
+    find_units(c);
     for (uint32_t f = 0; f < c->net->num_faces; f++) {
         if (c->part[f] != BRIO_TRIANGLE_GONE) continue;
         BRIO_TRY(BRIO_RESERVE(l->ctx, l->hole, l->capacity, l->count + 1));

@@ -10,6 +10,7 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/vector.h"
+#include "base/scale.h"
 #include "mesh/twins.h"
 #include "reconstruct/cocone/triangle.h"
 #include "reconstruct/open_surface/face_sizes.h"
@@ -81,9 +82,14 @@ static void report_largest(const brio_triangle_net *n, const double *radius, con
             (brio_net_corner(n, 3 * f)[k] + brio_net_corner(n, 3 * f + 1)[k] + brio_net_corner(n, 3 * f + 2)[k]) / 3;
 }
 
+static bool is_larger(const brio_triangle_net *n, const brio_hole *a, const brio_hole *b) {
+    return a->area != b->area ? a->area > b->area : brio_net_hash(n, a->widest) < brio_net_hash(n, b->widest);
+}
+
 static void report_unseen(const brio_triangle_net *n, const double *radius, const double *usual, const uint8_t *part,
                           const brio_hole_list *holes, brio_unseen *out) {
-    double all = 0, bridges = 0, distant = 0;
+    double greatest = 0;
+    int64_t all = 0, bridges = 0, distant = 0;
     const brio_hole *largest = NULL;
     *out = (brio_unseen){.proof = holes->proof};
     for (size_t i = 0; i < holes->count; i++) {
@@ -92,18 +98,20 @@ static void report_unseen(const brio_triangle_net *n, const double *radius, cons
             out->holes++;
         else if (h->unlikely && part[h->widest] != BRIO_TRIANGLE_GONE) {
             out->bridges++;
-            if (!largest || h->area > largest->area) largest = h;
+            if (!largest || is_larger(n, h, largest)) largest = h;
         }
     }
+    for (size_t f = 0; f < n->num_faces; f++) greatest = fmax(greatest, area_of(n, f));
+    brio_sum_unit unit = brio_sum_unit_for(greatest, n->num_faces);
     for (size_t f = 0; f < n->num_faces; f++) {
         if (part[f] == BRIO_TRIANGLE_GONE) continue;
         double area = area_of(n, f);
-        all += area;
-        if (part[f] == BRIO_TRIANGLE_BRIDGE) bridges += area;
-        if (radius[f] > FAR * usual[f]) distant += area * far_share_of(n, f, FAR * usual[f]);
+        all += brio_in_units(unit, area);
+        if (part[f] == BRIO_TRIANGLE_BRIDGE) bridges += brio_in_units(unit, area);
+        if (radius[f] > FAR * usual[f]) distant += brio_in_units(unit, area * far_share_of(n, f, FAR * usual[f]));
     }
-    out->bridge_share = all > 0 ? bridges / all : 0;
-    out->far_share = all > 0 ? distant / all : 0;
+    out->bridge_share = all > 0 ? (double)bridges / (double)all : 0;
+    out->far_share = all > 0 ? (double)distant / (double)all : 0;
     if (largest) report_largest(n, radius, largest, out);
 }
 

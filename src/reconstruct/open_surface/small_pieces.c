@@ -14,7 +14,7 @@
 
 /* Chosen. */
 enum { SPECK = 2 };
-static const double CRUMB = 0.01, FEW = 0.05, ROUGH = 0.15;
+static const double CRUMB = 0.01, FEW = 0.05, ROUGH = 0.15, BEND_UNIT = 0x1p30;
 
 typedef struct {
     size_t begin, end; /* of the list of triangles */
@@ -74,14 +74,14 @@ done:
 /* Returns whether a piece is rough. */
 static bool is_rough(const sieve *s, const piece *p) {
     const brio_triangle_net *n = s->net;
-    double bend = 0, edges = 0;
+    int64_t bend = 0, edges = 0; /* bend: in whole numbers, so that the order does not matter */
     for (size_t i = p->begin; i < p->end; i++)
         for (uint32_t k = 0; k < 3; k++) {
             uint32_t f = s->list[i], twin = n->twin[3 * f + k];
             if (twin == BRIO_NO_HALF_EDGE || s->part[twin / 3] == BRIO_TRIANGLE_GONE) continue;
-            bend += bend_between(n, f, twin / 3), edges++;
+            bend += (int64_t)(BEND_UNIT * bend_between(n, f, twin / 3)), edges++;
         }
-    return edges <= 0 || bend > ROUGH * edges;
+    return edges <= 0 || (double)bend > BEND_UNIT * ROUGH * (double)edges;
 }
 
 static bool is_crumb(const sieve *s, const piece *p, size_t largest, size_t least) {

@@ -2,6 +2,7 @@
 #ifndef BRIO_RECONSTRUCT_TRIANGLE_NET_H
 #define BRIO_RECONSTRUCT_TRIANGLE_NET_H
 
+#include "base/sort.h"
 #include "mesh/twins.h"
 
 /** A manifold of triangles whose vertices are samples. Half-edges are those of mesh/twins.h. */
@@ -37,6 +38,14 @@ brio_status brio_net_leaving(const brio_triangle_net *n, size_t **first, uint32_
 /** Returns whether a triangle is on the other side of a half-edge's edge. */
 static inline bool brio_net_has_twin(const brio_triangle_net *n, size_t half_edge) {
     return n->twin[half_edge] != BRIO_NO_HALF_EDGE;
+}
+
+/** Returns a hash of the positions of a triangle's corners, whatever their order: it decides between triangles that
+ *  tie. */
+static inline uint64_t brio_net_hash(const brio_triangle_net *n, size_t face) {
+    uint64_t sum = 0;
+    for (size_t k = 0; k < 3; k++) sum += brio_position_hash(brio_net_corner(n, 3 * face + k));
+    return brio_mix(sum);
 }
 
 /** Writes the unit normal of a triangle, 0 if its corners are collinear. */
