@@ -152,13 +152,17 @@ missing_peers() {
         has npm || echo nodejs npm
         return 0
     fi
-    case $1 in build | model | pythons | npm | threads | mpi | analyze | fuzz | coverage | oracles | quality | site | deb) return 0 ;; esac
+    case $1 in build | model | npm | threads | mpi | analyze | fuzz | coverage | oracles | quality | site | deb) return 0 ;; esac
     if [ "$1" = machines ]; then
         has clang || echo clang
         has musl-gcc || echo musl-tools
         has aarch64-linux-gnu-gcc || echo gcc-aarch64-linux-gnu libc6-dev-arm64-cross
         has s390x-linux-gnu-gcc || echo gcc-s390x-linux-gnu libc6-dev-s390x-cross
         has qemu-s390x || echo qemu-user
+        return 0
+    fi
+    if [ "$1" = pythons ]; then
+        [ -f "/lib/ld-musl-$(uname -m).so.1" ] || echo musl
         return 0
     fi
     if [ "$1" = recipes ]; then
