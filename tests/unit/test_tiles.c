@@ -239,7 +239,6 @@ static uint64_t hash_parts(size_t n, int threads) {
         brio_tile_part_free(ctx, &p);
     }
     EXPECT(brio_tiles_facts(t)->asked > 0);
-    hash = brio_hash(hash, brio_tiles_facts(t)->asked ^ brio_tiles_facts(t)->found << 32);
     brio_tiles_free(t);
     brio_context_free(ctx);
     return hash;
