@@ -307,13 +307,13 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     brio_status status = BRIO_OK;
     brio_tiles *t = NULL;
     tables out = {.r = r};
-    TRY(cli_triangulate_tiles(r, &a->weights, a->tiles, true, &t));
+    TRY(cli_triangulate_tiles(r, &a->weights, a->tiles, a->faces ? 1 : 3, &t));
     uint64_t vertices = brio_tiles_facts(t)->vertices;
     if (r->common.output) TRY(brio_cells_table_new(r->ctx, r->common.output, format, vertices, &out.cells));
     if (a->faces) TRY(brio_cells_table_new(r->ctx, a->faces, BRIO_CELLS_FORMAT_FACES_CSV, vertices, &out.faces));
     if (out.cells) cli_tell_idle(r, r->common.output, format != BRIO_CELLS_FORMAT_NPY, false);
     if (out.faces) cli_tell_idle(r, a->faces, true, false);
-    brio_status ended = brio_tiles_cells(r->ctx, t, o, 1, take_cells, &out);
+    brio_status ended = brio_tiles_cells(r->ctx, t, o, a->faces ? 1 : 2, take_cells, &out);
     TRY(out.status); /* why the function ended it */
     TRY(ended);
     cli_lap(r, "cells");

@@ -363,8 +363,7 @@ done:
 
 /* --- the run --- */
 
-brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars,
-                                  brio_tiles **out) {
+brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, int stars, brio_tiles **out) {
     brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles, .stars = stars};
     o.key = cli_tiles_key(r, weights, r->operands[0]);
     FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
@@ -382,7 +381,7 @@ brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64
 brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
     brio_tiles *t = NULL;
     brio_status status = BRIO_OK;
-    TRY(cli_triangulate_tiles(r, weights, tiles, false, &t));
+    TRY(cli_triangulate_tiles(r, weights, tiles, 0, &t));
     TRY(report(r, t));
     if (merged_format(r) != BRIO_FORMAT_AUTO)
         TRY(write_merged(r, weights, t, (uint32_t)tiles));

@@ -20,8 +20,8 @@ brio_status cli_check_tile_files(run *r);
 brio_status cli_check_tile_output(run *r);
 
 /** Reads the input block by block, and triangulates it in tiles.
- *  stars  whether cells will be computed.   out  freed by the caller, also on an error. */
-brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, bool stars, brio_tiles **out);
+ *  stars  as in brio_tiles_options.   out  freed by the caller, also on an error. */
+brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, int stars, brio_tiles **out);
 
 /** Triangulates the input in tiles, and reports as brio delaunay does. Writes -o: x.pvtu, and a file for each tile in
  *  the folder x beside it; or x.ply, all in one file. */

@@ -27,11 +27,11 @@ typedef struct brio_tiles brio_tiles;
 
 typedef struct brio_tiles_options {
     size_t size;
-    const char *scratch; /* a folder with room for about 190 bytes a point, for cells in order 850 */
+    const char *scratch; /* a folder with room for about 190 bytes a point; for cells in order 240, with faces 850 */
     uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
-    int stars;           /* 1: keeps what brio_tiles_cells needs: 16 bytes for each tetrahedron of two tiles. Memory
-                            and disk of `ordered` cells with faces are counted before the work. 2: the same for cells
-                            that come as they are computed, which need no disk */
+    int stars;           /* not 0: keeps what brio_tiles_cells needs: 16 bytes for each tetrahedron of two tiles. Memory
+                            and disk of the cells are counted before the work: 1: cells in order with their faces; 2:
+                            as they are computed, which needs no disk; 3: in order without faces (`ordered` = 2) */
     uint64_t key;        /* 0: no run goes on with what a killed process left. Else a number that tells this input and
                             this way to read it from others. After a process was killed, the next run in the same
                             folder with the same key and number of tiles goes on with its files */
@@ -92,7 +92,7 @@ BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const doub
  *  Memory: about 520 bytes a point of the largest tile, and at most one byte for each of all points. Points whose
  *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE (the
- *  disk is full, or before the work, has less room than about 195 bytes a point, with cells in order 850),
+ *  disk is full, or before the work, has less room than about 195 bytes a point, with cells in order 240 or 850),
  *  BRIO_ERR_OPEN (a scratch file was cut or removed), BRIO_ERR_NO_MEMORY (also where the memory limit of the context
  *  is too low for the largest tile; the sentence says how many tiles would do), BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t);
@@ -130,7 +130,8 @@ typedef struct brio_tiles_cells_stats {
  *  faces are those of brio_voronoi_cells of all points, bit for bit, where that is asked for more than volumes.
  *  options  as there. `vertices` of a part are those of its cells; not with `ordered`.
  *  ordered  1: cells come in ascending order of their sites, and volume_sum is that of brio_voronoi_cells. They are
- *           sorted in the scratch folder: 56 bytes a cell and, with faces, 40 a face (about 620 a cell). 0: as they are
+ *           sorted in the scratch folder: 56 bytes a cell and, with faces, 40 a face (about 620 a cell). 2: the same,
+ *           but of the faces there are face_offsets alone, for who wants no more than their number. 0: as they are
  *           computed.
  *  Memory: about 300 bytes a point of the largest tile, and 60 MB for cells at hand, or 3,600 bytes a point of a tile
  *  of less than 16,384. With `ordered` and faces then about 350 bytes a point of the largest tile.

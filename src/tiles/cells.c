@@ -148,7 +148,8 @@ static brio_status check_filled(brio_context *ctx, const brio_tiles_cells_stats 
     return BRIO_OK;
 }
 
-static brio_status check_call(brio_context *ctx, const brio_tiles *t, const brio_cells_options *o, bool ordered) {
+static brio_status check_call(brio_context *ctx, const brio_tiles *t, const brio_cells_options *o, int ordered) {
+    BRIO_EXPECT(ctx, ordered >= 0 && ordered <= 2, BRIO_ERR_ARGUMENT, "cells: ordered is %d, not 0, 1 or 2", ordered);
     BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
     BRIO_EXPECT(ctx, t->stars, BRIO_ERR_ARGUMENT, "the tiles have no stars: brio_tiles_options asks for them");
@@ -169,7 +170,7 @@ brio_status brio_tiles_cells(brio_context *ctx, brio_tiles *t, const brio_cells_
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_cells_options, options, &o));
     BRIO_FORWARD(check_call(ctx, t, &o, ordered));
     brio_status status =
-        ordered ? brio_tiles_run_ordered_cells(t, &o, &sink, &s) : brio_tiles_run_cells(t, &o, &sink, &s);
+        ordered ? brio_tiles_run_ordered_cells(t, &o, ordered == 1, &sink, &s) : brio_tiles_run_cells(t, &o, &sink, &s);
     t->stats.scratch_bytes = t->folder.most;
     BRIO_FORWARD(status);
     s.volume_sum += c.lost;

@@ -53,8 +53,9 @@ typedef struct {
  *  Returns what brio_tiles_cells does. */
 brio_status brio_tiles_run_cells(brio_tiles *t, const brio_cells_options *options, const brio_tile_cells_sink *sink,
                                  brio_tiles_cells_stats *stats);
-/** Computes the same, but hands them on in ascending order of the sites. No vertices. */
-brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options,
+/** Computes the same, but hands them on in ascending order of the sites. No vertices.
+ *  with_faces  false: of the faces no more than their number, as brio_tiles_cells does. */
+brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options, bool with_faces,
                                          const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats);
 
 /** Returns the bytes that wait for the files into which brio_tiles_run_ordered_cells divides. */

@@ -33,8 +33,8 @@ typedef struct {
 
 typedef struct {
     brio_tiles *t;
-    bool areas, centroids, faces;
-    uint64_t share; /* sites of a part */
+    bool areas, centroids, counts, faces; /* counts: the number of faces of each cell; faces: the faces themselves */
+    uint64_t share;                       /* sites of a part */
     size_t num_parts;
     tray *cells_of, *faces_of; /* of each part */
 } ordering;
@@ -61,8 +61,8 @@ static brio_status put_cell(ordering *o, const brio_cells *cells, size_t c, uint
     assert(part < o->num_parts);
     if (o->areas) row.area = cells->area[c];
     if (o->centroids) memcpy(row.centroid, cells->centroid + 3 * c, sizeof row.centroid);
+    if (o->counts) row.faces = (uint32_t)(cells->face_offsets[c + 1] - cells->face_offsets[c]);
     if (!o->faces) return put(&o->cells_of[part], &row, sizeof row);
-    row.faces = (uint32_t)(cells->face_offsets[c + 1] - cells->face_offsets[c]);
     for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
         face_row face = {.neighbour = cells->face_neighbours[f], .area = cells->face_areas[f]};
         memcpy(face.normal, cells->face_normals + 3 * f, sizeof face.normal);
@@ -181,8 +181,8 @@ static brio_status read_rows(ordering *o, size_t part, rows *r) {
         r->begin[c] = next;
         next += r->cell[c].faces;
     }
-    BRIO_EXPECT(ctx, next == num_faces, BRIO_ERR_OPEN, "%s/faces-%zu was changed from outside", o->t->folder.path,
-                part);
+    BRIO_EXPECT(ctx, !o->faces || next == num_faces, BRIO_ERR_OPEN, "%s/faces-%zu was changed from outside",
+                o->t->folder.path, part);
     return brio_sort_many_indices(ctx, r->order, r->count, compare_sites, r->cell);
 }
 
@@ -199,8 +199,8 @@ static brio_status make_cells(ordering *o, size_t n, size_t faces, brio_cells **
     BRIO_FORWARD(BRIO_ALLOC(ctx, cells->bounded, n + 1));
     if (o->areas) BRIO_FORWARD(BRIO_ALLOC(ctx, cells->area, n + 1));
     if (o->centroids) BRIO_FORWARD(BRIO_ALLOC(ctx, cells->centroid, 3 * n + 1));
+    if (o->counts) BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_offsets, n + 1));
     if (!o->faces) return BRIO_OK;
-    BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_offsets, n + 1));
     BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_neighbours, faces + 1));
     BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_areas, faces + 1));
     return BRIO_ALLOC(ctx, cells->face_normals, 3 * faces + 1);
@@ -210,22 +210,25 @@ static void fill_cells(const ordering *o, const rows *r, size_t first, brio_cell
     uint64_t next = 0;
     for (size_t c = 0; c < cells->num_cells; c++) {
         const cell_row *row = &r->cell[r->order[first + c]];
-        const face_row *face = r->face + r->begin[r->order[first + c]];
         site[c] = row->site;
         cells->site[c] = (uint32_t)c;
         cells->volume[c] = row->volume;
         cells->bounded[c] = (uint8_t)row->bounded;
         if (o->areas) cells->area[c] = row->area;
         if (o->centroids) memcpy(cells->centroid + 3 * c, row->centroid, sizeof row->centroid);
-        if (!o->faces) continue;
-        cells->face_offsets[c] = next;
+        if (o->counts) cells->face_offsets[c] = next;
+        if (!o->faces) {
+            next += row->faces;
+            continue;
+        }
+        const face_row *face = r->face + r->begin[r->order[first + c]];
         for (uint32_t f = 0; f < row->faces; f++, next++) {
             cells->face_neighbours[next] = face[f].neighbour;
             cells->face_areas[next] = face[f].area;
             memcpy(cells->face_normals + 3 * next, face[f].normal, sizeof face->normal);
         }
     }
-    if (o->faces) cells->face_offsets[cells->num_cells] = next;
+    if (o->counts) cells->face_offsets[cells->num_cells] = next;
 }
 
 static brio_status hand_on(ordering *o, const rows *r, const brio_tile_cells_sink *sink) {
@@ -267,12 +270,13 @@ static void remove_files(ordering *o) {
     }
 }
 
-brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options,
+brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options, bool with_faces,
                                          const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats) {
     ordering o = {.t = t,
                   .areas = !options->no_areas,
                   .centroids = !options->no_centroids,
-                  .faces = !options->no_faces,
+                  .counts = !options->no_faces,
+                  .faces = with_faces && !options->no_faces,
                   .num_parts = (size_t)PARTS * t->num_tiles};
     brio_status status = BRIO_OK;
     o.share = t->stats.points / o.num_parts + 1;

@@ -1,7 +1,7 @@
-/* The tetrahedra of one tile for the caller: their vertices, with positions and indices. In the tile's file they are in
- * an order that depends on the threads, and so are the points that were found to complete them; here these are sorted
- * by their places, and the tetrahedra by their first three vertices, which no two of them share in this order, for they
- * are positive. */
+/* The tetrahedra of one tile for the caller: their vertices, with positions and indices. In the tile's file their order
+ * depends on the threads, and that of the halo on the rounds in which its points were found. Here vertices are numbered
+ * by their places, and tetrahedra are turned by these numbers and sorted by the first three, which no two of them share
+ * in this order, for they are positive. So a part depends on the points and the tiles alone. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -46,41 +46,41 @@ brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *h
     return read_halo(t, halo, facts->halo, points + facts->points);
 }
 
-/* Numbers the points that are marked in `number` consecutively: those of the tile, then those of the halo by their
- * places, for they were met in an order that depends on the threads. The others get UINT32_MAX. */
-static brio_status number_points(brio_context *ctx, const brio_tile *facts, const uint64_t *halo, uint32_t *number,
-                                 size_t *num_vertices) {
-    uint32_t *order = NULL, used = 0;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(ctx, order, facts->halo + 1));
-    for (uint32_t i = 0; i < facts->halo; i++) order[i] = i;
-    BRIO_TRY(brio_sort_many_indices(ctx, order, facts->halo, compare_places, halo));
-    for (size_t p = 0; p < facts->points; p++) number[p] = number[p] ? used++ : UINT32_MAX;
-    for (size_t i = 0; i < facts->halo; i++) {
-        uint32_t *of_point = &number[facts->points + order[i]];
-        *of_point = *of_point ? used++ : UINT32_MAX;
-    }
-    *num_vertices = used;
-done:
-    brio_release(ctx, order);
-    return status;
-}
-
-/* Gives the vertices of the tetrahedra consecutive numbers, and turns each tetrahedron as these tell. */
-static brio_status number_vertices(brio_context *ctx, const brio_tile *facts, brio_tile_result *r, uint32_t *number,
-                                   size_t *num_vertices) {
+/* Marks the rows of the vertices, and lists those of the halo by their places.   *count  receives their number. */
+static brio_status list_vertices(brio_context *ctx, const brio_tile_result *r, const brio_tile *facts, uint32_t *number,
+                                 uint32_t *listed, size_t *count) {
     memset(number, 0, (facts->points + facts->halo) * sizeof *number);
     for (size_t i = 0; i < facts->tetrahedra; i++)
         for (int k = 0; k < 4; k++) number[r->tetrahedra[i][k]] = 1;
-    BRIO_FORWARD(number_points(ctx, facts, r->halo, number, num_vertices));
+    *count = 0;
+    for (uint32_t i = 0; i < facts->halo; i++)
+        if (number[facts->points + i]) listed[(*count)++] = i;
+    return brio_sort_many_indices(ctx, listed, *count, compare_places, r->halo);
+}
+
+/* Gives the vertices of the tetrahedra consecutive numbers, in the order of their places, and turns each tetrahedron by
+ * them. In which round a point was found has no trace then. */
+static brio_status number_vertices(brio_context *ctx, brio_tile_result *r, const brio_tile *facts, uint32_t *number,
+                                   size_t *used) {
+    uint32_t *listed = NULL;
+    size_t count = 0;
+    brio_status status = BRIO_OK;
+    *used = 0;
+    BRIO_TRY(BRIO_ALLOC(ctx, listed, facts->halo + 1));
+    BRIO_TRY(list_vertices(ctx, r, facts, number, listed, &count));
+    for (size_t p = 0; p < facts->points; p++) number[p] = number[p] ? (uint32_t)(*used)++ : UINT32_MAX;
+    for (size_t i = 0; i < facts->halo; i++) number[facts->points + i] = UINT32_MAX;
+    for (size_t i = 0; i < count; i++) number[facts->points + listed[i]] = (uint32_t)(*used)++;
     for (size_t i = 0; i < facts->tetrahedra; i++) {
-        uint32_t *v = r->tetrahedra[i], old[4];
+        uint32_t v[4];
         uint8_t turn;
-        for (int k = 0; k < 4; k++) old[k] = number[v[k]];
-        brio_turn_key(old, BRIO_INFINITE, &turn);
-        for (int k = 0; k < 4; k++) v[k] = old[BRIO_TURNED[turn][k]];
+        for (int k = 0; k < 4; k++) v[k] = number[r->tetrahedra[i][k]];
+        brio_turn_key(v, BRIO_INFINITE, &turn);
+        for (int k = 0; k < 4; k++) r->tetrahedra[i][k] = v[BRIO_TURNED[turn][k]];
     }
-    return BRIO_OK;
+done:
+    brio_release(ctx, listed);
+    return status;
 }
 
 /* The tetrahedra of one first vertex while they are sorted. */
@@ -111,6 +111,7 @@ static brio_status sort_tetrahedra(brio_context *ctx, brio_tile_part *p) {
     for (size_t i = 0; i < n; i++) order[end[p->tetrahedra[i][0]]++] = (uint32_t)i;
     for (size_t v = 0, begin = 0; v < p->num_vertices; begin = end[v++]) {
         size_t some = end[v] - begin;
+        if (!some) continue;
         BRIO_TRY(BRIO_RESERVE(ctx, b.key, b.capacity[0], some));
         BRIO_TRY(BRIO_RESERVE(ctx, b.row, b.capacity[1], some));
         BRIO_TRY(BRIO_RESERVE(ctx, b.sorted, b.capacity[2], some));
@@ -164,7 +165,7 @@ brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_
     BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
     BRIO_TRY(halo_of(user, result.halo, facts->halo, points + facts->points));
     p->num_tetrahedra = facts->tetrahedra;
-    BRIO_TRY(number_vertices(t->ctx, facts, &result, number, &p->num_vertices));
+    BRIO_TRY(number_vertices(t->ctx, &result, facts, number, &p->num_vertices));
     BRIO_TRY(fill(t, points, number, n, p));
     p->tetrahedra = result.tetrahedra;
     result.tetrahedra = NULL;

@@ -18,9 +18,9 @@ enum { TILES = 8, MOST_TILES = 1 << 16 };
 /* Bytes of memory for each point of the largest tile: its triangulation with a halo. For its cells: of each point, and
  * of each site of a slab. All measured: tiles.md. */
 static const double BYTES_A_POINT = 520, CELLS_A_POINT = 300, SLAB_A_SITE = 3600;
-/* Bytes of the disk for each point, when the ranks are made: points, tetrahedra, runs; and when cells with faces are
- * sorted: points, tetrahedra, cells. Measured: tiles.md. */
-static const double DISK_A_POINT = 195, DISK_A_CELL = 850;
+/* Bytes of the disk for each point, when the ranks are made: points, tetrahedra, runs; and when cells are sorted, with
+ * faces or without: points, tetrahedra, cells. Measured: tiles.md. */
+static const double DISK_A_POINT = 195, DISK_WITH_FACES = 850, DISK_WITH_CELLS = 240;
 
 /* --- life --- */
 
@@ -42,7 +42,7 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_tiles_options, options, &o));
     BRIO_REQUIRE(ctx, o.scratch, BRIO_ERR_ARGUMENT, "tiles need a scratch folder");
-    BRIO_REQUIRE(ctx, o.stars >= 0 && o.stars <= 2, BRIO_ERR_ARGUMENT, "brio_tiles_options.stars is %d", o.stars);
+    BRIO_REQUIRE(ctx, o.stars >= 0 && o.stars <= 3, BRIO_ERR_ARGUMENT, "brio_tiles_options.stars is %d", o.stars);
     BRIO_REQUIRE(ctx, o.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles; at most %d", o.tiles, MOST_TILES);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
@@ -50,7 +50,8 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     t->folder.lock = -1;
     t->num_tiles = o.tiles ? o.tiles : TILES;
     t->stars = o.stars != 0;
-    t->sorts_cells = o.stars == 1;
+    t->sorts_cells = o.stars == 1 || o.stars == 3;
+    t->sorts_faces = o.stars == 1;
     t->key = o.key ? brio_hash(o.key, t->num_tiles) : 0;
     t->stats.size = sizeof t->stats;
     t->cells.size = sizeof t->cells;
@@ -290,7 +291,8 @@ brio_status brio_tiles_require_memory(brio_tiles *t, int at_once) {
 /* Refuses points for which the disk has no room: before the work, not hours after. */
 static brio_status require_disk(brio_tiles *t) {
     uint64_t room;
-    double n = (double)t->stats.points, each = t->sorts_cells ? DISK_A_CELL : DISK_A_POINT;
+    double each = t->sorts_faces ? DISK_WITH_FACES : t->sorts_cells ? DISK_WITH_CELLS : DISK_A_POINT;
+    double n = (double)t->stats.points;
     double need = n * (each - sizeof(brio_set_point));
     if (!brio_free_bytes(t->folder.path, &room)) return BRIO_OK;
     BRIO_EXPECT(t->ctx, need <= (double)room, BRIO_ERR_WRITE,

@@ -57,8 +57,8 @@ struct brio_tiles {
     brio_tiles_stats stats;
     brio_tiles_cells_stats cells;
     bool weighted, has_points, has_result, has_ranks, stars;
-    bool sorts_cells; /* cells with faces will be asked for in order */
-    bool torn;        /* points were on their way to the tiles when a call failed: some are nowhere */
+    bool sorts_cells, sorts_faces; /* cells will be asked for in order, and their faces */
+    bool torn;                     /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
     uint64_t points_hash; /* of the file of points */
     uint32_t num_tiles;

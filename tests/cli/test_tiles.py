@@ -348,7 +348,8 @@ class Tiles(CliTest):
     def test_too_small_a_disk_is_said_before_the_work(self):
         cloud, disk = self.rows("a.csv", 20000), self.scratch()
         line = 'mount -t tmpfs -o size=$3 none "$1" && shift 3 && exec "$0" "$@"'
-        for size, need, command in (("2m", 3, ["delaunay"]), ("9m", 16, ["voronoi", "-o", self.path("c.npy")])):
+        for size, need, command in (("2m", 3, ["delaunay"]), ("3m", 4, ["voronoi", "-o", self.path("c.npy")]),
+                                    ("9m", 16, ["voronoi", "-o", self.path("c.npy"), "--faces", self.path("f.csv")])):
             with self.subTest(command[0]):
                 run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, cloud, size, *command, cloud,
                                       "--tiles", "2", "--scratch", disk, "--quiet"], stderr=subprocess.PIPE, check=False)
