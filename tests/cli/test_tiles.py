@@ -94,7 +94,7 @@ class Tiles(CliTest):
     def test_what_cells_in_tiles_have_not_is_refused(self):
         cloud, folder = self.rows("a.csv", 20), self.scratch()
         self.usage("writes cells to .npy and .csv", "voronoi", cloud, "--tiles", "2", "--scratch", folder, "-o", self.path("x.vtu"))
-        self.usage("--cell: not with --tiles", "voronoi", cloud, "--cell", "9,9,9", "--tiles", "2", "--scratch", folder, "-o", self.path("x.csv"))
+        self.usage("--cell, --periodic: not with --tiles", "voronoi", cloud, "--cell", "9,9,9", "--tiles", "2", "--scratch", folder, "-o", self.path("x.csv"))
         self.usage("--tiles needs --scratch", "voronoi", cloud, "--tiles", "2", "-o", self.path("x.csv"))
         with open(self.path("flat.xyz"), "w", encoding="ascii") as f:
             f.writelines("%d %d 0\n" % (i, i * i) for i in range(9))

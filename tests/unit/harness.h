@@ -24,6 +24,13 @@ enum { BRIEF_TESTS = 1 };
 enum { BRIEF_TESTS = 0 };
 #endif
 
+/* Whether only tests of threads are of use, as in make check under the thread sanitizer. */
+#if defined(BRIO_SHORT_TESTS) && defined(BRIO_WATCHES_THREADS)
+enum { THREADS_ONLY = 1 };
+#else
+enum { THREADS_ONLY = 0 };
+#endif
+
 static int harness_failures, harness_checks;
 
 /* A suite has the name of its file. argc and argv are those of a program of that name. */
@@ -48,6 +55,12 @@ static int harness_failures, harness_checks;
         int before = harness_failures;                                                                                 \
         test();                                                                                                        \
         fprintf(stderr, "%s %s\n", harness_failures == before ? "ok    " : "FAILED", #test);                           \
+    } while (0)
+
+/* Runs a test in which no threads work side by side. */
+#define RUN_ALONE(test)                                                                                                \
+    do {                                                                                                               \
+        if (!THREADS_ONLY) RUN(test);                                                                                  \
     } while (0)
 
 static inline int harness_end(void) {

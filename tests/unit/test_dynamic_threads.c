@@ -38,7 +38,7 @@ static void batches_of_threads_end_as_built(void) {
     for (int s = 0; s < NUM_SHAPES; s += BRIEF_TESTS ? 3 : 1)
         for (int weighted = BRIEF_TESTS ? s % 2 : 0; weighted < (BRIEF_TESTS ? s % 2 + 1 : 2); weighted++) {
             world w = world_of((shape)s, weighted, n);
-            for (int round = 0; round < (BRIEF_TESTS ? 5 : SHORT_TESTS ? 10 : 100); round++) {
+            for (int round = 0; round < (BRIEF_TESTS ? 3 : SHORT_TESTS ? 6 : 100); round++) {
                 size_t anew = changed_anew(&w);
                 brio_context_set_threads(w.ctx, THREADS[round % 3]);
                 make_batch(&w, round % NUM_KINDS, BRIEF_TESTS ? 200 : 300);
@@ -100,7 +100,7 @@ static void memory_that_fails_in_a_thread_leaves_all(void) {
         brio_context_free(w.ctx);
         EXPECT(brio_context_new(&allocator, &w.ctx) == BRIO_OK);
         brio_status status = BRIO_ERR_NO_MEMORY;
-        for (size_t k = 1; k < 4000 && status != BRIO_OK; k += BRIEF_TESTS ? 101 : SHORT_TESTS ? 7 : 1) {
+        for (size_t k = 1; k < 4000 && status != BRIO_OK; k += BRIEF_TESTS ? 101 : SHORT_TESTS ? 13 : 1) {
             brio_context_set_threads(w.ctx, 1);
             EXPECT(brio_dynamic_new(w.ctx, w.point, w.weighted ? w.weight : NULL, w.num_points, w.weighted, &w.d) ==
                    BRIO_OK);

@@ -308,14 +308,14 @@ SUITE(test_locate) {
     if (getenv("BRIO_LOCATE_QUERIES")) queries_a_set = (size_t)atol(getenv("BRIO_LOCATE_QUERIES"));
     for (int i = 1; i < argc; i++) check_file(argv[i]);
     if (argc > 1) return harness_end();
-    RUN(small_grids);
-    RUN(points_in_space);
-    RUN(ranges_beyond_the_scale_of_a_locator);
-    RUN(flat_points);
+    RUN_ALONE(small_grids);
+    RUN_ALONE(points_in_space);
+    RUN_ALONE(ranges_beyond_the_scale_of_a_locator);
+    RUN_ALONE(flat_points);
     RUN(neither_threads_nor_order_change_an_answer);
     RUN(values_have_the_same_bits_in_every_order);
-    RUN(bad_input_is_refused);
-    RUN(more_vertices_wanted_than_there_are_take_no_memory);
-    RUN(memory_may_run_out_anywhere);
+    RUN_ALONE(bad_input_is_refused);
+    RUN_ALONE(more_vertices_wanted_than_there_are_take_no_memory);
+    RUN_ALONE(memory_may_run_out_anywhere);
     return harness_end();
 }
