@@ -142,7 +142,7 @@ def run_contract(root, script, subjects, runner, failures):
 
 def closed_streams(root, folder, target, script, points):
     """Tests that pass, of one, and the names of those that fail: a program whose standard streams are closed writes none of its messages
-    into its output; its report has no place to go, which it says by its status. Where Python cannot close them, as
+    into its output; its report has no place to go, which it says by its status, 6. Where Python cannot close them, as
     tests/cli/test_output.py does, closed_streams.c and wasi.mjs do."""
     environment, words = {**os.environ, 'BRIO_CLOSED': '1'}, [script]
     if target.system == 'Windows':
@@ -157,7 +157,7 @@ def closed_streams(root, folder, target, script, points):
     output.unlink(missing_ok=True)
     done = run([*words, 'convert', points / 'cube.ply', output, '--progress'], env=environment)
     lines = output.read_text().split('\n') if output.exists() else []
-    good = len(lines) == KINDS['cube'] + 2 and all(line.count(',') == 2 for line in lines[:-1])
+    good = done.returncode == 6 and len(lines) == KINDS['cube'] + 2 and all(line.count(',') == 2 for line in lines[:-1])
     return int(good), [] if good else ['closed_streams: exit %d' % done.returncode]
 
 
