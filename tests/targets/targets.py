@@ -29,7 +29,7 @@ import cross  # noqa: E402
 
 # What runs programs here that this machine's system does not run as they are: the program that must be there, and the words.
 RUNNERS = {
-    'old root': ('unshare', 'unshare -m sh {root}/tests/targets/old_root.sh {root}/out/old-root-amd64 {root}'),
+    'old root': ('unshare', 'sh {root}/tests/targets/old_root.sh {root}/out/old-root-amd64 {root}'),
     'qemu-aarch64': ('qemu-aarch64', 'qemu-aarch64 -L {root}/out/old-root-arm64'),
     'wine': ('wine', 'wine'),
     # with its parallel collector of garbage Node 20 crashed after some programs had ended
@@ -60,9 +60,14 @@ OPERATIONS = {  # name: arguments; a name that ends with an extension compares t
 MACOS_LIBRARIES = {'/usr/lib/libSystem.B.dylib'}
 
 
-def has_old_root(root):
-    """Whether scripts/setup.sh has fetched an old Linux, and this process may go into it."""
-    return (root / 'out/old-root-amd64/bin/sh').exists() and os.geteuid() == 0
+def has_old_root(root, runner='old root'):
+    """Whether scripts/setup.sh has fetched the old Linux of a runner, and this process may go into it: that is tried, since a container
+    may forbid to root what that needs."""
+    if runner == 'qemu-aarch64':
+        return (root / 'out/old-root-arm64/bin/sh').exists()
+    needed, words = RUNNERS['old root']
+    return (root / 'out/old-root-amd64/bin/sh').exists() and shutil.which(needed) is not None and run(
+        [*words.format(root=root).split(), '/bin/sh', '-c', '']).returncode == 0
 
 
 def runner_of(root, folder, target, name):
@@ -76,6 +81,8 @@ def runner_of(root, folder, target, name):
     needed, words = RUNNERS.get(runner if runner != 'old root' or has_old_root(root) else '', ('sh', ''))
     if not shutil.which(needed):
         return None, '%s is missing' % needed
+    if runner == 'qemu-aarch64' and 'glibc' in target.name and not has_old_root(root, runner):
+        return None, 'no old Linux for it: scripts/setup.sh targets'
     return cross.write_script(folder / ('run-' + name), 'exec %s %s "$@"' % (words.format(root=root), program)), ''
 
 
