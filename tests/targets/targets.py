@@ -10,7 +10,9 @@ Builds the program and the unit tests for each target of scripts/cross.py. What 
 and writes OUT/TABLE.tsv: target, built, ran, passed, failed, checksums; the row of a target is there as soon as it was tried. In
 emulation suites run in so much time as is allowed: a suite that needs more is stopped and named in OUT/TARGET/left-out. What failing
 tests print is in OUT/TARGET/failures. Of what cannot run the libraries and symbols that the program asks its system for are checked; so
-are the versions of symbols of glibc. The exit status is 1 where something fails or differs."""
+are the versions of symbols of glibc. The exit status is 1 where something fails or differs.
+
+OUT/TARGET/made-of is the hash of the sources whose program the row is about: scripts/release.sh asks for both."""
 import argparse
 import concurrent.futures
 import contextlib
@@ -278,6 +280,8 @@ def main():
     columns, wrong = ['target', 'built', 'ran', 'passed', 'failed', 'checksums'], False
     table = out / 'TABLE.tsv'
     for target in wanted:
+        mark, made_of = out / target.name / 'made-of', cross.made_of(root)
+        mark.unlink(missing_ok=True)
         with wine(out) if RUNS.get(target.name, ('',))[0] == 'wine' else contextlib.nullcontext():
             row, bad = try_target(root, out, target, not a.no_units, expected, points, 60 * a.minutes)
         wrong |= bad
@@ -285,6 +289,8 @@ def main():
         rows[target.name] = '\t'.join(str(row[c]) for c in columns)
         print(rows[target.name], flush=True)
         table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in cross.TARGETS if t.name in rows)]) + '\n')
+        if row['built'] == 'yes':
+            mark.write_text(made_of + '\n')
     return wrong
 
 
