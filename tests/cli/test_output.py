@@ -96,7 +96,8 @@ class Writing(CliTest):
         a, out = self.cloud("a.ply", 200000), self.path("b.csv")
         for closed in (0, 1, 2), (0,), (1,), (2,), (0, 2):
             close = lambda: [os.close(stream) for stream in closed]
-            self.run_brio("convert", a, out, "--progress", preexec_fn=close)
+            done = self.run_brio("convert", a, out, "--progress", preexec_fn=close)
+            self.assertEqual(done.code, 6 if 1 in closed else 0, "a report that has no place to go")
             self.assert_no_messages_in(out, 200000)
 
     def test_closed_streams_in_a_root_without_devices(self):
@@ -105,7 +106,8 @@ class Writing(CliTest):
         bare = ["unshare", "-m", "sh", "-c", 'mount -t tmpfs none /dev && exec "$@"', "sh"]
         if subprocess.run([*bare, "true"], stderr=subprocess.DEVNULL).returncode:
             self.skipTest("no root without devices can be made here")
-        subprocess.run([*bare, "sh", "-c", 'exec "$@" 0<&- 1>&- 2>&-', "sh", BRIO, "convert", a, out, "--progress"], timeout=60)
+        done = subprocess.run([*bare, "sh", "-c", 'exec "$@" 0<&- 1>&- 2>&-', "sh", BRIO, "convert", a, out, "--progress"], timeout=60)
+        self.assertEqual(done.returncode, 6, "the report has no place to go")
         self.assert_no_messages_in(out, 20000)
 
     def test_report_keeps_away_from_data_by_any_name_of_standard_output(self):

@@ -5,7 +5,8 @@
 static DWORD run(void) {
     wchar_t *line = GetCommandLineW();
     for (wchar_t end = *line == '"' ? *line++ : ' '; *line && *line != end; line++) {}
-    while (*line == '"' || *line == ' ') line++;
+    if (*line == '"') line++; /* the next quote is the program's */
+    while (*line == ' ') line++;
     static STARTUPINFOW start = {.cb = sizeof start, .dwFlags = STARTF_USESTDHANDLES};
     PROCESS_INFORMATION program;
     DWORD status = 1;

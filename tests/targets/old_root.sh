@@ -1,9 +1,11 @@
 #!/bin/sh
 # old_root.sh OLD TREE PROGRAM [ARGUMENT ...]: runs a program in the folder OLD as if it were the whole system, where this machine's
 # devices, processes, temporary files, the source tree TREE and its ../shared are seen at their own places. Root alone can do that.
-# It needs `unshare -m` around it, so that nothing stays mounted, and starts no process that outlives the program.
+# What it mounts it mounts in a view of files that ends with it (unshare -m), and it starts no process that outlives the program.
 set -eu
 
+[ "$1" = --apart ] || exec unshare -m sh "$0" --apart "$@"
+shift
 old=$1 tree=$2
 shift 2
 for seen in /dev /proc "${TMPDIR:-/tmp}" "$tree" "$tree/../shared"; do

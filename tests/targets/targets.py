@@ -10,7 +10,9 @@ Builds the program and the unit tests for each target of scripts/cross.py. What 
 and writes OUT/TABLE.tsv: target, built, ran, passed, failed, checksums; the row of a target is there as soon as it was tried. In
 emulation suites run in so much time as is allowed: a suite that needs more is stopped and named in OUT/TARGET/left-out. What failing
 tests print is in OUT/TARGET/failures. Of what cannot run the libraries and symbols that the program asks its system for are checked; so
-are the versions of symbols of glibc. The exit status is 1 where something fails or differs."""
+are the versions of symbols of glibc. The exit status is 1 where something fails or differs.
+
+OUT/TARGET/made-of is the hash of the sources whose program the row is about: scripts/release.sh asks for both."""
 import argparse
 import concurrent.futures
 import contextlib
@@ -29,7 +31,7 @@ import cross  # noqa: E402
 
 # What runs programs here that this machine's system does not run as they are: the program that must be there, and the words.
 RUNNERS = {
-    'old root': ('unshare', 'unshare -m sh {root}/tests/targets/old_root.sh {root}/out/old-root-amd64 {root}'),
+    'old root': ('unshare', 'sh {root}/tests/targets/old_root.sh {root}/out/old-root-amd64 {root}'),
     'qemu-aarch64': ('qemu-aarch64', 'qemu-aarch64 -L {root}/out/old-root-arm64'),
     'wine': ('wine', 'wine'),
     # with its parallel collector of garbage Node 20 crashed after some programs had ended
@@ -60,9 +62,14 @@ OPERATIONS = {  # name: arguments; a name that ends with an extension compares t
 MACOS_LIBRARIES = {'/usr/lib/libSystem.B.dylib'}
 
 
-def has_old_root(root):
-    """Whether scripts/setup.sh has fetched an old Linux, and this process may go into it."""
-    return (root / 'out/old-root-amd64/bin/sh').exists() and os.geteuid() == 0
+def has_old_root(root, runner='old root'):
+    """Whether scripts/setup.sh has fetched the old Linux of a runner, and this process may go into it: that is tried, since a container
+    may forbid to root what that needs."""
+    if runner == 'qemu-aarch64':
+        return (root / 'out/old-root-arm64/bin/sh').exists()
+    needed, words = RUNNERS['old root']
+    return (root / 'out/old-root-amd64/bin/sh').exists() and shutil.which(needed) is not None and run(
+        [*words.format(root=root).split(), '/bin/sh', '-c', '']).returncode == 0
 
 
 def runner_of(root, folder, target, name):
@@ -76,6 +83,8 @@ def runner_of(root, folder, target, name):
     needed, words = RUNNERS.get(runner if runner != 'old root' or has_old_root(root) else '', ('sh', ''))
     if not shutil.which(needed):
         return None, '%s is missing' % needed
+    if runner == 'qemu-aarch64' and 'glibc' in target.name and not has_old_root(root, runner):
+        return None, 'no old Linux for it: scripts/setup.sh targets'
     return cross.write_script(folder / ('run-' + name), 'exec %s %s "$@"' % (words.format(root=root), program)), ''
 
 
@@ -142,7 +151,7 @@ def run_contract(root, script, subjects, runner, failures):
 
 def closed_streams(root, folder, target, script, points):
     """Tests that pass, of one, and the names of those that fail: a program whose standard streams are closed writes none of its messages
-    into its output; its report has no place to go, which it says by its status. Where Python cannot close them, as
+    into its output; its report has no place to go, which it says by its status, 6. Where Python cannot close them, as
     tests/cli/test_output.py does, closed_streams.c and wasi.mjs do."""
     environment, words = {**os.environ, 'BRIO_CLOSED': '1'}, [script]
     if target.system == 'Windows':
@@ -157,7 +166,7 @@ def closed_streams(root, folder, target, script, points):
     output.unlink(missing_ok=True)
     done = run([*words, 'convert', points / 'cube.ply', output, '--progress'], env=environment)
     lines = output.read_text().split('\n') if output.exists() else []
-    good = len(lines) == KINDS['cube'] + 2 and all(line.count(',') == 2 for line in lines[:-1])
+    good = done.returncode == 6 and len(lines) == KINDS['cube'] + 2 and all(line.count(',') == 2 for line in lines[:-1])
     return int(good), [] if good else ['closed_streams: exit %d' % done.returncode]
 
 
@@ -271,6 +280,8 @@ def main():
     columns, wrong = ['target', 'built', 'ran', 'passed', 'failed', 'checksums'], False
     table = out / 'TABLE.tsv'
     for target in wanted:
+        mark, made_of = out / target.name / 'made-of', cross.made_of(root)
+        mark.unlink(missing_ok=True)
         with wine(out) if RUNS.get(target.name, ('',))[0] == 'wine' else contextlib.nullcontext():
             row, bad = try_target(root, out, target, not a.no_units, expected, points, 60 * a.minutes)
         wrong |= bad
@@ -278,6 +289,8 @@ def main():
         rows[target.name] = '\t'.join(str(row[c]) for c in columns)
         print(rows[target.name], flush=True)
         table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in cross.TARGETS if t.name in rows)]) + '\n')
+        if row['built'] == 'yes':
+            mark.write_text(made_of + '\n')
     return wrong
 
 

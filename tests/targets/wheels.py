@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""wheels.py ROOT WHEELS OUT [--only NAME,...] [--tests FILE,...]: tries the Python packages of scripts/wheels.py where they belong.
+"""wheels.py ROOT WHEELS OUT [--native PROGRAM] [--only NAME,...] [--tests FILE,...]: tries the Python packages of scripts/wheels.py where they belong.
 
 Each wheel of WHEELS meets a CPython 3.11 of its system, that runs here, in emulation where it must:
 
@@ -9,11 +9,13 @@ Each wheel of WHEELS meets a CPython 3.11 of its system, that runs here, in emul
     windows-x86_64              CPython of Maven Central, by wine, with a python3.dll that this program makes: it has none
 
 pip installs the wheel and numpy into a fresh folder from a folder of files, so that no network is timed. Then the package is imported and
-makes its first Delaunay triangulation, of 10,000 points, whose checksum must be that of the first row; pytest and scipy come in besides,
-and the package's tests run: all, or FILES. OUT/TRIED.tsv says of each target: seconds of pip, of the import and the first triangulation
-together (of the wall, and of the processor), tests that passed, failed and were skipped."""
+makes its first Delaunay triangulation, of 10,000 points, whose checksum must be that of PROGRAM, or that of the first row; pytest and scipy
+come in besides, and the package's tests run: all, or FILES. OUT/TRIED.tsv says of each target: seconds of pip, of the import and the first
+triangulation together (of the wall, and of the processor), tests that passed, failed and were skipped. The exit status is 1 where something
+fails or differs, and where no wheel was tried."""
 import argparse
 import contextlib
+import json
 import os
 import pathlib
 import re
@@ -48,7 +50,7 @@ print(checksum, time.perf_counter() - begin)
 
 
 def of_maven(root, name):
-    """The folder of CPython for a system, out of its archive, which scripts/setup.sh targets fetched."""
+    """The folder of CPython for a system, out of its archive, which scripts/setup.sh pythons fetched."""
     folder = root / 'build/pythons' / name
     if not folder.is_dir():
         archives = sorted((root / 'out/pythons').glob('cpython-*-%s.jar' % name))
@@ -88,14 +90,18 @@ def python_of(root, target):
     words = words.format(root=root).split()
     if not shutil.which(needed):
         return None, '%s is missing' % needed
+    if runner in ('old root', 'qemu-aarch64') and not targets.has_old_root(root, runner):
+        return None, 'no old Linux to run it in: scripts/setup.sh targets, as root'
     if target.name.endswith('musl'):
         folder = root / 'build/pythons' / target.name
-        if not (folder / 'bin/python3.11').exists() and not make_musl_python(root, target, folder):
-            return None, 'no CPython for it, see %s/build/log' % folder
+        if not (folder / 'complete').exists() and not make_musl_python(root, target, folder):
+            return None, 'no CPython for it: scripts/setup.sh targets and pythons; see %s/build/log' % folder
+        if not words and not pathlib.Path('/lib/ld-musl-%s.so.1' % target.processor).exists():
+            return None, 'musl is missing: scripts/setup.sh pythons'
         return words + [folder / 'bin/python3.11'], ''
     folder = of_maven(root, 'windows-x86_64' if target.system == 'Windows' else 'linux-' + target.processor.replace('aarch64', 'arm64'))
     if folder is None:
-        return None, 'no CPython for it: scripts/setup.sh targets'
+        return None, 'no CPython for it: scripts/setup.sh pythons'
     if target.system == 'Windows':
         if not (folder / 'python3.dll').exists():
             make_forwarder(root, target, folder)
@@ -104,12 +110,25 @@ def python_of(root, target):
 
 
 def fetch(root, target, folder):
-    """numpy, scipy, pytest and pip for the target, in a folder; None, or what pip said."""
+    """numpy, scipy, pytest and pip for the target, in a folder that is there when all are; None, or what pip said."""
+    fresh = folder.with_suffix('.new')
+    shutil.rmtree(fresh, ignore_errors=True)
     done = subprocess.run([root / 'out/tests-env/bin/python', '-m', 'pip', 'download', '-q', '--only-binary=:all:', '--python-version', '3.11',
-                           '--implementation', 'cp', '--abi', 'cp311', '--abi', 'abi3', '--abi', 'none', '-d', folder,
+                           '--implementation', 'cp', '--abi', 'cp311', '--abi', 'abi3', '--abi', 'none', '-d', fresh,
                            *(w for p in PLATFORMS[target.name] for w in ('--platform', p)),
                            *OTHERS.get(target.name, ['numpy', 'scipy']), 'pytest', 'pip', 'colorama'], capture_output=True, text=True)
-    return done.stderr[-300:] if done.returncode else None
+    if done.returncode:
+        return done.stderr[-300:]
+    fresh.rename(folder)
+    return None
+
+
+def checksum_of(native, folder):
+    """What a program says of the points of FIRST, as Python writes it."""
+    import numpy
+    points = folder / 'first.xyz'
+    points.write_text(''.join('%r %r %r\n' % tuple(p) for p in numpy.random.default_rng(1).random((10000, 3)).tolist()))
+    return str(int(json.loads(wheels.run([native, 'delaunay', points, '--json']))['checksum'], 16))
 
 
 def timed(words, environment, seconds, **more):
@@ -188,26 +207,36 @@ def main():
     parser.add_argument('out', type=pathlib.Path)
     parser.add_argument('--only', default='', help='names of targets, with commas')
     parser.add_argument('--tests', default='', help='files of python/tests, with commas')
+    parser.add_argument('--native', type=pathlib.Path, help='the program of this machine')
     parser.add_argument('--seconds', type=float, default=900, help='for a file of tests')
     a = parser.parse_args()
     root, out = a.root.resolve(), a.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     columns, table, wrong = ['target', 'pip', 'first', 'checksum', 'passed', 'failed', 'skipped', 'left out'], out / 'TRIED.tsv', False
+    version = re.search(r'__version__ = "(.*)"', (root / 'python/src/brio/_version.py').read_text()).group(1)
+    expected, tried = checksum_of(a.native.resolve(), out) if a.native else None, False
     for target in cross.TARGETS:
         if target.name not in PLATFORMS or (a.only and target.name not in a.only.split(',')):
             continue
-        wheel = sorted(a.wheels.resolve().glob('brio_geometry-*-%s.whl' % target.platform))
-        if not wheel:
-            continue
-        with targets.wine(out) if target.system == 'Windows' else contextlib.nullcontext():
-            facts, checksum, bad = try_wheel(root, out, wheel[-1], target, [f for f in a.tests.split(',') if f], a.seconds)
-        wrong |= bad
+        wheel = next(a.wheels.resolve().glob('brio_geometry-%s-*-%s.whl' % (version, target.platform)), None)
+        if wheel:
+            with targets.wine(out) if target.system == 'Windows' else contextlib.nullcontext():
+                facts, checksum, bad = try_wheel(root, out, wheel, target, [f for f in a.tests.split(',') if f], a.seconds)
+        else:
+            facts, checksum, bad = {'pip': 'no wheel: make wheels'}, None, False
+        expected = expected or checksum
+        if checksum not in (None, expected):
+            facts['checksum'] += ', not %s' % expected
+            bad = True
+        wrong, tried = wrong or bad, tried or bad or checksum is not None
         rows = {line.split('\t')[0]: line for line in table.read_text().splitlines()[1:]} if table.exists() else {}
         rows[target.name] = '\t'.join(str(facts.get(c, '')) for c in columns[1:])
         rows[target.name] = target.name + '\t' + rows[target.name]
         print(rows[target.name], flush=True)
         table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in cross.TARGETS if t.name in rows)]) + '\n')
-    return wrong
+    if not tried:
+        print('wheels.py: no wheel was tried', file=sys.stderr)
+    return wrong or not tried
 
 
 if __name__ == '__main__':
