@@ -5,7 +5,7 @@
 # `build` nothing is installed unless BRIO_SETUP is 1, as `make setup` and `make demo` set it.
 set -eu
 
-cmake_least=3.20
+cmake_least=3.21 # presets of version 3
 python=/usr/bin/python3
 
 has() { command -v "$1" >/dev/null 2>&1; }
