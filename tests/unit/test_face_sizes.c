@@ -6,6 +6,7 @@
 #include "reconstruct/open_surface/face_sizes.h"
 #include "reconstruct/open_surface/hole_cut.h"
 #include <math.h>
+#include <string.h>
 
 enum { MOST = 4096 };
 static double point[3 * MOST];
@@ -30,19 +31,25 @@ static void add_cell(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     add_face(a, b, c), add_face(a, c, d);
 }
 
-/* Measures the triangles and cuts the holes of a surface that is known to be open. */
-static brio_status measure(brio_context *ctx, bool knows_outside, bool knows_scanner) {
+/* Measures the triangles and cuts the holes of a surface that is known to be open.   holes  freed by the caller, on
+ * failure too. */
+static brio_status list_holes(brio_context *ctx, bool knows_outside, bool knows_scanner, brio_hole_list *holes) {
     brio_status status = BRIO_OK;
     brio_triangle_net net = {.ctx = ctx};
-    brio_hole_list holes = {.ctx = ctx};
     const brio_hole_rule rule = {.choice = BRIO_HOLES_SEEN, .proven = true};
     BRIO_TRY(brio_triangle_net_new(ctx, point, num_points, face, num_faces, &net));
     net.outside = knows_outside ? (const float(*)[3])outside : NULL;
     net.scanner = knows_scanner ? (const float(*)[3])scanner : NULL;
     BRIO_TRY(brio_face_sizes(&net, radius, usual));
-    BRIO_TRY(brio_cut_holes(&net, radius, usual, &rule, part, &holes));
+    BRIO_TRY(brio_cut_holes(&net, radius, usual, &rule, part, holes));
 done:
     brio_triangle_net_free(&net);
+    return status;
+}
+
+static brio_status measure(brio_context *ctx, bool knows_outside, bool knows_scanner) {
+    brio_hole_list holes = {.ctx = ctx};
+    brio_status status = list_holes(ctx, knows_outside, knows_scanner, &holes);
     brio_hole_list_free(&holes);
     return status;
 }
@@ -115,12 +122,17 @@ static void half_a_cylinder_is_open_at_the_back_and_nowhere_else(void) {
     }
 }
 
-/* The axes at the rim lean to the back. Its triangles are hardly wider than usual: only the scanner tells. */
-static void no_scanner_saw_the_back_of_a_thin_limb(void) {
+/* The axes at the rim lean to the back. Its triangles are hardly wider than usual: only the scanner tells. Returns the
+ * number of triangles of the front. */
+static size_t add_limb(void) {
     enum { COLUMNS = 5 };
     double angle[COLUMNS];
     for (int i = 0; i < COLUMNS; i++) angle[i] = (40 * i - 80) * 3.14159265358979 / 180;
-    size_t front = add_cylinder(COLUMNS, 12, angle, 0.7, 0.8);
+    return add_cylinder(COLUMNS, 12, angle, 0.7, 0.8);
+}
+
+static void no_scanner_saw_the_back_of_a_thin_limb(void) {
+    size_t front = add_limb();
     measure_well(true, false);
     EXPECT(count_gone(0, num_faces) == 0, "%zu", count_gone(0, num_faces));
     measure_well(true, true);
@@ -129,6 +141,52 @@ static void no_scanner_saw_the_back_of_a_thin_limb(void) {
     for (size_t p = 0; p < num_points; p++) scanner[p][0] = 0;
     measure_well(true, true);
     EXPECT(count_gone(0, num_faces) == 0, "scanners that are not known tell nothing");
+}
+
+/* Adds a wheel of the size of the limb, closed by triangles to two samples `far` away: a hole, as large as that. */
+static void add_huge_hole(double far) {
+    enum { RIM = 12 };
+    const double unknown[3] = {0, 0, 0};
+    uint32_t hub = add_point(100, 0, 0, UP, unknown), rim = hub + 1, x = rim + RIM, y = x + 1;
+    for (int i = 0; i < RIM; i++) {
+        double to = i * 3.14159265358979 / 6;
+        add_point(100 + cos(to), sin(to), 0, UP, unknown);
+    }
+    add_point(far, 0, 0, UP, unknown);
+    add_point(0, far, 0, UP, unknown);
+    for (uint32_t i = 0; i < RIM; i++) {
+        uint32_t next = (i + 1) % RIM;
+        add_face(hub, rim + i, rim + next);
+        add_face(rim + next, rim + i, i < RIM / 2 ? x : y);
+    }
+    add_face(x, rim, y);
+    add_face(rim + RIM / 2, x, y);
+}
+
+/* Once all areas were sums in one unit, which the largest triangle of all gave. */
+static void a_hole_does_not_depend_on_a_huge_one_elsewhere(void) {
+    brio_context *ctx = new_context();
+    brio_hole_list alone = {.ctx = ctx}, beside = {.ctx = ctx};
+    static uint8_t part_alone[MOST];
+    size_t front = add_limb(), all = num_faces;
+    EXPECT(list_holes(ctx, true, true, &alone) == BRIO_OK && alone.count == 1);
+    EXPECT(count_gone(0, front) == 0 && count_gone(front, all) == all - front);
+    memcpy(part_alone, part, all);
+    for (double far = 1e8; far < 1e13; far *= 100) {
+        add_limb();
+        add_huge_hole(far);
+        EXPECT(list_holes(ctx, true, true, &beside) == BRIO_OK && beside.count == 2);
+        const brio_hole *a = alone.hole, *b = beside.hole;
+        EXPECT(b[1].usual_area > far * far && b[1].open, "%g", b[1].usual_area);
+        EXPECT(a->area == b->area && a->usual_area == b->usual_area, "%g, %g", b->area, b->usual_area);
+        EXPECT(a->facing == b->facing && a->viewing == b->viewing, "%g, %g", b->facing, b->viewing);
+        EXPECT(a->widest == b->widest && a->open == b->open && a->unlikely == b->unlikely);
+        EXPECT(memcmp(part_alone, part, all) == 0, "%zu of %zu", count_gone(0, all), count_gone(front, all));
+        brio_hole_list_free(&beside);
+    }
+    brio_hole_list_free(&alone);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
 }
 
 /* --- a dense side and a coarse one --- */
@@ -202,6 +260,7 @@ SUITE(test_face_sizes) {
     RUN(rows_six_spacings_apart_are_no_holes);
     RUN(half_a_cylinder_is_open_at_the_back_and_nowhere_else);
     RUN(no_scanner_saw_the_back_of_a_thin_limb);
+    RUN(a_hole_does_not_depend_on_a_huge_one_elsewhere);
     RUN(a_coarse_side_is_judged_by_its_own_samples);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();

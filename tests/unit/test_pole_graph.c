@@ -219,6 +219,58 @@ static void blocks_of_a_round_are_apart(void) {
     brio_context_free(ctx);
 }
 
+/* Moves the nodes from NEAR on far away, and leaves out the edges between them and the others. */
+enum { NEAR = 40 };
+static void part_graph(random_graph *r, double far) {
+    size_t count = 0, begin = 0;
+    for (uint32_t p = 0; p < NODES; p++) {
+        size_t end = r->first[p + 1];
+        r->first[p] = count;
+        for (size_t e = begin; e < end; e++)
+            if ((p < NEAR) == (r->edge[e].node < NEAR)) r->edge[count++] = r->edge[e];
+        begin = end;
+        for (uint32_t k = 0; k < 3 && p >= NEAR; k++) r->centre[3 * p + k] += far;
+    }
+    r->first[NODES] = count;
+    r->g.exponent = 50;
+}
+
+/* Returns how many pairs of near nodes are in one block with some nodes far away, or without, and not in both. */
+static size_t count_parted(const brio_node_blocks *a, const brio_node_blocks *b) {
+    size_t parted = 0;
+    for (uint32_t p = 0; p < NEAR; p++)
+        for (uint32_t q = 0; q < p; q++) {
+            if (a->place[p] == BRIO_NO_PLACE || a->place[q] == BRIO_NO_PLACE) continue;
+            bool one = a->of[a->place[p]] == a->of[a->place[q]];
+            parted += one != (b->of[b->place[p]] == b->of[b->place[q]]);
+        }
+    return parted;
+}
+
+/* Once cells were halved 21 times in each direction, and no more. */
+static void blocks_do_not_depend_on_nodes_far_away(void) {
+    static random_graph r;
+    brio_context *ctx = new_context();
+    size_t several = 0;
+    for (uint64_t trial = 0; trial < 120; trial++) {
+        brio_node_blocks alone, beside;
+        int bits = 1 + (int)(trial % 3);
+        make_graph(&r, ctx, trial);
+        part_graph(&r, trial % 2 ? 0x1p30 : 0x1p48);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, bits, trial, &beside) == BRIO_OK);
+        memset(r.fixed + NEAR, 1, NODES - NEAR);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, bits, trial, &alone) == BRIO_OK);
+        size_t parted = count_parted(&alone, &beside);
+        EXPECT(parted == 0, "%zu pairs", parted);
+        several += alone.num_blocks > 2 && beside.count > alone.count;
+        brio_node_blocks_free(&alone);
+        brio_node_blocks_free(&beside);
+    }
+    EXPECT(several > 100, "%zu", several);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
 static double energy_of(const random_graph *r) {
     double energy = NAN;
     EXPECT(brio_label_energy(&r->g, r->label, &energy) == BRIO_OK);
@@ -290,6 +342,7 @@ SUITE(test_pole_graph) {
     RUN(edges_are_those_of_the_triangulation_and_the_samples);
     RUN(highest_priority_and_lowest_pole_come_first);
     RUN(blocks_of_a_round_are_apart);
+    RUN(blocks_do_not_depend_on_nodes_far_away);
     RUN(settled_blocks_have_least_energy);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();

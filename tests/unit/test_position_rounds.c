@@ -8,11 +8,17 @@
 #include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include "reconstruct/labeled_delaunay/vote_labels.h"
 #include "reconstruct/labeled_delaunay/weak_handles.h"
+#include <math.h>
 
-enum { TORUS = 1200, GUARD = 150, ALONE = TORUS + GUARD, ALL = ALONE + 600 };
+/* SHELLS: spheres of guards round the torus. Contested places reach over one or two of them. */
+enum { TORUS = 1200, SHELLS = 3, GUARD = 60 * SHELLS, ALONE = TORUS + GUARD, ALL = ALONE + 600 };
+
+/* Of a torus: the spacing is about a ninth of that, and what is far away is at 2. */
+static const double LARGE = 0.01, SMALL = 1e-8;
 
 typedef struct {
     brio_context *ctx;
+    double size; /* of the torus */
     double *points, *spacing;
     brio_triangulation *delaunay;
     brio_pole_vectors dual;
@@ -20,16 +26,22 @@ typedef struct {
     uint8_t *label;
 } scene;
 
-/* A noisy torus at -0.6, with samples on a sphere far round it; a noisy ball at 0.6. All coordinates are under 1. */
-static void place_points(double *p) {
+/* Returns which shell a sample is on: 0 of the torus, SHELLS + 1 if it is far away. */
+static size_t shell_of(size_t sample) {
+    return sample < TORUS ? 0 : sample < ALONE ? 1 + sample % SHELLS : SHELLS + 1;
+}
+
+/* A noisy torus at -0.6, with samples on spheres far round it; a noisy ball at 0.6. All coordinates are under 1. */
+static void place_points(double size, double *p) {
     brio_rng rng = brio_rng_new(8);
     torus_points(1, TORUS, p);
     sphere_points(2, GUARD, p + 3 * TORUS);
     sphere_points(3, ALL - ALONE, p + 3 * ALONE);
     for (size_t i = 0; i < 3 * ALL; i++) {
-        bool guard = i >= 3 * TORUS && i < 3 * ALONE, far = i >= 3 * ALONE;
-        double x = guard ? 3 * p[i] : p[i] + 0.1 * (brio_rng_double(&rng) - 0.5);
-        p[i] = (far ? 0.6 : -0.6) + 0.1 * x;
+        size_t shell = shell_of(i / 3);
+        bool far = shell > SHELLS, guard = shell > 0 && !far;
+        double x = guard ? pow(3, (double)shell) * p[i] : p[i] + 0.1 * (brio_rng_double(&rng) - 0.5);
+        p[i] = (far ? 0.6 : -0.6) + size * x;
     }
 }
 
@@ -49,10 +61,12 @@ done:
     return s;
 }
 
-static scene *scene_of(size_t n) {
+static scene *scene_of(size_t n, double size) {
     double all[3 * ALL];
-    place_points(all);
-    return scene_with(n, all);
+    place_points(size, all);
+    scene *s = scene_with(n, all);
+    s->size = size;
+    return s;
 }
 
 static void weigh(scene *s) {
@@ -79,20 +93,30 @@ static bool is_in_torus(const scene *s, size_t tet) {
     return true;
 }
 
-/* Inner is what is within the sphere and not in the torus, or in the ball. One in eight of the tetrahedra of torus
- * samples has the other label. */
+/* Returns whether a finite tetrahedron is inner before it is spoiled: what is within every other shell and not in the
+ * torus, or in the ball. */
+static bool is_inner(const scene *s, size_t tet) {
+    const uint32_t *v = s->dual.t.tet[tet].vertex;
+    double c[3] = {0, 0, 0}, square = 0;
+    size_t shell = 0;
+    for (int i = 0; i < 4; i++)
+        if (shell_of(v[i]) > shell) shell = shell_of(v[i]);
+    for (size_t k = 0; k < 3; k++) {
+        for (int i = 0; i < 4; i++) c[k] += (s->points[3 * (size_t)v[i] + k] + (shell > SHELLS ? -0.6 : 0.6)) / 4;
+        c[k] /= s->size;
+        square += c[k] * c[k];
+    }
+    double ring = sqrt(c[0] * c[0] + c[1] * c[1]) - 1;
+    return shell == 0 ? ring * ring + c[2] * c[2] >= 0.16 : shell > SHELLS ? square < 1 : shell % 2 == 1;
+}
+
+/* One in eight of the tetrahedra of torus samples has the other label. */
 static void label_spoiled(const scene *s) {
     for (size_t t = 0; t < s->dual.t.count; t++) {
         s->label[t] = BRIO_LABEL_OUTER;
         if (t >= s->dual.num_finite) continue;
-        double c[3] = {0, 0, 0}, far = 0, square = 0;
-        for (int i = 0; i < 4; i++)
-            for (size_t k = 0; k < 3; k++) c[k] += (s->points[3 * s->dual.t.tet[t].vertex[i] + k] + 0.6) / 0.4;
-        for (int k = 0; k < 3; k++) square += c[k] * c[k], far += (c[k] - 12) * (c[k] - 12);
-        double ring = sqrt(c[0] * c[0] + c[1] * c[1]) - 1;
-        bool inner = (square < 9 && ring * ring + c[2] * c[2] >= 0.16) || far < 1;
         bool spoiled = is_in_torus(s, t) && brio_tet_hash(&s->dual, t) % 8 == 0;
-        if (inner != spoiled) s->label[t] = BRIO_LABEL_INNER;
+        if (is_inner(s, t) != spoiled) s->label[t] = BRIO_LABEL_INNER;
     }
     for (size_t p = 0; p < s->dual.num_points; p++) s->label[s->dual.t.count + p] = BRIO_LABEL_OUTER;
 }
@@ -252,7 +276,7 @@ static void expect_same_labels(const scene *s, const scene *o, const numbers *to
 }
 
 static void numbers_do_not_matter(void) {
-    scene *s = scene_of(ALONE);
+    scene *s = scene_of(ALONE, LARGE);
     weigh(s);
     for (uint64_t seed = 1; seed <= 3; seed++) {
         label_spoiled(s);
@@ -341,8 +365,8 @@ static size_t count_different(const scene *alone, const scene *beside, size_t *c
     return different;
 }
 
-static void an_object_far_away_does_not_matter(void) {
-    scene *alone = scene_of(ALONE), *beside = scene_of(ALL);
+static void expect_same_beside(double size) {
+    scene *alone = scene_of(ALONE, size), *beside = scene_of(ALL, size);
     size_t common;
     weigh(alone);
     weigh(beside);
@@ -362,9 +386,19 @@ static void an_object_far_away_does_not_matter(void) {
     free_scene(beside);
 }
 
+static void an_object_far_away_does_not_matter(void) {
+    expect_same_beside(LARGE);
+}
+
+/* Once cells were halved no more than 21 times: all nodes of the torus were in one. */
+static void an_object_a_billion_spacings_away_does_not_matter(void) {
+    expect_same_beside(SMALL);
+}
+
 SUITE(test_position_rounds) {
     RUN(numbers_do_not_matter);
     RUN(signs_do_not_depend_on_numbers);
     RUN(an_object_far_away_does_not_matter);
+    RUN(an_object_a_billion_spacings_away_does_not_matter);
     return harness_end();
 }

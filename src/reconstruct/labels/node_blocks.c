@@ -24,7 +24,7 @@
 #include <string.h>
 
 /* HOPS: a node of a block is at most this many edges from a node with a violated edge. Chosen, as the next two.
- * GRID_BITS: of each coordinate on the grid. LEVELS: of halvings in one direction, so that all fit into a key. */
+ * GRID_BITS: of each coordinate on the grid. LEVELS: of halvings in one direction, as many as fit into a key. */
 enum { HOPS = 3, OUTSIDE = 255, NODES_A_THREAD = 1024, NODES_A_CHUNK = 1024, GRID_BITS = 60, LEVELS = 21 };
 
 /* What one thread finds: the pairs of blocks that an edge joins, as higher number << 32 | lower number. */
@@ -46,11 +46,13 @@ typedef struct {
     uint8_t hop;     /* the depth of the nodes whose neighbours are reached now */
     joiner *joiners; /* one for each thread */
     brio_status joined;
-    uint64_t shift[3];   /* of the grid */
-    uint64_t (*cell)[3]; /* of each node of the region: where it is on the grid; then the keys alone */
-    int top;             /* the highest bit in which these differ */
-    uint64_t *key;       /* of each node of the region: its cells of all levels, the largest first */
-    uint8_t *depth;      /* #nodes: edges from the nearest node with a violated edge, or OUTSIDE */
+    uint64_t shift[3]; /* of the grid */
+    uint64_t differ;   /* the bits in which places of nodes of the region differ on the grid */
+    int top;           /* the highest of these */
+    uint64_t *key;     /* of each node of the region: its cells of LEVELS levels, the largest first */
+    size_t keyed;      /* the first of the nodes whose keys are made now */
+    int level;         /* the first level of these keys */
+    uint8_t *depth;    /* #nodes: edges from the nearest node with a violated edge, or OUTSIDE */
     found_block *found;
     size_t num_found, found_room;
     uint8_t *trouble; /* #blocks: 1 if one of the block's nodes has a violated edge */
@@ -124,17 +126,22 @@ static uint64_t on_grid(const finder *f, uint32_t node, int k) {
     return f->shift[k] + (uint64_t)((INT64_C(1) << GRID_BITS) + (int64_t)x);
 }
 
-static void find_places(void *user, size_t begin, size_t end, int thread) {
-    const finder *f = user;
+static void find_differences(void *user, size_t begin, size_t end, int thread) {
+    finder *f = user;
+    uint64_t differ = 0;
     (void)thread;
-    for (size_t i = begin; i < end; i++)
-        for (int k = 0; k < 3; k++) f->cell[i][k] = on_grid(f, f->out->node[i], k);
+    for (int k = 0; k < 3; k++) {
+        uint64_t first = on_grid(f, f->out->node[0], k);
+        for (size_t i = begin; i < end; i++) differ |= on_grid(f, f->out->node[i], k) ^ first;
+    }
+    __atomic_fetch_or(&f->differ, differ, __ATOMIC_RELAXED);
 }
 
-/* Returns the 3 * LEVELS bits that say in which half a node is, at each level in x, y and z, from the top down. */
-static uint64_t key_of(const finder *f, const uint64_t cell[3]) {
-    uint64_t key = 0;
-    for (int level = 0; level < LEVELS; level++)
+/* Returns the 3 * LEVELS bits that say in which half a node is, at each level in x, y and z, from f->level down. */
+static uint64_t key_of(const finder *f, uint32_t node) {
+    uint64_t key = 0, cell[3];
+    for (int k = 0; k < 3; k++) cell[k] = on_grid(f, node, k);
+    for (int level = f->level; level < f->level + LEVELS; level++)
         for (int k = 0; k < 3; k++) key = key << 1 | (f->top < level ? 0 : cell[k] >> (f->top - level) & 1);
     return key;
 }
@@ -142,31 +149,28 @@ static uint64_t key_of(const finder *f, const uint64_t cell[3]) {
 static void find_keys(void *user, size_t begin, size_t end, int thread) {
     const finder *f = user;
     (void)thread;
-    for (size_t i = begin; i < end; i++) f->key[i] = key_of(f, f->cell[i]);
+    for (size_t i = f->keyed + begin; i < f->keyed + end; i++) f->key[i] = key_of(f, f->out->node[i]);
 }
 
-/* Finds the highest bit in which nodes differ. */
-static void find_top(finder *f) {
-    uint64_t differ = 0;
-    for (size_t i = 1; i < f->out->count; i++)
-        for (int k = 0; k < 3; k++) differ |= f->cell[i][k] ^ f->cell[0][k];
-    f->top = 0;
-    while (differ >> f->top > 1) f->top++;
+/* Sorts the nodes of a cell by the smaller ones of the next LEVELS levels. */
+static brio_status sort_by_cells(finder *f, size_t begin, size_t end, int level) {
+    brio_status status = BRIO_OK;
+    brio_node_blocks *b = f->out;
+    f->keyed = begin, f->level = level;
+    BRIO_TRY(brio_for(b->ctx, brio_threads(b->ctx, end - begin, NODES_A_THREAD), end - begin, find_keys, f));
+    BRIO_TRY(brio_radix_sort(b->ctx, f->key + begin, b->node + begin, end - begin, 3 * LEVELS));
+done:
+    return status;
 }
 
-static brio_status sort_by_cells(finder *f, uint64_t draw) {
+/* Places the grid, and finds the smallest cell of it that holds the region. */
+static brio_status find_top(finder *f, uint64_t draw) {
     brio_status status = BRIO_OK;
     brio_node_blocks *b = f->out;
     brio_rng rng = brio_rng_new(draw);
     for (int k = 0; k < 3; k++) f->shift[k] = brio_rng_next(&rng) >> (64 - GRID_BITS);
-    BRIO_TRY(BRIO_ALLOC(b->ctx, f->cell, b->count));
-    BRIO_TRY(BRIO_ALLOC(b->ctx, f->key, b->count));
-    BRIO_TRY(brio_for(b->ctx, f->threads, b->count, find_places, f));
-    find_top(f);
-    BRIO_TRY(brio_for(b->ctx, f->threads, b->count, find_keys, f));
-    brio_release(b->ctx, f->cell);
-    f->cell = NULL;
-    BRIO_TRY(brio_radix_sort(b->ctx, f->key, b->node, b->count, 3 * LEVELS));
+    if (b->count > 0) BRIO_TRY(brio_for(b->ctx, f->threads, b->count, find_differences, f));
+    while (f->differ >> f->top > 1) f->top++;
 done:
     return status;
 }
@@ -179,7 +183,7 @@ static brio_status add_block(finder *f, size_t begin, size_t end, int levels) {
     BRIO_TRY(BRIO_RESERVE(b->ctx, f->found, f->found_room, f->num_found + 1));
     for (int k = 0; k < 3; k++) {
         int low = f->top + 1 - (levels + 2 - k) / 3;
-        hash = brio_hash(hash, on_grid(f, b->node[begin], k) >> (low > 0 ? low : 0));
+        hash = brio_hash(hash, on_grid(f, b->node[begin], k) >> low);
         hash = brio_hash(hash, (uint64_t)low);
     }
     f->found[f->num_found++] = (found_block){hash, begin, end};
@@ -192,13 +196,15 @@ static int compare_positions(uint32_t a, uint32_t b, const void *user) {
     return brio_lexicographic(position + 3 * (size_t)a, position + 3 * (size_t)b);
 }
 
-/* Halves a cell until no part has over 2^bits nodes. Where nodes are too close together for that, their positions in
- * ascending order are cut into runs.   levels  how often it was halved. */
+/* Halves a cell until no part has over 2^bits nodes. However many levels that takes, the keys are those of the cell: so
+ * nodes far away change nothing. Where more nodes are at one place of the grid, their positions in ascending order are
+ * cut into runs.   levels  how often it was halved. */
 static brio_status halve(finder *f, size_t begin, size_t end, int levels) {
     brio_status status = BRIO_OK;
     size_t most = (size_t)1 << f->out->bits;
-    while (end - begin > most && levels < 3 * LEVELS) {
-        uint64_t bit = UINT64_C(1) << (3 * LEVELS - 1 - levels++);
+    while (end - begin > most && levels < 3 * (f->top + 1)) {
+        if (levels % (3 * LEVELS) == 0) BRIO_TRY(sort_by_cells(f, begin, end, levels / 3));
+        uint64_t bit = UINT64_C(1) << (3 * LEVELS - 1 - levels++ % (3 * LEVELS));
         size_t low = begin, high = end;
         while (low < high) {
             size_t middle = low + (high - low) / 2;
@@ -233,6 +239,7 @@ static brio_status list_blocks(finder *f) {
     brio_status status = BRIO_OK;
     brio_node_blocks *b = f->out;
     uint32_t *order = NULL;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, f->key, b->count));
     BRIO_TRY(b->count > 0 ? halve(f, 0, b->count, 0) : BRIO_OK);
     b->num_blocks = f->num_found;
     BRIO_TRY(BRIO_ALLOC(b->ctx, order, b->num_blocks));
@@ -376,13 +383,12 @@ brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *lab
     finder f = {.g = g, .label = label, .fixed = fixed, .threads = threads, .out = out};
     *out = (brio_node_blocks){.ctx = g->ctx, .bits = bits};
     BRIO_TRY(list_region(&f));
-    BRIO_TRY(sort_by_cells(&f, draw));
+    BRIO_TRY(find_top(&f, draw));
     BRIO_TRY(list_blocks(&f));
     BRIO_TRY(set_places(&f));
     BRIO_TRY(divide_into_rounds(&f));
 done:
     brio_release(g->ctx, f.depth);
-    brio_release(g->ctx, f.cell);
     brio_release(g->ctx, f.key);
     brio_release(g->ctx, f.found);
     brio_release(g->ctx, f.trouble);

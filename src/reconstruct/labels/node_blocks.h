@@ -8,7 +8,8 @@
  *  I1  No edge of the graph joins two blocks of a round, so threads can work on the blocks of a round side by side.
  *  I2  A block is in one round if an edge of one of its nodes is violated, otherwise in none.
  *  I3  Nothing here depends on the number of threads. The blocks and their rounds depend on the positions of nodes, and
- *      not on their numbers. */
+ *      not on their numbers, unless over 2^bits nodes have one position. Nodes far away do not change a block, unless
+ *      over 2^bits nodes are within 2^(exponent - 60) of each other in each coordinate. */
 typedef struct {
     brio_context *ctx;
     size_t count;    /* of all blocks together */

@@ -75,7 +75,6 @@ typedef struct {
     int32_t *rim;      /* 3 #F: of the edge of each half-edge */
     uint8_t *part;
     uint32_t *queue; /* the triangles of all holes, one hole after another */
-    brio_sum_unit of_areas, of_usual_areas;
     brio_hole_list *holes;
 } cutting;
 
@@ -161,55 +160,63 @@ static double usual_area_of(const cutting *c, size_t f) {
     return area_of(c->net, f) / c->usual[f] / c->usual[f];
 }
 
-/* Finds the units that areas are summed in: of all triangles, and of those in holes against what is usual there. */
-static void find_units(cutting *c) {
-    double area = 0, usual = 0;
-    for (size_t f = 0; f < c->net->num_faces; f++) {
-        area = fmax(area, area_of(c->net, f));
-        if (c->part[f] == BRIO_TRIANGLE_GONE && isfinite(usual_area_of(c, f))) usual = fmax(usual, usual_area_of(c, f));
-    }
-    c->of_areas = brio_sum_unit_for(area, c->net->num_faces);
-    c->of_usual_areas = brio_sum_unit_for(usual, c->net->num_faces);
-}
-
-/* The sums over the triangles of a hole, in units. */
-typedef struct {
-    int64_t area, facing, viewing, usual_area;
-} hole_sums;
-
-static void take_sums(const cutting *c, const hole_sums *s, brio_hole *hole) {
-    hole->area = (double)s->area * c->of_areas.unit;
-    hole->usual_area = (double)s->usual_area * c->of_usual_areas.unit;
-    hole->facing = s->area > 0 ? (double)s->facing / (double)s->area : 1;
-    hole->viewing = s->area > 0 ? (double)s->viewing / (double)s->area : 1;
-}
-
-/* Lists the triangles of the hole of f in the queue, from `begin` to *end, and measures it. */
-static brio_hole list_hole(const cutting *c, uint32_t f, size_t begin, size_t *end) {
-    brio_hole hole = {.widest = f};
-    hole_sums sums = {0};
+/* Lists the triangles of the hole of f in the queue, from `begin` on. Returns where they end. */
+static size_t list_hole(const cutting *c, uint32_t f, size_t begin) {
+    size_t end = begin + 1;
     c->part[f] = BRIO_TRIANGLE_BRIDGE;
     c->queue[begin] = f;
-    *end = begin + 1;
-    for (size_t i = begin; i < *end; i++) {
-        uint32_t g = c->queue[i];
-        double ratio = c->radius[g] / c->usual[g], area = area_of(c->net, g);
-        bool ties = ratio == hole.ratio && brio_net_hash(c->net, g) < brio_net_hash(c->net, hole.widest);
-        if (ratio > hole.ratio || ties) hole.ratio = ratio, hole.widest = g;
-        sums.area += brio_in_units(c->of_areas, area);
-        sums.facing += brio_in_units(c->of_areas, area * brio_net_facing(c->net, g));
-        sums.viewing += brio_in_units(c->of_areas, area * brio_net_viewing(c->net, g));
-        sums.usual_area += brio_in_units(c->of_usual_areas, usual_area_of(c, g));
-        hole.open |= c->rule->choice == BRIO_HOLES_WIDER && c->radius[g] > c->rule->most;
-        for (uint32_t k = 0; k < 3; k++) {
+    for (size_t i = begin; i < end; i++)
+        for (uint32_t k = 0, g = c->queue[i]; k < 3; k++) {
             if (!brio_net_has_twin(c->net, 3 * (size_t)g + k)) continue;
             uint32_t other = c->net->twin[3 * g + k] / 3;
             if (c->part[other] != BRIO_TRIANGLE_GONE) continue;
             c->part[other] = BRIO_TRIANGLE_BRIDGE;
-            c->queue[(*end)++] = other;
+            c->queue[end++] = other;
         }
+    return end;
+}
+
+/* The sums over the triangles of a hole, in units of this hole: what a hole is does not depend on how large triangles
+ * are elsewhere. */
+typedef struct {
+    brio_sum_unit of_area, of_usual_area;
+    int64_t area, facing, viewing, usual_area;
+} hole_sums;
+
+static hole_sums sum_hole(const cutting *c, size_t begin, size_t end) {
+    double area = 0, usual = 0;
+    for (size_t i = begin; i < end; i++) {
+        area = fmax(area, area_of(c->net, c->queue[i]));
+        if (isfinite(usual_area_of(c, c->queue[i]))) usual = fmax(usual, usual_area_of(c, c->queue[i]));
     }
-    take_sums(c, &sums, &hole);
+    hole_sums s = {.of_area = brio_sum_unit_for(area, end - begin),
+                   .of_usual_area = brio_sum_unit_for(usual, end - begin)};
+    for (size_t i = begin; i < end; i++) {
+        uint32_t f = c->queue[i];
+        area = area_of(c->net, f);
+        s.area += brio_in_units(s.of_area, area);
+        s.facing += brio_in_units(s.of_area, area * brio_net_facing(c->net, f));
+        s.viewing += brio_in_units(s.of_area, area * brio_net_viewing(c->net, f));
+        s.usual_area += brio_in_units(s.of_usual_area, usual_area_of(c, f));
+    }
+    return s;
+}
+
+/* Measures the hole of the triangles from `begin` to `end` of the queue. */
+static brio_hole measure_hole(const cutting *c, size_t begin, size_t end) {
+    brio_hole hole = {.widest = c->queue[begin]};
+    hole_sums s = sum_hole(c, begin, end);
+    for (size_t i = begin; i < end; i++) {
+        uint32_t f = c->queue[i];
+        double ratio = c->radius[f] / c->usual[f];
+        bool ties = ratio == hole.ratio && brio_net_hash(c->net, f) < brio_net_hash(c->net, hole.widest);
+        if (ratio > hole.ratio || ties) hole.ratio = ratio, hole.widest = f;
+        hole.open |= c->rule->choice == BRIO_HOLES_WIDER && c->radius[f] > c->rule->most;
+    }
+    hole.area = (double)s.area * s.of_area.unit;
+    hole.usual_area = (double)s.usual_area * s.of_usual_area.unit;
+    hole.facing = s.area > 0 ? (double)s.facing / (double)s.area : 1;
+    hole.viewing = s.area > 0 ? (double)s.viewing / (double)s.area : 1;
     return hole;
 }
 
@@ -241,13 +248,15 @@ done:
  * area. Holes behind whose rims samples go on prove nothing. */
 static double proof_of(const cutting *c) {
     const brio_hole_list *l = c->holes;
-    double proof = 0;
+    double proof = 0, greatest = 0;
     int64_t all = 0, unlikely = 0;
-    for (size_t f = 0; f < c->net->num_faces; f++) all += brio_in_units(c->of_areas, area_of(c->net, f));
+    for (size_t f = 0; f < c->net->num_faces; f++) greatest = fmax(greatest, area_of(c->net, f));
+    brio_sum_unit unit = brio_sum_unit_for(greatest, c->net->num_faces);
+    for (size_t f = 0; f < c->net->num_faces; f++) all += brio_in_units(unit, area_of(c->net, f));
     for (size_t i = 0; i < l->count; i++) {
         const brio_hole *h = &l->hole[i];
         if (!h->unlikely || h->beyond > BEYOND) continue;
-        unlikely += (int64_t)(h->area / c->of_areas.unit);
+        unlikely += (int64_t)(h->area / unit.unit + 0.5);
         proof = fmax(proof, fmin(h->ratio / PROOF, h->usual_area / PROOF_AREA));
     }
     return all > 0 ? fmax(proof, (double)unlikely / (PROOF_SHARE * (double)all)) : proof;
@@ -302,12 +311,12 @@ static brio_status list_holes(cutting *c) {
     brio_status status = BRIO_OK;
     brio_hole_list *l = c->holes;
     size_t *end = NULL, capacity = 0, listed = 0;
-    find_units(c);
     for (uint32_t f = 0; f < c->net->num_faces; f++) {
         if (c->part[f] != BRIO_TRIANGLE_GONE) continue;
         BRIO_TRY(BRIO_RESERVE(l->ctx, l->hole, l->capacity, l->count + 1));
         BRIO_TRY(BRIO_RESERVE(l->ctx, end, capacity, l->count + 1));
-        l->hole[l->count] = list_hole(c, f, listed, &end[l->count]);
+        end[l->count] = list_hole(c, f, listed);
+        l->hole[l->count] = measure_hole(c, listed, end[l->count]);
         listed = end[l->count++];
     }
     BRIO_TRY(decide(c, end));
