@@ -4,7 +4,9 @@
  * transaction, and let T be copied while it still has W as its mate there: that holds for the one of them that is
  * copied first, since only the change of one gives the other another mate. So copies are written back from the last
  * to the first, and each makes itself the mate of its mates. What W's copy, a later one, says of the facet is
- * overwritten then. Slots that were reused meanwhile were copied before that, and are written after it.
+ * overwritten then. Slots that were reused meanwhile were copied before that, and are written after it. Stamps tell
+ * what is later where several threads copy: each hole has a later one than the holes that it meets, and what one thread
+ * copies after a pass, in a hole or not, has a later one than all that the pass copied.
  *
  * Homes of vertices change with every tetrahedron and are not noted. When slots are written back, each of their
  * vertices gets one of them as its home: a vertex whose home has changed lost a tetrahedron that it had before. The
@@ -41,6 +43,7 @@ void brio_journal_give(brio_dynamic *d, brio_journal *hand, brio_journal *node) 
     d->journal.more = node;
     hand->slot = NULL, hand->row = NULL;
     hand->num_slots = hand->num_rows = hand->slot_capacity = hand->row_capacity = 0;
+    brio_journal_stamp(d);
 }
 
 static void restore_rows(brio_dynamic *d) {

@@ -179,7 +179,8 @@ brio_status brio_journal_reserve(brio_dynamic *d, size_t slots, size_t rows);
 /** Begins a hole: what is noted from now on has a later stamp than what other hands noted in holes that this one
  *  meets. */
 void brio_journal_stamp(brio_dynamic *d);
-/** Gives the journal of a hand to d, whose change it is part of. `node` is empty, and d's then. */
+/** Gives the journal of a hand to d, whose change it is part of. `node` is empty, and d's then. What d notes from now
+ *  on has a later stamp than what the hand noted. */
 void brio_journal_give(brio_dynamic *d, brio_journal *hand, brio_journal *node);
 
 /** Ends the time (L5) of a tetrahedron. In a pass several threads may do that at once. */

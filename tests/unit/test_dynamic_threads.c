@@ -120,9 +120,57 @@ static void memory_that_fails_in_a_thread_leaves_all(void) {
     }
 }
 
+/* Inserts points at two far corners, which threads do, and light ones everywhere, which are hidden: these are left to one
+ * thread. */
+static brio_status hide_many(world *w, size_t n) {
+    static double p[3 * AT_ONCE], weight[AT_ONCE];
+    state = 11;
+    for (size_t i = 0; i < n; i++) {
+        bool light = i % 6 > 0;
+        for (size_t c = 0; c < 3; c++) p[3 * i + c] = light ? draw() : 0.7 * (double)(i % 12 > 0) + 0.3 * draw();
+        weight[i] = light ? -1 : 0;
+    }
+    return brio_dynamic_insert(w->d, p, weight, n, NULL);
+}
+
+/* What one thread hides after a pass, before it digs a hole, is taken back before what the threads changed: tetrahedra
+ * that it notes have mates that the threads wrote. */
+static void points_hidden_after_a_pass_are_taken_back(void) {
+    failing_memory memory = {0, 0};
+    brio_allocator allocator = {failing_alloc, failing_realloc, failing_free, &memory};
+    world w = world_new(UNIFORM, 1, 3000);
+    size_t failures = 0;
+    brio_context_free(w.ctx);
+    EXPECT(brio_context_new(&allocator, &w.ctx) == BRIO_OK);
+    for (size_t i = 0; i < 1500; i++) {
+        double p[3];
+        draw_point(w.shape, p);
+        enter(&w, w.num_indices++, p, 0);
+    }
+    brio_status status = BRIO_ERR_NO_MEMORY;
+    for (size_t k = 1; k < 1000 && status != BRIO_OK; k++) {
+        brio_context_set_threads(w.ctx, 1);
+        EXPECT(brio_dynamic_new(w.ctx, w.point, w.weight, w.num_points, 1, &w.d) == BRIO_OK);
+        brio_context_set_threads(w.ctx, 2);
+        memory.left = k;
+        status = hide_many(&w, 384);
+        memory.left = 0;
+        EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_MEMORY, "%s", brio_message(w.ctx));
+        if (status != BRIO_OK) EXPECT(is_as_built(&w), "request %zu", k);
+        if (status != BRIO_OK) EXPECT(brio_dynamic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+        failures += status != BRIO_OK;
+        brio_dynamic_free(w.d);
+        w.d = NULL;
+    }
+    EXPECT(status == BRIO_OK && failures > 10, "%zu", failures);
+    world_free(&w);
+    EXPECT(memory.live == 0, "%zu blocks left", memory.live);
+}
+
 SUITE(test_dynamic_threads) {
     RUN(batches_of_threads_end_as_built);
     RUN(stopped_threads_leave_all);
     RUN(memory_that_fails_in_a_thread_leaves_all);
+    RUN(points_hidden_after_a_pass_are_taken_back);
     return harness_end();
 }
