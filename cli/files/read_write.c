@@ -141,10 +141,13 @@ brio_status cli_drop_connectivity(run *r, brio_mesh *mesh) {
     rest->face_vertices = mesh->face_vertices;
     rest->tetrahedra = mesh->tetrahedra;
     rest->edges = mesh->edges;
+    rest->face_properties = mesh->face_properties;
+    rest->num_face_properties = mesh->num_face_properties;
     brio_mesh_free(rest);
     mesh->face_offsets = NULL;
     mesh->face_vertices = mesh->tetrahedra = mesh->edges = NULL;
-    mesh->num_faces = mesh->num_tetrahedra = mesh->num_edges = 0;
+    mesh->face_properties = NULL;
+    mesh->num_faces = mesh->num_tetrahedra = mesh->num_edges = mesh->num_face_properties = 0;
     return BRIO_OK;
 }
 

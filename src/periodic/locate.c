@@ -61,7 +61,7 @@ brio_status brio_periodic_locator_new(brio_context *ctx, const brio_periodic *t,
     l->t = t;
     BRIO_TRY(BRIO_ALLOC(ctx, left_out, t->stats.points + 1));
     BRIO_TRY(find_corners(l, left_out));
-    BRIO_TRY(brio_translates_new(&t->images, left_out, &l->translates));
+    BRIO_TRY(brio_translates_new(ctx, &t->images, left_out, &l->translates));
     *out = l;
     l = NULL;
 done:

@@ -135,7 +135,7 @@ static brio_status represent_hidden(brio_periodic *t, const uint8_t *is_vertex, 
     uint8_t *left_out = NULL;
     BRIO_TRY(BRIO_ALLOC(t->ctx, left_out, m->num_points + 1));
     for (size_t p = 0; p < m->num_points; p++) left_out[p] = !is_vertex[p];
-    BRIO_TRY(brio_translates_new(m, left_out, &translates));
+    BRIO_TRY(brio_translates_new(t->ctx, m, left_out, &translates));
     BRIO_TRY(brio_sort_rows(t->ctx, &(brio_row_order){m->x[0], 3, compare_positions, m}, hidden, count));
     for (size_t n = 0; n < count; n++) {
         brio_image nearest;

@@ -311,7 +311,7 @@ static brio_status complete(layer *y) {
     for (size_t p = 0; p < y->num_points && m->weight; p++) y->heaviest = fmax(y->heaviest, m->weight[p]);
     BRIO_FORWARD(BRIO_ALLOC(y->ctx, y->left_out, y->num_points + 1));
     for (size_t p = 0; p < y->num_points; p++) y->left_out[p] = !y->s->is_vertex[p];
-    BRIO_FORWARD(brio_translates_new(m, y->left_out, &y->translates));
+    BRIO_FORWARD(brio_translates_new(y->ctx, m, y->left_out, &y->translates));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(y->ctx, y->s->redone, y->num_points + 1));
     BRIO_FORWARD(search_layer(y));
     return y->s->num_redone ? redo(y) : BRIO_OK;

@@ -96,9 +96,9 @@ done:
     return status;
 }
 
-brio_status brio_translates_new(const brio_images *m, const uint8_t *left_out, brio_translates *t) {
+brio_status brio_translates_new(brio_context *ctx, const brio_images *m, const uint8_t *left_out, brio_translates *t) {
     const brio_lattice *l = m->lattice;
-    *t = (brio_translates){.ctx = m->ctx, .lattice = l, .all = NOTHING};
+    *t = (brio_translates){.ctx = ctx, .lattice = l, .all = NOTHING};
     double extent[3], least = INFINITY;
     for (size_t p = 0; p < m->num_points; p++) {
         double w = m->weight ? m->weight[p] : 0;

@@ -21,9 +21,11 @@ typedef struct brio_translates {
 } brio_translates;
 
 /** Makes the translates of those points of the domain that may be vertices.
+ *  ctx       holds their memory; the images may be those of a triangulation of another context.
  *  left_out  #points: 1 for points that are none.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED; freed with brio_translates_free in any case. */
-brio_status brio_translates_new(const brio_images *images, const uint8_t *left_out, brio_translates *out);
+brio_status brio_translates_new(brio_context *ctx, const brio_images *images, const uint8_t *left_out,
+                                brio_translates *out);
 void brio_translates_free(brio_translates *t);
 
 /** Finds the translate deepest in conflict with a tetrahedron. Returns whether there is one.

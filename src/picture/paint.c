@@ -61,8 +61,10 @@ static brio_status take_values(brio_context *ctx, const numbers *x, brio_paint *
     return BRIO_OK;
 }
 
+/* Returns a property, or NULL. Those of faces colour nothing where there are no faces. */
 static const brio_property *find(const brio_mesh *m, const char *name, bool of_faces) {
-    return of_faces ? brio_mesh_face_property(m, name) : brio_mesh_property(m, name);
+    if (of_faces) return m->num_faces ? brio_mesh_face_property(m, name) : NULL;
+    return brio_mesh_property(m, name);
 }
 
 /* Takes the colours red, green and blue, if there are all three: bytes, 16 bits, or real numbers up to 1. */

@@ -252,6 +252,16 @@ class Uses(PictureTest):
             self.assertGreater(facts["picture"]["bytes"], 1000)
             self.assertGreater(facts["view_bytes"], 1000)
 
+    def test_colours_of_faces_that_are_dropped_colour_nothing(self):
+        """They were read as if of what is made in their place, beyond their end; or that could not be made."""
+        draw, colours = random.Random(5), ["uchar red", "uchar green", "uchar blue"]
+        points, corner = [tuple(draw.random() for _ in range(3)) for _ in range(400)], [(0, 1, 2)]
+        painted = self.ply("painted.ply", points, corner, face=colours, marks=lambda i: "200 20 20")
+        plain = self.ply("plain.ply", points, corner)
+        for line in (("delaunay",), ("delaunay", "--plane", "xy"), ("terrain",), ("hull",), ("alpha", "--alpha", "auto"), ("surface",)):
+            shown = [self.picture(file, *line[1:], command=line[0])[0] for file in (painted, plain)]
+            self.assertTrue(shown[0] == shown[1], line)
+
     def test_wrong_uses(self):
         cube = self.ply("cube.ply", CUBE, QUADS)
         for words, arguments in (("a picture is .png", ("--picture", "x.jpg")), ("has no meaning without --picture", ("--look", "1,0,0", "-o", "x.html")),

@@ -459,6 +459,46 @@ static void places_are_in_their_tetrahedra(void) {
     locate_in(5, make(15, CUBE, "z", 16, true), false);
 }
 
+/* --- contexts --- */
+
+static int count_call(const char *stage, double done, void *user) {
+    (void)stage, (void)done;
+    ++*(int *)user;
+    return 0;
+}
+
+/* The context that made a triangulation may work for another thread while somebody asks about the triangulation. */
+static void queries_leave_the_context_of_the_triangulation_alone(void) {
+    static const double q[3] = {0.25, 0.5, 0.75};
+    sample s = make(16, TILTED, "xyz", 1 << 20, true);
+    brio_context *own = NULL;
+    brio_periodic_locator *l = NULL;
+    brio_periodic_alpha *a = NULL;
+    brio_cells *cells = NULL;
+    brio_image found;
+    uint64_t sum;
+    int calls = 0;
+    size_t before = brio_context_memory(ctx);
+    EXPECT(brio_context_new(NULL, &own) == BRIO_OK);
+    brio_context_set_progress(ctx, count_call, &calls);
+    EXPECT(brio_periodic_locator_new(own, s.t, &l) == BRIO_OK, "%s", brio_message(own));
+    EXPECT(brio_context_memory(ctx) == before, "the locator");
+    EXPECT(brio_periodic_locator_tetrahedra(own, l, q, 1, &found) == BRIO_OK, "%s", brio_message(own));
+    EXPECT(brio_periodic_locator_least_power(own, l, q, 1, &found) == BRIO_OK, "%s", brio_message(own));
+    EXPECT(brio_periodic_alpha_values(own, s.t, &a) == BRIO_OK, "%s", brio_message(own));
+    EXPECT(brio_periodic_cells(own, s.t, NULL, &cells) == BRIO_OK, "%s", brio_message(own));
+    EXPECT(brio_periodic_check(own, s.t) == BRIO_OK, "%s", brio_message(own));
+    EXPECT(brio_periodic_checksum(own, s.t, &sum) == BRIO_OK, "%s", brio_message(own));
+    EXPECT(brio_context_memory(ctx) == before && calls == 0, "%zu bytes more, %d calls",
+           brio_context_memory(ctx) - before, calls);
+    brio_context_set_progress(ctx, NULL, NULL);
+    brio_cells_free(cells);
+    brio_periodic_alpha_free(a);
+    brio_periodic_locator_free(l);
+    brio_context_free(own);
+    brio_periodic_free(s.t);
+}
+
 SUITE(test_periodic_queries) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return 1;
     RUN(alpha_is_that_of_many_copies);
@@ -468,6 +508,7 @@ SUITE(test_periodic_queries) {
     RUN(simplices_have_names_by_points_where_they_differ);
     RUN(memory_that_runs_out);
     RUN(places_are_in_their_tetrahedra);
+    RUN(queries_leave_the_context_of_the_triangulation_alone);
     brio_context_free(ctx);
     return harness_end();
 }
