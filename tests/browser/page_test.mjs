@@ -330,7 +330,8 @@ async function alphas() {
     const hash = await page.evaluate(() => location.hash);
     await page.context().close();
     const again = await open("alphas.html", { hash });
-    expect(await again.evaluate(() => window.brioPage.drawings[1].shape.boundary) === seen[3][0], "the address brings alpha back");
+    const back = await again.evaluate(() => [window.brioPage.drawings[1].shape.boundary, window.brioPage.drawings[1].state.alpha, location.hash]);
+    expect(back[0] === seen[3][0], `the address ${hash} brings back ${back}, not ${seen[3][0]} triangles`);
     await again.context().close();
 }
 
