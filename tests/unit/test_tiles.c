@@ -1,5 +1,6 @@
 /* Triangulations in tiles: the same checksum and counts as without, whatever the points and the number of tiles. */
 #include "base/memory.h"
+#include "base/sort.h"
 #include "brio/tiles.h"
 #include "harness.h"
 #include "points.h"
@@ -242,6 +243,35 @@ static uint64_t hash_parts(size_t n, int threads) {
     brio_tiles_free(t);
     brio_context_free(ctx);
     return hash;
+}
+
+/* Hashes the corners of all cells. */
+static int hash_corners(const brio_cells *cells, const uint64_t *site, void *user) {
+    uint64_t *hash = user, faces = cells->face_offsets[cells->num_cells];
+    (void)site;
+    for (size_t i = 0; i < 3 * cells->num_vertices; i++) *hash = brio_hash(*hash, brio_double_key(cells->vertices[i]));
+    for (uint64_t i = 0; i < cells->corner_offsets[faces]; i++) *hash = brio_hash(*hash, cells->face_vertices[i]);
+    return 0;
+}
+
+static uint64_t hash_cells(size_t n, int threads) {
+    brio_context *ctx = new_context();
+    const brio_cells_options o = {.size = sizeof o, .vertices = 1};
+    uint64_t hash = 0;
+    brio_context_set_threads(ctx, threads);
+    brio_tiles *t = tiles_of(ctx, 2, n, false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_tiles_cells(ctx, t, &o, 0, hash_corners, &hash) == BRIO_OK, "%s", brio_message(ctx));
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+    return hash;
+}
+
+static void vertices_of_cells_do_not_depend_on_threads(void) {
+    size_t n = make_points(5, 8000, 0);
+    uint64_t one = hash_cells(n, 1);
+    EXPECT(hash_cells(n, 4) == one);
+    EXPECT(hash_cells(n, 3) == one);
 }
 
 /* The file of a tile is the same for every number of threads. */
@@ -508,6 +538,7 @@ SUITE(test_tiles) {
     RUN(a_run_is_resumed);
     RUN(parts_are_the_whole);
     RUN(parts_do_not_depend_on_threads);
+    RUN(vertices_of_cells_do_not_depend_on_threads);
     RUN(cells_are_those_of_the_whole);
     RUN(wrong_calls_for_cells_are_refused);
     RUN(wrong_calls_are_refused);
