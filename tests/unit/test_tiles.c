@@ -245,6 +245,27 @@ static uint64_t hash_parts(size_t n, int threads) {
     return hash;
 }
 
+/* Of a few tetrahedra around a vertex that are all the same, most were listed nowhere, and rows beyond all were read. */
+static void a_tile_with_one_tetrahedron_many_times_is_refused(void) {
+    static const uint32_t same[4] = {0, 1, 2, 3};
+    brio_context *ctx = new_context();
+    brio_tile_part p = {.size = sizeof p};
+    char path[1024] = "";
+    brio_tiles *t = tiles_of(ctx, 1, make_points(5, 2000, 0), false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    DIR *d = opendir(folder);
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;)
+        if (e->d_name[0] != '.') snprintf(path, sizeof path, "%s/%s/tile-0", folder, e->d_name);
+    if (d) closedir(d);
+    FILE *f = fopen(path, "r+b");
+    EXPECT(f && fseek(f, 4096, SEEK_SET) == 0, "%s", path);
+    for (int i = 0; f && i < 20; i++) EXPECT(fwrite(same, sizeof same, 1, f) == 1);
+    if (f) fclose(f);
+    EXPECT(brio_tiles_part(ctx, t, 0, &p) == BRIO_ERR_OPEN && strstr(brio_message(ctx), "changed from outside"));
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
 /* Hashes the corners of all cells. */
 static int hash_corners(const brio_cells *cells, const uint64_t *site, void *user) {
     uint64_t *hash = user, faces = cells->face_offsets[cells->num_cells];
@@ -538,6 +559,7 @@ SUITE(test_tiles) {
     RUN(a_run_is_resumed);
     RUN(parts_are_the_whole);
     RUN(parts_do_not_depend_on_threads);
+    RUN(a_tile_with_one_tetrahedron_many_times_is_refused);
     RUN(vertices_of_cells_do_not_depend_on_threads);
     RUN(cells_are_those_of_the_whole);
     RUN(wrong_calls_for_cells_are_refused);
