@@ -309,6 +309,7 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     tables out = {.r = r};
     TRY(cli_triangulate_tiles(r, &a->weights, a->tiles, a->faces ? 1 : 3, &t));
     uint64_t vertices = brio_tiles_facts(t)->vertices;
+    cli_interrupt_writing((r->common.output && strcmp(r->common.output, "-") != 0) || a->faces);
     if (r->common.output) TRY(brio_cells_table_new(r->ctx, r->common.output, format, vertices, &out.cells));
     if (a->faces) TRY(brio_cells_table_new(r->ctx, a->faces, BRIO_CELLS_FORMAT_FACES_CSV, vertices, &out.faces));
     if (out.cells) cli_tell_idle(r, r->common.output, format != BRIO_CELLS_FORMAT_NPY, false);
@@ -325,6 +326,7 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
 done:
     brio_cells_table_free(out.cells);
     brio_cells_table_free(out.faces);
+    cli_interrupt_writing(false);
     brio_tiles_free(t);
     return status;
 }

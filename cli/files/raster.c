@@ -173,7 +173,7 @@ static bool write_row(FILE *file, const double *heights, size_t columns, bool ti
 
 brio_status cli_write_raster(run *r, const char *path, const raster *g, raster_row fill, void *user) {
     brio_status status = BRIO_OK;
-    new_file f = {0};
+    new_file f = {.target.folder = -1};
     bool tiff = is_tiff(path), ok;
     double *heights = malloc((g->columns + 1) * sizeof *heights);
     if (!heights) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for a row of %zu cells", g->columns);

@@ -72,8 +72,8 @@ typedef struct {
 brio_status cli_block_weights(run *r, const weights_options *options, const brio_mesh *block, uint64_t first,
                               double **weights) {
     weights_options o = *options;
-    o.estimate = first > 0; /* its words are said once */
-    if (o.exponent != NO_EXPONENT) return cli_modular_weights(r, o.exponent, first, block->num_vertices, weights);
+    o.first = first;
+    o.quiet |= first > 0;
     return cli_weights(r, &o, block, weights);
 }
 
@@ -209,7 +209,7 @@ static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighte
 }
 
 brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
-    new_file f = {0};
+    new_file f = {.target.folder = -1};
     brio_status status = BRIO_OK;
     TRY(cli_new_file_open(r, r->common.output, &f));
     fprintf(f.file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" "
@@ -254,19 +254,56 @@ done:
 /* The output of all tiles in one file. */
 typedef struct {
     run *r;
-    const weights_options *options;
+    weights_options options;
+    uint64_t key; /* of the input before it was read */
+    brio_write_options how;
+    double moved;
+    int rounded;   /* whether colours lose steps */
+    size_t merged; /* points that single precision merges */
     brio_mesh_parts *parts;
     brio_property *property; /* of a block as it is written */
     size_t num_properties;   /* of the input */
     bool adds_weight;
     uint64_t count, all; /* points */
+    bool looks; /* the depth of colours shows in all blocks only, which are looked at before they are written */
     brio_status status;
 } merging;
+
+/* Begins, before the input is read. */
+static void begin_merging(merging *m, run *r, const weights_options *weights) {
+    const common_options *c = &r->common;
+    *m = (merging){.r = r, .options = *weights, .key = cli_tiles_key(r, weights, r->operands[0])};
+    m->options.quiet = true; /* the first reading has said all */
+    m->how = (brio_write_options){.size = sizeof m->how,
+                                  .format = merged_format(r),
+                                  .ascii = c->ascii,
+                                  .float32 = c->float32,
+                                  .comment = "brio " BRIO_VERSION,
+                                  .moved = &m->moved,
+                                  .colours_rounded = &m->rounded};
+}
+
+/* Refuses and settles what the points tell, before the long work. */
+static brio_status settle_merging(merging *m, const brio_tiles *t) {
+    run *r = m->r;
+    brio_read_options from = cli_read_options(r);
+    const brio_convert_options o = {.from = &from};
+    m->all = brio_tiles_facts(t)->points;
+    if (m->all > UINT32_MAX)
+        return cli_fail(r, BRIO_ERR_TOO_LARGE,
+                        "%s: %" PRIu64 " points; indices of this format reach 2^32 - 1: .pvtu has a file for each tile",
+                        r->common.output, m->all);
+    return cli_settle_conversion(r, r->operands[0], r->common.output, &o, &m->how, &m->merged);
+}
+
+static brio_status has_changed(const merging *m) {
+    return cli_fail(m->r, BRIO_ERR_FORMAT, "%s: the file changed between two readings", m->r->operands[0]);
+}
 
 /* Names the properties of the blocks, as brio delaunay without tiles does: weights are one. */
 static brio_status name_properties(merging *m, const brio_mesh *block, bool weighted) {
     size_t n = block->num_properties;
-    bool overruled = m->options->exponent != NO_EXPONENT || m->options->unweighted;
+    bool overruled = m->options.exponent != NO_EXPONENT || m->options.unweighted;
     brio_mesh named = *block;
     m->property = calloc(n + 1, sizeof *m->property);
     if (!m->property) return cli_fail(m->r, BRIO_ERR_NO_MEMORY, "out of memory");
@@ -284,10 +321,9 @@ static brio_status write_block(merging *m, const brio_mesh *block) {
     double *weights = NULL;
     brio_mesh shown = *block;
     brio_status status = BRIO_OK;
-    TRY(cli_block_weights(m->r, m->options, block, m->count, &weights));
+    TRY(cli_block_weights(m->r, &m->options, block, m->count, &weights));
     if (!m->property) TRY(name_properties(m, block, weights != NULL));
-    if (block->num_vertices > m->all - m->count || block->num_properties != m->num_properties)
-        TRY(cli_fail(m->r, BRIO_ERR_FORMAT, "%s: the file changed between two readings", m->r->operands[0]));
+    if (block->num_vertices > m->all - m->count || block->num_properties != m->num_properties) TRY(has_changed(m));
     for (size_t i = 0; i < m->num_properties; i++) m->property[i].data = block->properties[i].data;
     if (m->adds_weight) m->property[m->num_properties].data = weights;
     shown.properties = m->property;
@@ -299,8 +335,17 @@ done:
     return status;
 }
 
+static int look_again(const brio_mesh *block, void *user) {
+    merging *m = user;
+    return !brio_mesh_parts_look(m->parts, block);
+}
+
+/* Writes a block. Ends at the first one if all have to be looked at before. */
 static int take_again(const brio_mesh *block, void *user) {
     merging *m = user;
+    bool first = !m->property && !m->looks;
+    if (first) m->looks = brio_mesh_parts_look(m->parts, block);
+    if (first && m->looks) return 1;
     m->status = write_block(m, block);
     if (m->status != BRIO_OK) cli_keep_failure(m->r, m->status);
     return m->status != BRIO_OK;
@@ -310,10 +355,14 @@ static brio_status write_points_again(merging *m) {
     run *r = m->r;
     brio_read_options how = cli_read_options(r);
     brio_status status = brio_read_blocks(r->ctx, r->operands[0], &how, take_again, m, NULL);
+    if (m->looks) {
+        FORWARD(brio_read_blocks(r->ctx, r->operands[0], &how, look_again, m, NULL));
+        status = brio_read_blocks(r->ctx, r->operands[0], &how, take_again, m, NULL);
+    }
     FORWARD(m->status);
     FORWARD(status);
-    if (m->count == m->all) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_FORMAT, "%s: the file changed between two readings", r->operands[0]);
+    bool same = m->count == m->all && cli_tiles_key(r, &m->options, r->operands[0]) == m->key;
+    return same ? BRIO_OK : has_changed(m);
 }
 
 static brio_status write_tetrahedra(merging *m, brio_tiles *t, uint32_t tile) {
@@ -332,59 +381,65 @@ done:
 
 /* Writes one file: the points as they are read again, in their order and with their properties, then the tetrahedra of
  * tile after tile. */
-static brio_status write_merged(run *r, const weights_options *weights, brio_tiles *t, uint32_t tiles) {
-    const brio_tiles_stats *s = brio_tiles_facts(t);
-    const common_options *c = &r->common;
-    merging m = {.r = r, .options = weights, .all = s->points};
-    double moved = 0;
-    int rounded = 0;
-    brio_write_options how = {.size = sizeof how,
-                              .format = merged_format(r),
-                              .ascii = c->ascii,
-                              .float32 = c->float32,
-                              .comment = "brio " BRIO_VERSION,
-                              .moved = &moved,
-                              .colours_rounded = &rounded};
+static brio_status write_merged(merging *m, brio_tiles *t, uint32_t tiles) {
+    run *r = m->r;
+    const char *output = r->common.output;
     brio_status status = BRIO_OK;
     TRY(cli_check_interrupt(r));
-    cli_interrupt_writing(strcmp(c->output, "-") != 0);
-    TRY(brio_mesh_parts_new(r->ctx, c->output, &how, s->points, s->tetrahedra, &m.parts));
-    TRY(write_points_again(&m));
-    for (uint32_t i = 0; i < tiles; i++) TRY(write_tetrahedra(&m, t, i));
-    TRY(brio_mesh_parts_finish(r->ctx, m.parts));
-    cli_tell_moved(r, c->output, moved, 0);
+    cli_interrupt_writing(strcmp(output, "-") != 0);
+    TRY(brio_mesh_parts_new(r->ctx, output, &m->how, m->all, brio_tiles_facts(t)->tetrahedra, &m->parts));
+    TRY(write_points_again(m));
+    for (uint32_t i = 0; i < tiles; i++) TRY(write_tetrahedra(m, t, i));
+    TRY(brio_mesh_parts_finish(r->ctx, m->parts));
+    cli_tell_moved(r, output, m->moved, m->merged);
+    if (m->rounded) cli_warn(r, WARNING_COLOURS, output);
 done:
+    brio_mesh_parts_free(m->parts);
     cli_interrupt_writing(false);
-    brio_mesh_parts_free(m.parts);
-    free(m.property);
+    free(m->property);
     cli_lap(r, "write");
     return status;
 }
 
 /* --- the run --- */
 
-brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, int stars, brio_tiles **out) {
+/* Reads the input, unless a run before has. */
+static brio_status read_tiles(run *r, const weights_options *weights, uint64_t tiles, int stars, brio_tiles **out) {
     brio_tiles_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)tiles, .stars = stars};
     o.key = cli_tiles_key(r, weights, r->operands[0]);
     FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* a tile is in memory */
     FORWARD(brio_tiles_new(r->ctx, &o, out));
     if (!brio_tiles_has_points(*out)) FORWARD(read_into(r, weights, *out));
     cli_lap(r, "read");
-    FORWARD(brio_tiles_run(r->ctx, *out));
-    const brio_tiles_stats *s = brio_tiles_facts(*out);
+    return BRIO_OK;
+}
+
+static brio_status run_tiles(run *r, brio_tiles *t) {
+    FORWARD(brio_tiles_run(r->ctx, t));
+    const brio_tiles_stats *s = brio_tiles_facts(t);
     cli_stage(r, "divide", s->divide_seconds);
     cli_stage(r, "insert", s->triangulate_seconds);
     r->lap = cli_clock();
     return BRIO_OK;
 }
 
+brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, int stars, brio_tiles **out) {
+    FORWARD(read_tiles(r, weights, tiles, stars, out));
+    return run_tiles(r, *out);
+}
+
 brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
     brio_tiles *t = NULL;
     brio_status status = BRIO_OK;
-    TRY(cli_triangulate_tiles(r, weights, tiles, 0, &t));
+    bool merges = merged_format(r) != BRIO_FORMAT_AUTO;
+    merging m;
+    begin_merging(&m, r, weights);
+    TRY(read_tiles(r, weights, tiles, 0, &t));
+    if (merges) TRY(settle_merging(&m, t));
+    TRY(run_tiles(r, t));
     TRY(report(r, t));
-    if (merged_format(r) != BRIO_FORMAT_AUTO)
-        TRY(write_merged(r, weights, t, (uint32_t)tiles));
+    if (merges)
+        TRY(write_merged(&m, t, (uint32_t)tiles));
     else if (r->common.output)
         TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
 done:

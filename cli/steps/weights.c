@@ -6,6 +6,7 @@
 #include "cli/steps/properties.h"
 #include "platform/file.h"
 #include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,37 +92,39 @@ static void copy_property(const brio_property *property, double *weights, size_t
     for (size_t i = 0; i < count; i++) weights[i] = brio_property_value(property, i);
 }
 
-static brio_status square_radii(run *r, const brio_property *radius, double *weights, size_t count) {
+static brio_status square_radii(run *r, const brio_property *radius, uint64_t first, double *weights, size_t count) {
     for (size_t i = 0; i < count; i++) {
         double value = brio_property_value(radius, i);
         weights[i] = value * value;
         if (!(value >= 0) || !isfinite(weights[i]))
-            return cli_fail(
-                r, BRIO_ERR_FORMAT,
-                "point %zu (counted from 0) has the radius %g, expected 0 or more, whose square is the weight; "
-                "--unweighted ignores the property",
-                i, value);
+            return cli_fail(r, BRIO_ERR_FORMAT,
+                            "point %" PRIu64
+                            " (counted from 0) has the radius %g, expected 0 or more, whose square is the weight; "
+                            "--unweighted ignores the property",
+                            first + i, value);
     }
     return BRIO_OK;
 }
 
 /* Refuses weights that are not the squares of the radii. */
-static brio_status compare_weights(run *r, const brio_property *weight, const double *squares, size_t count) {
+static brio_status compare_weights(run *r, const brio_property *weight, uint64_t first, const double *squares,
+                                   size_t count) {
     for (size_t i = 0; i < count; i++) {
         double value = brio_property_value(weight, i);
         if (!(fabs(value - squares[i]) <= ROUNDING * squares[i]))
             return cli_fail(r, BRIO_ERR_FORMAT,
-                            "point %zu (counted from 0) has the weight %g and the radius %g, whose square is another "
+                            "point %" PRIu64
+                            " (counted from 0) has the weight %g and the radius %g, whose square is another "
                             "number; --unweighted ignores both, --weights FILE overrules them",
-                            i, value, sqrt(squares[i]));
+                            first + i, value, sqrt(squares[i]));
     }
     return BRIO_OK;
 }
 
-static brio_status weights_of_properties(run *r, const brio_mesh *mesh, double *weights) {
+static brio_status weights_of_properties(run *r, const brio_mesh *mesh, uint64_t first, double *weights) {
     const brio_property *weight = brio_mesh_property(mesh, "weight"), *radius = brio_mesh_property(mesh, "radius");
-    if (radius) FORWARD(square_radii(r, radius, weights, mesh->num_vertices));
-    if (weight && radius) FORWARD(compare_weights(r, weight, weights, mesh->num_vertices));
+    if (radius) FORWARD(square_radii(r, radius, first, weights, mesh->num_vertices));
+    if (weight && radius) FORWARD(compare_weights(r, weight, first, weights, mesh->num_vertices));
     if (weight) copy_property(weight, weights, mesh->num_vertices);
     return BRIO_OK;
 }
@@ -130,17 +133,10 @@ static void modular_weights(int exponent, uint64_t first, double *weights, size_
     for (size_t i = 0; i < count; i++) weights[i] = ldexp((double)((first + i) * 7919 % 1000), exponent);
 }
 
-brio_status cli_modular_weights(run *r, int exponent, uint64_t first, size_t count, double **weights) {
-    *weights = malloc((count + 1) * sizeof **weights);
-    if (!*weights) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory: %zu weights", count);
-    modular_weights(exponent, first, *weights, count);
-    return BRIO_OK;
-}
-
 /* Says which weights hold where that is not plain. */
 static void tell_weights(run *r, const weights_options *options, const brio_mesh *mesh) {
     bool weight = brio_mesh_property(mesh, "weight"), radius = brio_mesh_property(mesh, "radius");
-    if ((!weight && !radius) || options->unweighted || options->estimate) return;
+    if ((!weight && !radius) || options->unweighted || options->estimate || options->quiet) return;
     if (options->file || options->exponent != NO_EXPONENT)
         cli_warn(r, WARNING_OVERRULED, options->file ? "" : "-mod", weight ? "weight" : "radius");
     else if (!weight && !options->balls)
@@ -157,9 +153,9 @@ brio_status cli_weights(run *r, const weights_options *options, const brio_mesh 
     if (options->file)
         TRY(read_weights(r, options->file, w, count));
     else if (options->exponent != NO_EXPONENT)
-        modular_weights(options->exponent, 0, w, count);
+        modular_weights(options->exponent, options->first, w, count);
     else
-        status = weights_of_properties(r, mesh, w);
+        status = weights_of_properties(r, mesh, options->first, w);
     if (status == BRIO_ERR_FORMAT && options->estimate) {
         r->message[0] = 0;
         status = BRIO_OK;

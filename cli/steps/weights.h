@@ -10,8 +10,10 @@ typedef struct weights_options {
     const char *file;
     int exponent; /* of --weights-mod; NO_EXPONENT without */
     bool unweighted;
-    bool balls;    /* points are balls: that a radius counts is no news */
-    bool estimate; /* no words, and properties that are no weights count as none */
+    bool balls;     /* points are balls: that a radius counts is no news */
+    bool estimate;  /* no words, and properties that are no weights count as none */
+    bool quiet;     /* no words: they were said */
+    uint64_t first; /* the mesh is a block: the index of its first point */
 } weights_options;
 
 enum { NO_EXPONENT = INT_MIN };
@@ -35,9 +37,6 @@ bool cli_is_weighted(const weights_options *options, const brio_mesh *mesh);
 
 /** Returns the weights in *weights, to be freed with free(); NULL for none. */
 brio_status cli_weights(run *r, const weights_options *options, const brio_mesh *mesh, double **weights);
-
-/** Returns the weights of --weights-mod for points `first`, first + 1 and so on, to be freed with free(). */
-brio_status cli_modular_weights(run *r, int exponent, uint64_t first, size_t count, double **weights);
 
 /** Makes the property `weight` of the mesh the weights that hold, so that its file can be checked by itself. Properties
  *  that they overrule become input_weight and input_radius. */

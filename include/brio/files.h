@@ -237,9 +237,14 @@ typedef struct brio_mesh_parts brio_mesh_parts;
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no .ply), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_parts_new(brio_context *ctx, const char *path, const brio_write_options *options,
                                          uint64_t num_vertices, uint64_t num_tetrahedra, brio_mesh_parts **out);
+/** Looks at the colours of a block, before any points are appended: numbers that can be bytes, or from 0 to 1, or 16
+ *  bits, tell by the greatest one which of these they are. Without a look the first block decides.
+ *  Returns 1 if the other blocks have to be shown as well, in any order and more than once; 0 if none has to be. */
+BRIO_API int brio_mesh_parts_look(brio_mesh_parts *p, const brio_mesh *block);
 /** Appends points with their properties; faces, tetrahedra and edges of the block are not written.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (also for more points than were announced), BRIO_ERR_NOT_FINITE, BRIO_ERR_FORMAT
- *  (other properties than the first block's), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  (other properties than the first block's; colours that it did not show), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_mesh_parts_vertices(brio_context *ctx, brio_mesh_parts *p, const brio_mesh *block);
 /** Appends tetrahedra, once all points are there.   tetrahedra  count by 4: rows of points.   Returns as the above. */
 BRIO_API brio_status brio_mesh_parts_tetrahedra(brio_context *ctx, brio_mesh_parts *p, const uint32_t *tetrahedra,

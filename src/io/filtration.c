@@ -31,7 +31,7 @@ brio_status brio_write_filtration(brio_context *ctx, const char *path, const bri
                                   const uint32_t *order, brio_filtration_format format) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_output out = {0};
+    brio_output out = {.ctx = ctx, .target.folder = -1, .file = -1};
     size_t total = c->counts[0] + c->counts[1] + c->counts[2] + c->counts[3];
     BRIO_REQUIRE(ctx, (unsigned)format < BRIO_FILTRATION_END, BRIO_ERR_ARGUMENT, "no such format of filtrations: %d",
                  (int)format);

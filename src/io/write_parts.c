@@ -15,6 +15,7 @@ struct brio_mesh_parts {
     brio_row_writer writer;
     uint64_t num_vertices, num_tetrahedra; /* announced */
     uint64_t vertices, tetrahedra;         /* written */
+    bool looks;                            /* blocks were looked at */
 };
 
 static brio_status check(brio_context *ctx, const char *path, const brio_write_options *o, brio_format format,
@@ -58,6 +59,14 @@ done:
     return status;
 }
 
+int brio_mesh_parts_look(brio_mesh_parts *p, const brio_mesh *block) {
+    BRIO_DOOR;
+    if (p->writer.begun || !brio_row_writer_is_open(&p->writer, block)) return 0;
+    brio_row_writer_look(&p->writer, block);
+    p->looks = true;
+    return 1;
+}
+
 brio_status brio_mesh_parts_vertices(brio_context *ctx, brio_mesh_parts *p, const brio_mesh *block) {
     BRIO_DOOR;
     brio_mesh shown = *block;
@@ -65,6 +74,7 @@ brio_status brio_mesh_parts_vertices(brio_context *ctx, brio_mesh_parts *p, cons
     BRIO_EXPECT(ctx, block->num_vertices <= p->num_vertices - p->vertices, BRIO_ERR_ARGUMENT,
                 "%s: more points than the %" PRIu64 " that were announced", p->path, p->num_vertices);
     BRIO_FORWARD(brio_refuse_not_finite(ctx, block->vertices, NULL, block->num_vertices, p->path));
+    if (p->looks) brio_row_writer_end_look(&p->writer);
     shown.num_faces = shown.num_edges = 0;
     shown.num_tetrahedra = (size_t)p->num_tetrahedra; /* which the head announces */
     shown.tetrahedra = NULL;

@@ -56,7 +56,7 @@ static brio_status hand_on(cell_run *r, const brio_slabs *s, brio_cells *cells) 
 
 static brio_status run_slab(cell_run *r, brio_slabs *s, size_t slab) {
     brio_cells *cells = NULL;
-    BRIO_FORWARD(brio_slabs_take(s, slab));
+    BRIO_FORWARD(brio_slabs_take(s, slab, r->options->vertices));
     if (!s->complex.num_sites) return BRIO_OK;
     s->complex.frame = &r->frame;
     BRIO_FORWARD(brio_cells_of_complex(r->t->ctx, &s->complex, r->options, &cells));

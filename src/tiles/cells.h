@@ -37,8 +37,9 @@ typedef struct {
 brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, brio_slabs *s);
 void brio_slabs_free(brio_slabs *s);
 
-/** Makes the complex of a slab, whose sites are the vertices among its points.   Returns as brio_slabs_open. */
-brio_status brio_slabs_take(brio_slabs *s, size_t slab);
+/** Makes the complex of a slab, whose sites are the vertices among its points.
+ *  sorted  whether the order of its tetrahedra is free of threads.   Returns as brio_slabs_open. */
+brio_status brio_slabs_take(brio_slabs *s, size_t slab, bool sorted);
 
 /* --- cells --- */
 
@@ -59,7 +60,7 @@ brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options
                                          const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats);
 
 /** Returns the bytes that wait for the files into which brio_tiles_run_ordered_cells divides. */
-double brio_ordered_cells_buffers(size_t tiles);
+double brio_ordered_cells_buffers(size_t tiles, bool with_faces);
 
 /** Adds cells to the counts and to the sum of volumes, whose rounding errors go to *lost [Neumaier 1974]. */
 void brio_tile_cells_count(const brio_cells *cells, brio_tiles_cells_stats *stats, double *lost);

@@ -90,9 +90,9 @@ static size_t room_of_tray(size_t num_parts) {
     return share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
 }
 
-double brio_ordered_cells_buffers(size_t tiles) {
+double brio_ordered_cells_buffers(size_t tiles, bool with_faces) {
     size_t num_parts = (size_t)PARTS * tiles;
-    return 2.0 * (double)num_parts * (double)room_of_tray(num_parts);
+    return (with_faces ? 2.0 : 1.0) * (double)num_parts * (double)room_of_tray(num_parts);
 }
 
 static brio_status open_tray(ordering *o, const char *kind, size_t part, tray *f) {

@@ -90,15 +90,26 @@ typedef struct {
     size_t capacity[3];
 } bucket;
 
-/* Writes the tetrahedra whose rows are listed in b->row by their second and third vertex. */
-static void write_bucket(bucket *b, uint32_t (*from)[4], size_t n, uint32_t (*to)[4]) {
+/* Writes the tetrahedra whose rows are listed in b->row by their second and third vertex. Returns false where two have
+ * the same: then a row of few is listed nowhere, and the file is not what was written. */
+static bool write_bucket(bucket *b, uint32_t (*from)[4], size_t n, uint32_t (*to)[4]) {
     for (size_t i = 0; i < n; i++) b->key[i] = (uint64_t)from[b->row[i]][1] << 32 | from[b->row[i]][2];
+    memset(b->sorted, 0xff, n * sizeof *b->sorted);
     brio_sort_names(b->key, b->row, n, b->sorted);
-    for (size_t i = 0; i < n; i++) memcpy(to[i], from[b->sorted[i]], sizeof *to);
+    for (size_t i = 0; i < n; i++) {
+        if (b->sorted[i] == UINT32_MAX) return false;
+        memcpy(to[i], from[b->sorted[i]], sizeof *to);
+    }
+    return true;
+}
+
+static brio_status was_changed(const brio_tiles *t, uint32_t tile) {
+    return brio_fail(t->ctx, BRIO_ERR_OPEN, "%s/tile-%u was changed from outside", t->folder.path, tile);
 }
 
 /* Sorts the tetrahedra of a part. */
-static brio_status sort_tetrahedra(brio_context *ctx, brio_tile_part *p) {
+static brio_status sort_tetrahedra(const brio_tiles *t, uint32_t tile, brio_tile_part *p) {
+    brio_context *ctx = t->ctx;
     brio_status status = BRIO_OK;
     bucket b = {0};
     size_t n = p->num_tetrahedra;
@@ -116,7 +127,7 @@ static brio_status sort_tetrahedra(brio_context *ctx, brio_tile_part *p) {
         BRIO_TRY(BRIO_RESERVE(ctx, b.row, b.capacity[1], some));
         BRIO_TRY(BRIO_RESERVE(ctx, b.sorted, b.capacity[2], some));
         memcpy(b.row, order + begin, some * sizeof *b.row);
-        write_bucket(&b, p->tetrahedra, some, sorted + begin);
+        if (!write_bucket(&b, p->tetrahedra, some, sorted + begin)) BRIO_TRY(was_changed(t, tile));
         BRIO_TRY(brio_look(ctx, some));
     }
     brio_release(ctx, p->tetrahedra);
@@ -158,8 +169,7 @@ brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_
     BRIO_TRY(brio_tile_result_read(t, tile, true, &result));
     for (size_t i = 0; i < facts->tetrahedra; i++)
         for (int k = 0; k < 4; k++)
-            BRIO_REQUIRE(t->ctx, result.tetrahedra[i][k] < n, BRIO_ERR_OPEN, "%s/tile-%u was changed from outside",
-                         t->folder.path, tile);
+            if (result.tetrahedra[i][k] >= n) BRIO_TRY(was_changed(t, tile));
     BRIO_TRY(BRIO_ALLOC(t->ctx, points, n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, number, n + 1));
     BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
@@ -169,7 +179,7 @@ brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_
     BRIO_TRY(fill(t, points, number, n, p));
     p->tetrahedra = result.tetrahedra;
     result.tetrahedra = NULL;
-    status = sort_tetrahedra(t->ctx, p);
+    status = sort_tetrahedra(t, tile, p);
 done:
     brio_tile_result_free(t, &result);
     brio_release(t->ctx, points);

@@ -3,10 +3,13 @@
  * slab.
  *
  * The tile's file has the tetrahedra that belong to the tile, and its border; a tetrahedron is of each slab that has a
- * vertex of it. Mates are found by a hash table of the facets that have a site. */
+ * vertex of it. Mates are found by a hash table of the facets that have a site. The order of tetrahedra in the file
+ * depends on threads. The numbers of cells and faces do not depend on it; the order of the cells' vertices does, so for
+ * them tetrahedra are sorted by the places of their vertices. */
 #include "tiles/cells.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/sort.h"
 #include <assert.h>
 #include <string.h>
 
@@ -96,6 +99,29 @@ brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, brio_slabs *s) {
 }
 
 /* --- a slab --- */
+
+/* Writes the places of a tetrahedron's vertices, in ascending order; the infinite vertex is behind all. */
+static void places_of(const brio_slabs *s, const uint32_t *v, uint64_t place[4]) {
+    uint64_t first = s->t->tile[s->tile].place;
+    for (int n = 0; n < 4; n++) {
+        uint64_t at = v[n] < s->num_own    ? first + v[n]
+                      : v[n] < s->num_rows ? s->result.halo[v[n] - s->num_own]
+                                           : UINT64_MAX;
+        int i = n;
+        for (; i > 0 && place[i - 1] > at; i--) place[i] = place[i - 1];
+        place[i] = at;
+    }
+}
+
+static int compare_tetrahedra(uint32_t i, uint32_t j, const void *user) {
+    const brio_slabs *s = user;
+    uint64_t a[4], b[4];
+    int k = 0;
+    places_of(s, vertices_of(s, i), a);
+    places_of(s, vertices_of(s, j), b);
+    while (k < 3 && a[k] == b[k]) k++;
+    return a[k] < b[k] ? -1 : a[k] > b[k];
+}
 
 /* Returns the number of a row of the tile in the slab, a new one where it has none. */
 static brio_status number(brio_slabs *s, uint32_t row, uint32_t *local) {
@@ -188,11 +214,12 @@ static brio_status take_points(brio_slabs *s) {
     return BRIO_OK;
 }
 
-brio_status brio_slabs_take(brio_slabs *s, size_t slab) {
+brio_status brio_slabs_take(brio_slabs *s, size_t slab, bool sorted) {
     brio_cell_complex *c = &s->complex;
     size_t begin = slab * SITES, end = begin + SITES < s->num_own ? begin + SITES : s->num_own;
     size_t most = (size_t)(s->first[slab + 1] - s->first[slab]);
     uint32_t local;
+    if (sorted) BRIO_FORWARD(brio_sort_many_indices(s->t->ctx, s->list + s->first[slab], most, compare_tetrahedra, s));
     *c = (brio_cell_complex){.num_points = 0};
     for (size_t row = begin; row < end; row++)
         if (s->result.is_vertex[row]) BRIO_FORWARD(number(s, (uint32_t)row, &local));

@@ -269,7 +269,7 @@ static double bytes_of_tiles(const brio_tiles *t, double points, double tiles, i
     double triangulating = at_once * points * BYTES_A_POINT;
     if (!t->stars) return triangulating;
     double cells = points * CELLS_A_POINT + fmin(points, BRIO_SLAB_SITES) * SLAB_A_SITE;
-    if (t->sorts_cells) cells += brio_ordered_cells_buffers((size_t)tiles);
+    if (t->sorts_cells) cells += brio_ordered_cells_buffers((size_t)tiles, t->sorts_faces);
     return fmax(triangulating, cells);
 }
 

@@ -142,6 +142,73 @@ class Tiles(CliTest):
                                 "--quiet"], stdout=subprocess.PIPE, check=True).stdout
         self.assertEqual(piped, self.bytes_of("tiles.ply"))
 
+    def test_a_dark_beginning_was_taken_for_all_colours(self):
+        with open(self.path("dark.csv"), "w", encoding="ascii") as f:  # two blocks
+            rng = random.Random(4)
+            f.write("x,y,z,red,green,blue\n")
+            for i in range(70000):
+                x, y, colour = rng.random(), rng.random(), 200 if i > 69000 else 0
+                f.write("%.5f,%.5f,%d,%d,0,%d\n" % (x, y, i % 2, colour, colour))
+        self.facts("delaunay", self.path("dark.csv"), "-o", self.path("x.ply"), "--tiles", "2", "--scratch", self.scratch())
+        head, _, rows = self.bytes_of("x.ply").partition(b"end_header\n")
+        self.assertIn(b"property uchar red", head)
+        colours = [rows[27 * i + 24:27 * i + 27] for i in range(70000)]
+        self.assertEqual(colours, [bytes((200, 0, 200)) if i > 69000 else bytes(3) for i in range(70000)])
+
+    def test_one_file_says_what_it_says_without_tiles(self):
+        rng = random.Random(8)
+
+        def write(name, head, row):
+            with open(self.path(name), "w", encoding="ascii") as f:
+                f.write(head + "\n")
+                f.writelines(row % tuple(rng.random() for _ in range(4)) + "\n" for _ in range(600))
+            return self.path(name)
+
+        for name, head, row, more in (
+                ("far.csv", "x,y,z,a", "41%f,51%f,%f,%f", ["--float32"]),
+                ("wide.csv", "x,y,z,a", "4100%.6f,5100%.6f,%f,%f", ["--float32"]),
+                ("near.csv", "x,y,z,a", "%f,%f,%f,%f", ["--float32"]),
+                ("radii.csv", "x,y,z,radius", "%f,%f,%f,0.0%.0f", []),
+                ("deep.csv", "x,y,z,red,green,blue", "%.4f,%.4f,%.4f,%.4f,0.123,0.5", [])):
+            with self.subTest(name):
+                command = ["delaunay", write(name, head, row), *more, "-o", self.path("out.ply")]
+                whole = self.facts(*command)
+                tiles = self.facts(*command, "--tiles", "2", "--scratch", self.scratch())
+                for key in "warnings", "hints", "float32", "moved", "merged":
+                    self.assertEqual(tiles.get(key), whole.get(key), key)
+                self.assertTrue(whole["warnings"])
+
+    def test_a_file_that_changed_between_two_readings_was_mixed(self):
+        cloud = self.rows("a.csv", 20000)
+        command = (BRIO, "delaunay", cloud, "--tiles", "4", "--scratch", self.scratch(), "-o", self.path("out.ply"), "--quiet")
+        process = subprocess.Popen(command, stderr=subprocess.PIPE)
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and process.poll() is None:
+            folders = [name for name in os.listdir(self.scratch()) if name.startswith("brio-tiles-")]
+            if folders and "tile-0" in os.listdir(os.path.join(self.scratch(), folders[0])):
+                break
+            time.sleep(0.002)
+        if process.poll() is None:
+            with open(cloud, "r+b") as f:  # the same rows, one digit is another
+                f.seek(8)
+                digit = f.read(1)
+                f.seek(8)
+                f.write(b"2" if digit == b"1" else b"1")
+            os.utime(cloud, ns=(1, 1))
+        message = process.communicate()[1].decode()
+        if process.returncode == 0:
+            self.skipTest("the run was over before the file was changed")
+        self.assertEqual(process.returncode, 2, message)
+        self.assertIn("a.csv: the file changed between two readings", message)
+        self.assertFalse(os.path.exists(self.path("out.ply")))
+
+    def test_a_wrong_radius_was_counted_from_its_block(self):
+        with open(self.path("r.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z,radius\n")
+            f.writelines("%d,%d,%d,%d\n" % (i % 41, i % 43, i % 47, -1 if i == 66000 else 0) for i in range(66001))
+        run = self.expect(2, "delaunay", self.path("r.csv"), "--tiles", "2", "--scratch", self.scratch())
+        self.assertIn("point 66000 (counted from 0) has the radius -1", run.err)
+
     def test_one_file_needs_an_input_that_is_read_twice(self):
         run = subprocess.run([BRIO, "delaunay", "-", "--tiles", "2", "--scratch", self.scratch(), "-o",
                               self.path("x.ply")], input=b"", stderr=subprocess.PIPE, check=False)

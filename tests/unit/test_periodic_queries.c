@@ -2,6 +2,7 @@
 #include "base/rng.h"
 #include "failing_allocator.h"
 #include "harness.h"
+#include <fcntl.h>
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -143,6 +144,10 @@ static void has_an_order(const brio_periodic_alpha *a) {
     EXPECT(f && lines == total, "%zu lines of %zu simplices", lines, total);
     if (f) fclose(f);
     remove(path);
+    int standard_input = fcntl(0, F_GETFD); /* which a refused order closed */
+    order[0] = (uint32_t)total;
+    EXPECT(brio_write_filtration(ctx, path, c, order, BRIO_FILTRATION_GUDHI) == BRIO_ERR_ARGUMENT);
+    EXPECT(fcntl(0, F_GETFD) == standard_input);
 }
 
 static void compare_with_copies(uint64_t seed, sample s) {

@@ -1,5 +1,6 @@
 /* Triangulations in tiles: the same checksum and counts as without, whatever the points and the number of tiles. */
 #include "base/memory.h"
+#include "base/sort.h"
 #include "brio/tiles.h"
 #include "harness.h"
 #include "points.h"
@@ -242,6 +243,56 @@ static uint64_t hash_parts(size_t n, int threads) {
     brio_tiles_free(t);
     brio_context_free(ctx);
     return hash;
+}
+
+/* Of a few tetrahedra around a vertex that are all the same, most were listed nowhere, and rows beyond all were read. */
+static void a_tile_with_one_tetrahedron_many_times_is_refused(void) {
+    static const uint32_t same[4] = {0, 1, 2, 3};
+    brio_context *ctx = new_context();
+    brio_tile_part p = {.size = sizeof p};
+    char path[1024] = "";
+    brio_tiles *t = tiles_of(ctx, 1, make_points(5, 2000, 0), false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    DIR *d = opendir(folder);
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;)
+        if (e->d_name[0] != '.') snprintf(path, sizeof path, "%s/%s/tile-0", folder, e->d_name);
+    if (d) closedir(d);
+    FILE *f = fopen(path, "r+b");
+    EXPECT(f && fseek(f, 4096, SEEK_SET) == 0, "%s", path);
+    for (int i = 0; f && i < 20; i++) EXPECT(fwrite(same, sizeof same, 1, f) == 1);
+    if (f) fclose(f);
+    EXPECT(brio_tiles_part(ctx, t, 0, &p) == BRIO_ERR_OPEN && strstr(brio_message(ctx), "changed from outside"));
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
+/* Hashes the corners of all cells. */
+static int hash_corners(const brio_cells *cells, const uint64_t *site, void *user) {
+    uint64_t *hash = user, faces = cells->face_offsets[cells->num_cells];
+    (void)site;
+    for (size_t i = 0; i < 3 * cells->num_vertices; i++) *hash = brio_hash(*hash, brio_double_key(cells->vertices[i]));
+    for (uint64_t i = 0; i < cells->corner_offsets[faces]; i++) *hash = brio_hash(*hash, cells->face_vertices[i]);
+    return 0;
+}
+
+static uint64_t hash_cells(size_t n, int threads) {
+    brio_context *ctx = new_context();
+    const brio_cells_options o = {.size = sizeof o, .vertices = 1};
+    uint64_t hash = 0;
+    brio_context_set_threads(ctx, threads);
+    brio_tiles *t = tiles_of(ctx, 2, n, false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_tiles_cells(ctx, t, &o, 0, hash_corners, &hash) == BRIO_OK, "%s", brio_message(ctx));
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+    return hash;
+}
+
+static void vertices_of_cells_do_not_depend_on_threads(void) {
+    size_t n = make_points(5, 8000, 0);
+    uint64_t one = hash_cells(n, 1);
+    EXPECT(hash_cells(n, 4) == one);
+    EXPECT(hash_cells(n, 3) == one);
 }
 
 /* The file of a tile is the same for every number of threads. */
@@ -508,6 +559,8 @@ SUITE(test_tiles) {
     RUN(a_run_is_resumed);
     RUN(parts_are_the_whole);
     RUN(parts_do_not_depend_on_threads);
+    RUN(a_tile_with_one_tetrahedron_many_times_is_refused);
+    RUN(vertices_of_cells_do_not_depend_on_threads);
     RUN(cells_are_those_of_the_whole);
     RUN(wrong_calls_for_cells_are_refused);
     RUN(wrong_calls_are_refused);
