@@ -474,7 +474,8 @@ static void long_turned_cells_have_all_translates(void) {
         brio_periodic *t = build(&c);
         if (!t) continue;
         for (int i = 0; i < directions; i++) least = fmin(least, t->lattice.range[i]);
-        EXPECT(least >= 1, "round %d: the vertices of a tetrahedron differ by a vector, not by %.17g of it", round, least);
+        EXPECT(least >= 1, "round %d: the vertices of a tetrahedron differ by a vector, not by %.17g of it", round,
+               least);
         check(t, "a long cell");
         brio_periodic_free(t);
     }
