@@ -1,5 +1,5 @@
 /* Colours of meshes in pictures: those of the mesh, a property by a colour map, or one colour for the layer. The same
- * as on pages (web/src/colours.js), except for the range of a property, which layers share: a picture has no sliders. */
+ * as on pages (web/src/colours.js), except for the range of a property: layers share it, for want of sliders. */
 #include "base/memory.h"
 #include "picture/picture.h"
 #include <math.h>
