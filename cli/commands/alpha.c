@@ -255,7 +255,7 @@ static brio_status alpha(run *r) {
     cli_tell_cell(r, &a->periodic, input);
     cli_lap(r, "read");
     status = periodic ? alpha_periodic(r, input, weights, value) : alpha_open(r, input, weights, value);
-    cli_examine(r, status, input);
+    if (!periodic) cli_examine(r, status, input);
 done:
     free(weights);
     brio_mesh_free(input);

@@ -43,12 +43,15 @@ static void report(run *r, brio_mesh *const *meshes, int count) {
     cli_fact_count(&r->facts, "edges", edges);
 }
 
-/* Refuses outputs that are no page, and options about the form of other files. */
+/* Refuses outputs that are no page, options about the form of other files, and those of a page where there is none. */
 static brio_status check_output(run *r) {
     const common_options *c = &r->common;
+    const arguments *a = r->arguments;
+    const char *idle = a->points ? "points" : a->exact ? "exact" : a->title ? "title" : NULL;
     const char *given = c->format ? "format" : c->ascii ? "ascii" : c->float32 ? "float32" : NULL;
     if (!c->output && !c->picture) return cli_fail_output(r, "no output: -o FILE is missing");
     if (given) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s has no meaning here: a page has one form", given);
+    if (idle && !c->output) return cli_fail(r, BRIO_ERR_ARGUMENT, "--%s has no meaning without a page: -o FILE", idle);
     return c->output && strcmp(c->output, "-") ? cli_check_page(r, "output", c->output) : BRIO_OK;
 }
 

@@ -54,12 +54,15 @@ static bool read_direction(const char *text, double direction[3]) {
     return !zero;
 }
 
-/* Reads two whole numbers WxH; the library says how large they may be. */
+/* The sides of a picture, as the library draws it: a larger one is refused before the work. */
+enum { MOST_PIXELS = 16384 };
+
+/* Reads two whole numbers WxH. */
 static bool read_size(const char *text, int size[2]) {
     for (int k = 0; k < 2; k++) {
         char *end;
         long number = strtol(text, &end, 10);
-        if (end == text || number < 1 || number > 1000000 || *end != (k < 1 ? 'x' : 0)) return false;
+        if (end == text || number < 1 || number > MOST_PIXELS || *end != (k < 1 ? 'x' : 0)) return false;
         size[k] = (int)number;
         text = end + 1;
     }
@@ -80,8 +83,9 @@ brio_status cli_check_picture(run *r) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--look: '%s' is no direction; expected three numbers X,Y,Z, not all 0",
                         c->look);
     if (c->picture_size && !read_size(c->picture_size, size))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--picture-size: '%s' is no size; expected pixels WxH, such as 1920x1080",
-                        c->picture_size);
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--picture-size: '%s' is no size; expected WxH, 1 to %d pixels, such as 1920x1080",
+                        c->picture_size, MOST_PIXELS);
     return cli_check_beside(r, "picture", c->picture);
 }
 

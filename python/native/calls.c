@@ -220,6 +220,7 @@ void *handle_object(module_state *state, PyObject *object, kind wanted) {
 
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights) {
     const handle *h = (const handle *)object;
+    if (!h) return raise_argument(state, PyUnicode_FromString("the object has no triangulation of points"));
     const void *t = h->record->object;
     uint64_t own =
         h->kind == KIND_TRIANGULATION2 ? brio_triangulation2_points_hash(t) : brio_triangulation_points_hash(t);

@@ -226,3 +226,31 @@ def test_the_cell_of_a_file(tmp_path):
     cells = brio.Voronoi(mesh.vertices, cell=mesh.cell)
     assert abs(cells.volumes.sum() - 12) < 1e-12
     assert brio.Mesh([[0, 0, 0]]).cell is None and brio.Mesh([[0, 0, 0]]).periodic is None
+
+
+def test_periodic_objects_are_copied_and_pickled():
+    points, cell = np.random.default_rng(8).random((30, 3)), np.array([[1, 0, 0], [0.5, 1, 0], [0, 0, 1]])
+    tri = brio.Delaunay(points, 0.001 * np.arange(30), cell=cell, periodic="xy")
+    assert cell.flags.writeable, "the caller's"
+    again = pickle.loads(pickle.dumps(tri))
+    assert again.checksum == tri.checksum and again.periodic == tri.periodic and np.array_equal(again.simplices, tri.simplices)
+    complex = brio.alpha_complex(points, cell=[1, 1, 1])
+    assert np.array_equal(pickle.loads(pickle.dumps(complex)).values[3], complex.values[3])
+    shape = pickle.loads(pickle.dumps(complex.shape(complex.auto_alpha())))
+    assert isinstance(shape, brio.PeriodicAlphaShape) and shape.counts["tetrahedra"] > 0
+    assert np.array_equal(shape.complex.values[2], complex.values[2])
+
+
+def test_without_a_cell_nothing_repeats():
+    points = np.random.default_rng(9).random((30, 3))
+    assert len(brio.AlphaShape(points, cell=None).faces) == len(brio.AlphaShape(points).faces)
+    for make in (brio.alpha_complex, brio.AlphaShape):
+        with pytest.raises(brio.ArgumentError, match="no cell"):
+            make(points, periodic="xy")
+
+
+def test_a_complex_by_points_has_no_triangulation():
+    complex = brio.alpha_complex(np.random.default_rng(10).random((200, 3)), cell=[1, 1, 1])
+    named = brio._native.periodic_alpha_by_points(complex._complex)["complex"]
+    with pytest.raises(brio.ArgumentError, match="no triangulation"):
+        brio._native.alpha_shape(named, complex.points, None, 1.0)

@@ -77,6 +77,8 @@ def test_a_cell_shows_a_mesh_by_a_small_picture_and_its_certificate():
     text = brio.Mesh(TRIANGLE, [[0, 1, 2]])._repr_html_()
     assert "1 boundary loops, manifold, oriented" in text and 'src="data:image/png;base64,iVBOR' in text
     assert "boundary" not in brio.Mesh(TRIANGLE)._repr_html_()
+    unseen = brio.Mesh(TRIANGLE + [[0, 0, float("nan")]])._repr_html_()
+    assert "4 vertices" in unseen and "img" not in unseen, "no picture shows what is no number; the cell of a notebook still has words"
 
 
 def test_wrong_calls_of_pictures():

@@ -183,7 +183,7 @@ static brio_status check_hull_facet(checking *c, size_t t, const double (*r)[4])
     }
     way(c, r[0], r[1], u);
     way(c, r[0], r[2], v);
-    brio_cross(u, v, cross);
+    exact_cross(u, v, cross);
     if (l->rank == 2) c->covered += brio_length(cross);
     return BRIO_OK;
 }
@@ -269,7 +269,7 @@ static double volume_sum(const checking *c) {
         const uint32_t *v = t->tet[i].vertex;
         double e[3][3], cross[3];
         for (int k = 0; k < 3; k++) way(c, t->images.x[v[0]], t->images.x[v[k + 1]], e[k]);
-        brio_cross(e[1], e[2], cross);
+        exact_cross(e[1], e[2], cross);
         double x = brio_dot(e[0], cross), next = sum + x;
         lost += (sum - (next - (next - sum))) + (x - (next - sum));
         sum = next;
@@ -291,7 +291,7 @@ static void begin_measure(checking *c) {
 static double covering_of(const checking *c) {
     static const double TWO_TURNS = 12.566370614359172954;
     double cross[3];
-    brio_cross(c->basis[0], c->basis[1], cross);
+    exact_cross(c->basis[0], c->basis[1], cross);
     if (c->t->lattice.rank == 1) return c->covered / TWO_TURNS;
     if (c->t->lattice.rank == 2) return c->covered / (4 * brio_length(cross));
     return volume_sum(c) / (6 * fabs(brio_dot(c->basis[2], cross)));

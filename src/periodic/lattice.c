@@ -225,14 +225,16 @@ static void list_short(const brio_lattice *l, short_vectors *w) {
 }
 
 /* Returns a bound on |d . x| in twice the lattice's Voronoi cell, from the slabs of three vectors: d is a sum of these.
- * INFINITY if they span too little. */
+ * Rounding is in it: the nearer to a plane they are, and the longer, the more. INFINITY if they span too little. */
 static double bound_by(const brio_lattice *l, const double *d, const double *const *v) {
     double cross[3][3], sum = 0;
     for (int i = 0; i < 3; i++) brio_cross(v[(i + 1) % 3], v[(i + 2) % 3], cross[i]);
     double det = brio_dot(v[0], cross[0]), plain[3];
     brio_cross(l->basis[1], l->basis[2], plain);
     if (!(fabs(det) > fabs(brio_dot(l->basis[0], plain)) / 2)) return INFINITY; /* a multiple of it, for a lattice */
-    for (int i = 0; i < l->rank; i++) sum += fabs(brio_dot(d, cross[i]) / det) * brio_dot(v[i], v[i]);
+    double lost = 0x1p-48 * brio_length(d) * brio_length(v[0]) * brio_length(v[1]) * brio_length(v[2]) / fabs(det);
+    for (int i = 0; i < l->rank; i++)
+        sum += fabs(brio_dot(d, cross[i]) / det) * brio_dot(v[i], v[i]) + lost * brio_length(v[i]);
     return sum;
 }
 

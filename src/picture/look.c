@@ -26,8 +26,11 @@ typedef struct {
 } sample;
 
 void brio_look_from(const double direction[3], brio_look_axes *a) {
-    const double length = brio_length(direction), up[2][3] = {{0, 0, 1}, {0, 1, 0}};
-    for (int k = 0; k < 3; k++) a->back[k] = direction[k] / length;
+    const double up[2][3] = {{0, 0, 1}, {0, 1, 0}};
+    double largest = fmax(fabs(direction[0]), fmax(fabs(direction[1]), fabs(direction[2])));
+    for (int k = 0; k < 3; k++) a->back[k] = direction[k] / largest; /* squares of these are no 0, and finite */
+    double length = brio_length(a->back);
+    for (int k = 0; k < 3; k++) a->back[k] /= length;
     bool along = fabs(a->back[0]) + fabs(a->back[1]) < 1e-6;
     brio_cross(up[along], a->back, a->right);
     double size = brio_length(a->right);

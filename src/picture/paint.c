@@ -1,5 +1,5 @@
 /* Colours of meshes in pictures: those of the mesh, a property by a colour map, or one colour for the layer. The same
- * as on pages (web/src/colours.js). */
+ * as on pages (web/src/colours.js), except for the range of a property: layers share it, for want of sliders. */
 #include "base/memory.h"
 #include "picture/picture.h"
 #include <math.h>
@@ -28,37 +28,6 @@ brio_rgb brio_map_colour(float t) {
         out.c[k] = (uint8_t)lrintf(from + (x - (float)i) * (to - from));
     }
     return out;
-}
-
-/* Numbers of the vertices or the faces: a property, or a coordinate where p is NULL. */
-typedef struct {
-    const brio_property *p;
-    const double *vertices;
-    int axis;
-    size_t n;
-} numbers;
-
-static double number_at(const numbers *x, size_t i) {
-    return x->p ? brio_property_value(x->p, i) : x->vertices[3 * i + (size_t)x->axis];
-}
-
-static brio_status take_values(brio_context *ctx, const numbers *x, brio_paint *out) {
-    double low = INFINITY, high = -INFINITY;
-    for (size_t i = 0; i < x->n; i++) {
-        double value = number_at(x, i);
-        if (!isfinite(value)) continue;
-        low = value < low ? value : low;
-        high = value > high ? value : high;
-    }
-    if (low > high) low = high = 0;
-    out->low = low;
-    out->high = high;
-    BRIO_FORWARD(BRIO_ALLOC(ctx, out->value, x->n + 1));
-    for (size_t i = 0; i < x->n; i++) {
-        double value = number_at(x, i), half = high / 2 - low / 2;
-        out->value[i] = !isfinite(value) ? NAN : half > 0 ? (float)((value / 2 - low / 2) / half) : 0.5F;
-    }
-    return BRIO_OK;
 }
 
 /* Returns a property, or NULL. Those of faces colour nothing where there are no faces. */
@@ -93,38 +62,77 @@ static brio_status take_colours(brio_context *ctx, const brio_mesh *m, bool of_f
     return BRIO_OK;
 }
 
-static brio_status take_property(brio_context *ctx, const brio_mesh *m, const char *name, bool *found,
-                                 brio_paint *out) {
-    numbers x = {.vertices = m->vertices, .n = m->num_vertices};
-    *found = true;
-    for (int of_faces = 0; of_faces < 2; of_faces++) {
-        x.p = find(m, name, of_faces != 0);
-        x.n = of_faces ? m->num_faces : m->num_vertices;
-        out->of_faces = of_faces != 0;
-        out->name = name;
-        if (x.p) return take_values(ctx, &x, out);
+/* --- numbers --- */
+
+/* Numbers of the vertices or the faces: a property, or a coordinate where p is NULL. */
+typedef struct {
+    const brio_property *p;
+    const double *vertices;
+    int axis;
+    size_t n;
+} numbers;
+
+static numbers numbers_of(const brio_mesh *m, const brio_paint *p) {
+    return (numbers){.p = find(m, p->name, p->of_faces),
+                     .vertices = m->vertices,
+                     .axis = p->name[0] - 'x',
+                     .n = p->of_faces ? m->num_faces : m->num_vertices};
+}
+
+static double number_at(const numbers *x, size_t i) {
+    return x->p ? brio_property_value(x->p, i) : x->vertices[3 * i + (size_t)x->axis];
+}
+
+/* Takes what is to be shown, and its range. Returns false if the mesh does not have it. */
+static bool take_property(const brio_mesh *m, const char *name, brio_paint *out) {
+    bool is_axis = strlen(name) == 1 && name[0] >= 'x' && name[0] <= 'z', of_vertices = find(m, name, false) != NULL;
+    out->of_faces = !of_vertices && find(m, name, true);
+    if (!of_vertices && !out->of_faces && !is_axis) return false;
+    out->name = name;
+    out->low = INFINITY;
+    out->high = -INFINITY;
+    const numbers x = numbers_of(m, out);
+    for (size_t i = 0; i < x.n; i++) {
+        double value = number_at(&x, i);
+        if (!isfinite(value)) continue;
+        out->low = value < out->low ? value : out->low;
+        out->high = value > out->high ? value : out->high;
     }
-    x.n = m->num_vertices;
-    out->of_faces = false;
-    x.axis = name[0] - 'x';
-    if (strlen(name) == 1 && x.axis >= 0 && x.axis < 3) return take_values(ctx, &x, out);
-    out->name = NULL;
-    *found = false;
+    return true;
+}
+
+brio_status brio_paint_values(brio_context *ctx, const brio_mesh *m, brio_paint *p) {
+    if (!p->name) return BRIO_OK;
+    const numbers x = numbers_of(m, p);
+    if (p->low > p->high) p->low = p->high = 0;
+    const double half = p->high / 2 - p->low / 2;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, p->value, x.n + 1));
+    for (size_t i = 0; i < x.n; i++) {
+        double value = number_at(&x, i);
+        p->value[i] = !isfinite(value) ? NAN : half > 0 ? (float)((value / 2 - p->low / 2) / half) : 0.5F;
+    }
     return BRIO_OK;
 }
+
+/* --- all together --- */
 
 brio_status brio_paint_find(brio_context *ctx, const brio_mesh *m, size_t layer, const char *wanted, bool *found,
                             brio_paint *out) {
     *out = (brio_paint){.plain = LAYERS[layer % (sizeof LAYERS / sizeof *LAYERS)]};
     *found = true;
     if (wanted && !strcmp(wanted, "none")) return BRIO_OK;
-    if (wanted) return take_property(ctx, m, wanted, found, out);
+    if (wanted) {
+        *found = take_property(m, wanted, out);
+        return BRIO_OK;
+    }
     BRIO_FORWARD(take_colours(ctx, m, false, out));
     if (!out->rgb) BRIO_FORWARD(take_colours(ctx, m, true, out));
     if (out->rgb || m->num_faces || m->num_tetrahedra || m->num_edges) return BRIO_OK;
-    for (size_t i = 0; i < sizeof TELLING / sizeof *TELLING; i++)
-        if (find(m, TELLING[i], false)) return take_property(ctx, m, TELLING[i], found, out);
-    return take_property(ctx, m, "z", found, out);
+    const char *name = "z";
+    for (size_t i = sizeof TELLING / sizeof *TELLING; i-- > 0;)
+        if (find(m, TELLING[i], false)) name = TELLING[i];
+    take_property(m, name, out);
+    return BRIO_OK;
 }
 
 void brio_paint_free(brio_context *ctx, brio_paint *p) {

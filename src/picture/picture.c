@@ -9,6 +9,8 @@
 #include "base/vector.h"
 #include "base/versioned.h"
 #include "mesh/edge_rings.h"
+#include <math.h>
+#include <string.h>
 
 /* WIDTH, HEIGHT: of a picture, in pixels. MOST: of each. MOST_MESHES: on a picture, as it has colours for. */
 enum { WIDTH = 960, HEIGHT = 640, MOST = 16384, MOST_MESHES = 12 };
@@ -188,10 +190,23 @@ static brio_status find_normals(const picture *p, brio_drawn_mesh *d) {
 static brio_status choose_direction(picture *p, const brio_picture_options *o, double direction[3]) {
     for (int k = 0; k < 3; k++) direction[k] = o->from[k];
     BRIO_EXPECT(p->ctx, brio_all_finite(o->from, 3), BRIO_ERR_ARGUMENT, "the direction of a picture is not finite");
-    if (!(brio_length(direction) > 0)) BRIO_FORWARD(brio_look_best(p->ctx, p->mesh, p->count, &p->box, direction));
+    if (!direction[0] && !direction[1] && !direction[2])
+        BRIO_FORWARD(brio_look_best(p->ctx, p->mesh, p->count, &p->box, direction));
     brio_look_from(direction, &p->axes);
     for (int k = 0; k < 3; k++) direction[k] = p->axes.back[k];
     return BRIO_OK;
+}
+
+/* Gives meshes that show the same property one range, so that a colour is the same value on all of them. */
+static void share_ranges(picture *p) {
+    for (size_t i = 0; i < p->count; i++)
+        for (size_t j = 0; j < p->count; j++) {
+            brio_paint *a = &p->drawn[i].paint;
+            const brio_paint *b = &p->drawn[j].paint;
+            if (!a->name || !b->name || strcmp(a->name, b->name) != 0) continue;
+            a->low = fmin(a->low, b->low);
+            a->high = fmax(a->high, b->high);
+        }
 }
 
 static brio_status prepare(picture *p, const brio_picture_options *o, brio_picture_stats *stats) {
@@ -201,6 +216,11 @@ static brio_status prepare(picture *p, const brio_picture_options *o, brio_pictu
         bool has;
         BRIO_FORWARD(brio_paint_find(p->ctx, d->mesh, i, o->colour, &has, &d->paint));
         found |= has;
+    }
+    share_ranges(p);
+    for (size_t i = 0; i < p->count; i++) {
+        brio_drawn_mesh *d = p->drawn + i;
+        BRIO_FORWARD(brio_paint_values(p->ctx, d->mesh, &d->paint));
         if (d->paint.name && !(stats->low < stats->high)) stats->low = d->paint.low, stats->high = d->paint.high;
         BRIO_FORWARD(brio_shapes_find(p->ctx, d->mesh, &p->box, &p->axes, o->self_intersections != 0, &d->shapes));
         BRIO_FORWARD(BRIO_ALLOC(p->ctx, d->place, d->mesh->num_vertices + 1));

@@ -67,7 +67,7 @@ typedef struct {
     brio_rgb *rgb;    /* NULL, or a colour of each vertex or face */
     float *value;     /* NULL, or from 0 to 1, by which the colour map is read; NaN: grey */
     bool of_faces;    /* rgb or value have a row for each face */
-    double low, high; /* of the values that the map shows */
+    double low, high; /* of the values that the map shows; low > high: there is none */
     const char *name; /* of the property that is shown; NULL: none */
 } brio_paint;
 
@@ -77,6 +77,8 @@ typedef struct {
  *  else z. found  receives whether the mesh has what is wanted.   out  freed with brio_paint_free, on failure too. */
 brio_status brio_paint_find(brio_context *ctx, const brio_mesh *m, size_t layer, const char *wanted, bool *found,
                             brio_paint *out);
+/** Makes p->value of what is to be shown, if there is such, in the range of p, which others may have widened. */
+brio_status brio_paint_values(brio_context *ctx, const brio_mesh *m, brio_paint *p);
 void brio_paint_free(brio_context *ctx, brio_paint *p);
 /** Returns the colour of the map at t. */
 brio_rgb brio_map_colour(float t);

@@ -11,8 +11,8 @@
 #include "picture/picture.h"
 #include <math.h>
 
-/* ROWS: rows of pixels of a band at least; BANDS: bands at most. Both chosen. */
-enum { ROWS = 16, BANDS = 64 };
+/* ROWS, MOST_ROWS: rows of pixels of a band; BANDS: bands of pictures that are not high. All chosen. */
+enum { ROWS = 16, MOST_ROWS = 64, BANDS = 64 };
 
 /* Lines: half their width, by how much they are nearer than what they lie on; both in pixels. */
 static const double LINE = 0.75, EDGE_LINE = 0.55, MARK = 1.25, NEARER = 1.5;
@@ -288,7 +288,8 @@ static void draw_bands(void *user, size_t begin, size_t end, int thread) {
 
 brio_status brio_raster_draw(brio_context *ctx, const brio_drawn_mesh *drawn, size_t count, brio_raster *out) {
     brio_status status = BRIO_OK;
-    int rows = out->height / BANDS > ROWS ? out->height / BANDS : ROWS, threads;
+    int rows = out->height / BANDS, threads;
+    rows = rows < ROWS ? ROWS : rows > MOST_ROWS ? MOST_ROWS : rows;
     size_t bands = ((size_t)out->height + (size_t)rows - 1) / (size_t)rows;
     size_t size = (size_t)rows * BRIO_SAMPLES * BRIO_SAMPLES * (size_t)out->width;
     work w = {drawn, count, out, NULL, rows};

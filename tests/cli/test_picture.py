@@ -208,6 +208,14 @@ class Shows(PictureTest):
         self.assertFalse(one[40][90][2] > 2 * one[40][90][0])
 
 
+    def test_layers_of_one_property_have_one_range(self):
+        a, b = (self.ply("%d.ply" % v, CUBE, QUADS, vertex=["double heat"], rows=lambda i: v) for v in (0, 8))
+        rows, facts = self.picture(a, b, "--side-by-side", "--colour-by", "heat")
+        self.assertEqual((facts["low"], facts["high"]), (0, 8))
+        low, high = rows[40][30], rows[40][90]
+        self.assertTrue(low[2] > 2 * low[1] and high[0] > 2 * high[2], (low, high))
+
+
 class Look(PictureTest):
     def test_the_direction_that_shows_most(self):
         look = self.picture(self.ply("cube.ply", CUBE, QUADS))[1]["look"]
@@ -220,6 +228,14 @@ class Look(PictureTest):
             plate = [tuple(i * a + j * b for a, b in zip(u, v)) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
             look = self.picture(self.ply("plate.ply", plate, [(0, 1, 2, 3)]))[1]["look"]
             self.assertGreater(dot(look, n), 0.5, "the front of a plate that looks to %r" % (normal,))
+
+
+    def test_directions_of_any_length(self):
+        cube = self.ply("cube.ply", CUBE, QUADS)
+        for scale in (1e-320, 8e307):
+            look = self.picture(cube, "--look=%r,%r,%r" % (scale, -2 * scale, scale))[1]["look"]
+            self.assertAlmostEqual(dot(look, look), 1, 12)
+            self.assertGreater(dot(look, unit((1, -2, 1))), 1 - 1e-6)
 
 
 class Bytes(PictureTest):
@@ -267,8 +283,10 @@ class Uses(PictureTest):
         for words, arguments in (("a picture is .png", ("--picture", "x.jpg")), ("has no meaning without --picture", ("--look", "1,0,0", "-o", "x.html")),
                                  ("is no direction", ("--picture", "x.png", "--look", "0,0,0")), ("is no direction", ("--picture", "x.png", "--look", "1,2")),
                                  ("is no size", ("--picture", "x.png", "--picture-size", "300")), ("1 to 16384 pixels", ("--picture", "x.png", "--picture-size", "20000x2")),
-                                 ("no output", ())):
+                                 ("no output", ()), *(("has no meaning without a page", ("--picture", "x.png", *option))
+                                                     for option in (("--points", "5"), ("--exact",), ("--title", "t")))):
             self.usage(words, "view", cube, *arguments)
+        self.usage("1 to 16384 pixels", "surface", self.path("missing.ply"), "--picture", "x.png", "--picture-size", "16385x2")
         self.usage("--picture has no meaning for info", "info", cube, "--picture", self.path("x.png"))
 
 

@@ -442,6 +442,45 @@ static void every_basis_of_a_lattice_has_a_result(void) {
     }
 }
 
+/* Turns lengths of a box in space, at random: three vectors that are upright to each other, up to rounding. */
+static void turned_box(brio_rng *rng, const double *lengths, double *cell) {
+    for (int i = 0; i < 3; i++) {
+        double *v = cell + 3 * i;
+        for (int k = 0; k < 3; k++) v[k] = brio_rng_double(rng) - 0.5;
+        for (int pass = 0; pass < 2; pass++)
+            for (int j = 0; j < i; j++) {
+                const double *u = cell + 3 * j;
+                double share = v[0] * u[0] + v[1] * u[1] + v[2] * u[2];
+                for (int k = 0; k < 3; k++) v[k] -= share * u[k];
+            }
+        double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        for (int k = 0; k < 3; k++) v[k] /= length;
+    }
+    for (int i = 0; i < 9; i++) cell[i] *= lengths[i / 3];
+}
+
+/* Bounds from vectors that are nearly parallel were rounded below what tetrahedra need; the check lost digits of needles.
+ * Where two directions repeat there are two layers. */
+static void long_turned_cells_have_all_translates(void) {
+    brio_rng rng = brio_rng_new(37);
+    for (int round = 0; round < 240; round++) {
+        int directions = 2 + round / 6 % 2;
+        crystal c = {.count = directions < 3 ? 2 : 1};
+        double cell[9], least = 2, far = pow(10, 1 + round % 6);
+        turned_box(&rng, (double[3]){1, directions < 3 ? far : 1, directions < 3 ? 1 : far}, cell);
+        set_cell(&c, cell);
+        c.periodic[2] = directions > 2;
+        for (int k = 0; k < 3; k++) c.points[3 + k] = 0.25 * cell[k] + cell[6 + k];
+        brio_periodic *t = build(&c);
+        if (!t) continue;
+        for (int i = 0; i < directions; i++) least = fmin(least, t->lattice.range[i]);
+        EXPECT(least >= 1, "round %d: the vertices of a tetrahedron differ by a vector, not by %.17g of it", round,
+               least);
+        check(t, "a long cell");
+        brio_periodic_free(t);
+    }
+}
+
 /* Makes the triangulation of a cell of twice the length into one that covers the plain cell's space twice: each class is
  * there twice, and all looks right from near. `twice` has points n to 2n - 1 at those of `once` moved by its vector a.
  * Returns the triangulation, whose arrays the caller frees, or whose tetrahedra are NULL on error. */
@@ -557,6 +596,7 @@ SUITE(test_periodic) {
     RUN(shifts_fit_or_are_refused);
     RUN(flat_points_are_checked);
     RUN(every_basis_of_a_lattice_has_a_result);
+    RUN(long_turned_cells_have_all_translates);
     RUN(space_is_covered_once);
     RUN(no_points_have_a_result);
     RUN(wrong_options_are_refused);

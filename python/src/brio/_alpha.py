@@ -132,6 +132,8 @@ def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0, progres
 
         tri = PeriodicDelaunay(points, weights, cell=cell, periodic=periodic, threads=threads, progress=progress)
         return PeriodicAlphaComplex(tri, threads=threads, progress=progress)
+    if periodic is not True:
+        raise ArgumentError("periodic: there is no cell, whose vectors it names")
     return AlphaComplex(Delaunay(points, weights, threads=threads, progress=progress))
 
 
@@ -182,8 +184,8 @@ class AlphaShape(Mesh):
         return complex.shape(complex.auto_alpha() if alpha is None else alpha)
 
     def __init__(self, points: Any, alpha: float | None = None, weights: Any = None, *, threads: int = 0,
-                 progress: bool | Progress | None = None) -> None:
-        complex = alpha_complex(points, weights, threads=threads, progress=progress)
+                 progress: bool | Progress | None = None, cell: None = None, periodic: Any = True) -> None:
+        complex = alpha_complex(points, weights, threads=threads, progress=progress, cell=cell, periodic=periodic)
         made = complex.shape(complex.auto_alpha() if alpha is None else alpha)
         self._take(made._handle)
         self.alpha, self.counts, self.complex = made.alpha, made.counts, complex

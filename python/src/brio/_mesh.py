@@ -18,7 +18,7 @@ from ._calls import Progress, of_points, reporting
 from ._points import nearest
 from ._properties import (Properties, as_properties, carry, colors_of, for_means, from_means, normals_of,
                           scalars)
-from .errors import ArgumentError
+from .errors import ArgumentError, Error
 
 Indices = NDArray[np.uint32]
 
@@ -706,7 +706,10 @@ class Mesh:
             c = self.certificate
             words += ["closed" if c.closed else f"{c.boundary_loops} boundary loops", "manifold" if c.manifold else "not manifold",
                       "oriented" if c.oriented else "not oriented", f"{c.components} components, genus {c.genus}"]
-        png = base64.b64encode(picture(self, size=(360, 240)).png).decode("ascii")
+        try:
+            png = base64.b64encode(picture(self, size=(360, 240)).png).decode("ascii")
+        except Error:  # a mesh that no picture can show
+            return f"<p>{', '.join(words)}</p>"
         return (f'<figure style="margin: 0"><img width="360" height="240" alt="{words[0]}" src="data:image/png;base64,{png}">'
                 f"<figcaption>{', '.join(words)}</figcaption></figure>")
 

@@ -104,6 +104,7 @@ class PeriodicDelaunay:
         self.weights = as_weights_or_radii(weights, radii, len(self.points))
         self.periodic = as_periodic(periodic)
         vectors = as_cell(cell)
+        self._given = np.array(vectors)
         unused = tuple(int(not repeats) for repeats in self.periodic)
 
         def build(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
@@ -222,8 +223,16 @@ class PeriodicDelaunay:
             return False
         return True
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle and copy take; the triangulation is made again."""
+        return _made_again, (self.points, self.weights, self._given, self.periodic)
+
     def __repr__(self) -> str:
         return f"<brio.PeriodicDelaunay of {self.npoints} points: {self.nsimplex} simplices>"
+
+
+def _made_again(points: Floats, weights: Floats | None, cell: Floats, periodic: tuple[bool, bool, bool]) -> PeriodicDelaunay:
+    return PeriodicDelaunay(points, weights, cell=cell, periodic=periodic)
 
 
 class PeriodicVoronoi:
@@ -383,6 +392,9 @@ class PeriodicAlphaComplex:
         shape: PeriodicAlphaShape = PeriodicAlphaShape._of(handle)
         shape.alpha, shape.counts, shape.complex = alpha, counts, self
         return shape
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.tri,)
 
     def __repr__(self) -> str:
         return f"<brio.PeriodicAlphaComplex of {len(self.points)} points: {sum(map(len, self.values))} simplices>"
