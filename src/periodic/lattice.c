@@ -424,6 +424,10 @@ brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *opt
     find_used(l);
     BRIO_EXPECT(ctx, complete(l->basis, l->rank, l->dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
     find_range(l, reach);
+    for (int i = 0; i < l->rank; i++) /* before all translates are made that would matter */
+        BRIO_EXPECT(ctx, l->range[i] <= BRIO_LATTICE_MOST_SHIFT, BRIO_ERR_ARGUMENT,
+                    "the reduced basis of the cell is so skewed that translates by %.0f cells matter",
+                    ceil(l->range[i]));
     choose_corner(l, points, num_points);
     l->volume = volume_of((const double(*)[3])l->basis, l->rank);
     return BRIO_OK;

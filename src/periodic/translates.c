@@ -109,8 +109,7 @@ brio_status brio_translates_new(brio_context *ctx, const brio_images *m, const u
     BRIO_FORWARD(make_boxes(t));
     for (int i = 0; i < l->rank; i++) {
         t->most[i] = (int32_t)ceil(l->range[i]);
-        BRIO_EXPECT(t->ctx, t->most[i] <= BRIO_LATTICE_MOST_SHIFT, BRIO_ERR_NO_ANSWER,
-                    "the reduced basis of the cell is so skewed that translates by %d cells matter", t->most[i]);
+        assert(t->most[i] <= BRIO_LATTICE_MOST_SHIFT);
         for (int k = 0; k < 3; k++) {
             t->all.low[k] -= (t->most[i] + 1) * fabs(l->basis[i][k]);
             t->all.high[k] += (t->most[i] + 1) * fabs(l->basis[i][k]);

@@ -481,6 +481,19 @@ static void long_turned_cells_have_all_translates(void) {
     }
 }
 
+/* A cell 10^10 times as long as it is wide is not reduced any more when it is on its grid. The translates that would
+ * matter were made without end. */
+static void needles_beyond_the_grid_are_refused(void) {
+    static const double cell[9] = {-0.11287830639753071, 0.95309757510075299, -0.28082645936928735,
+                                   -7672399729.1987352,  -2631957368.359724,  -5848682142.7162657,
+                                   -0.63134880367253166, 0.14944235158894678, 0.76096364673539352};
+    static const double points[6] = {0, 0, 0, -0.65956838027191433, 0.38771674536413503, 0.69075703189307169};
+    brio_periodic_options o = {.size = sizeof o, .cell = cell, .open = {0, 0, 1}};
+    brio_periodic *t = NULL;
+    EXPECT(brio_delaunay_periodic(ctx, points, NULL, 2, &o, &t) == BRIO_ERR_ARGUMENT && !t, "%s", brio_message(ctx));
+    brio_periodic_free(t);
+}
+
 /* Makes the triangulation of a cell of twice the length into one that covers the plain cell's space twice: each class is
  * there twice, and all looks right from near. `twice` has points n to 2n - 1 at those of `once` moved by its vector a.
  * Returns the triangulation, whose arrays the caller frees, or whose tetrahedra are NULL on error. */
@@ -597,6 +610,7 @@ SUITE(test_periodic) {
     RUN(flat_points_are_checked);
     RUN(every_basis_of_a_lattice_has_a_result);
     RUN(long_turned_cells_have_all_translates);
+    RUN(needles_beyond_the_grid_are_refused);
     RUN(space_is_covered_once);
     RUN(no_points_have_a_result);
     RUN(wrong_options_are_refused);
