@@ -38,7 +38,7 @@ static void batches_of_threads_end_as_built(void) {
     for (int s = 0; s < NUM_SHAPES; s += BRIEF_TESTS ? 3 : 1)
         for (int weighted = BRIEF_TESTS ? s % 2 : 0; weighted < (BRIEF_TESTS ? s % 2 + 1 : 2); weighted++) {
             world w = world_of((shape)s, weighted, n);
-            for (int round = 0; round < (BRIEF_TESTS ? 3 : SHORT_TESTS ? 6 : 100); round++) {
+            for (int round = 0; round < (BRIEF_TESTS ? 5 : SHORT_TESTS ? 10 : 100); round++) {
                 size_t anew = changed_anew(&w);
                 brio_context_set_threads(w.ctx, THREADS[round % 3]);
                 make_batch(&w, round % NUM_KINDS, BRIEF_TESTS ? 200 : 300);
