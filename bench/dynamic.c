@@ -6,30 +6,11 @@
  *   m  seconds for steps that move all points by shares of their spacing, beside building anew (processor time).
  * THREADS: 1 if not given. */
 #include "brio/brio.h"
+#include "measure.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static uint64_t state = 1;
-
-static double draw(void) {
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (double)(state >> 11) * 0x1p-53;
-}
-
-static double seconds(clockid_t clock) {
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void check(brio_context *ctx, brio_status status) {
-    if (status == BRIO_OK) return;
-    fprintf(stderr, "%s\n", brio_message(ctx));
-    exit(1);
-}
 
 static int compare(const void *p, const void *q) {
     double a = *(const double *)p, b = *(const double *)q;

@@ -3,30 +3,11 @@
  * WAY: open, box (a cubic cell) or tilted (a triclinic one). Uniform points. Prints wall and processor seconds of the
  * triangulation and of the cells, the sum of volumes and the faces a point. */
 #include "brio/brio.h"
+#include "measure.h"
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-static uint64_t state = 1;
-
-static double draw(void) {
-    state = state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (double)(state >> 11) * 0x1p-53;
-}
-
-static double seconds(clockid_t clock) {
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void check(brio_context *ctx, brio_status status) {
-    if (status == BRIO_OK) return;
-    fprintf(stderr, "%s\n", brio_message(ctx));
-    exit(1);
-}
 
 int main(int argc, char **argv) {
     static const double tilt[9] = {1, 0, 0, 0.3, 1, 0, 0.2, -0.4, 1}, plain[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -5,9 +5,9 @@
 // Prints one line: cells, sum of volumes, seconds of construction and volumes alone, peak bytes, library. With --cells
 // writes a text, a line for each cell: its point, volume, and for each face neighbour:area. Walls are -1 to -6.
 #include "peer.hpp"
+#include "voropp.hpp"
 #include <cmath>
 #include <cstring>
-#include <voro++/voro++.hh>
 
 namespace {
 
@@ -17,25 +17,6 @@ struct Input {
     const char *cells = nullptr;
     size_t size() const { return points.size() / 3; }
 };
-
-std::vector<double> read_numbers(const char *path) {
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file) std::fprintf(stderr, "%s cannot be read\n", path), std::exit(2);
-    std::vector<double> numbers(static_cast<size_t>(file.tellg()) / sizeof(double));
-    file.seekg(0);
-    file.read(reinterpret_cast<char *>(numbers.data()), static_cast<std::streamsize>(numbers.size() * sizeof(double)));
-    return numbers;
-}
-
-void write_cell(std::FILE *out, int site, voro::voronoicell_neighbor &cell) {
-    std::vector<int> neighbours;
-    std::vector<double> areas;
-    cell.neighbors(neighbours);
-    cell.face_areas(areas);
-    std::fprintf(out, "%d %.17g", site, cell.volume());
-    for (size_t f = 0; f < neighbours.size(); f++) std::fprintf(out, " %d:%.17g", neighbours[f], areas[f]);
-    std::fputc('\n', out);
-}
 
 // voro++ sorts points into blocks: as many as its manual recommends, 8 points to a block.
 template <class Container, class Put> int run(const Input &in, Put put) {
@@ -60,7 +41,7 @@ template <class Container, class Put> int run(const Input &in, Put put) {
     if (!out) return 2;
     voro::voronoicell_neighbor full;
     if (loop.start()) do
-            if (container.compute_cell(full, loop)) write_cell(out, loop.pid(), full);
+            if (container.compute_cell(full, loop)) voropp::write_cell(out, loop.pid(), full);
         while (loop.inc());
     return std::fclose(out) ? 2 : 0;
 }
@@ -78,7 +59,7 @@ int main(int argc, char **argv) {
         if (!std::strcmp(argv[i], "--cells") && i + 1 < argc)
             in.cells = argv[++i];
         else
-            in.radii = read_numbers(argv[i]);
+            in.radii = peer::read_numbers(argv[i], 1);
     if (in.radii.empty())
         return run<voro::container>(in, [&](voro::container &c, size_t i) {
             c.put(static_cast<int>(i), in.points[3 * i], in.points[3 * i + 1], in.points[3 * i + 2]);

@@ -7,10 +7,10 @@
 // peak bytes, library. With
 // --cells writes a text, a line for each cell: its point, volume, and for each face neighbour:area.
 #include "peer.hpp"
+#include "voropp.hpp"
 #include <cmath>
 #include <cstring>
 #include <ctime>
-#include <voro++/voro++.hh>
 
 namespace {
 
@@ -20,25 +20,6 @@ struct Input {
     const char *cells = nullptr;
     size_t size() const { return points.size() / 3; }
 };
-
-std::vector<double> read_numbers(const char *path) {
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file) std::fprintf(stderr, "%s cannot be read\n", path), std::exit(2);
-    std::vector<double> numbers(static_cast<size_t>(file.tellg()) / sizeof(double));
-    file.seekg(0);
-    file.read(reinterpret_cast<char *>(numbers.data()), static_cast<std::streamsize>(numbers.size() * sizeof(double)));
-    return numbers;
-}
-
-void write_cell(std::FILE *out, int site, voro::voronoicell_neighbor &cell) {
-    std::vector<int> neighbours;
-    std::vector<double> areas;
-    cell.neighbors(neighbours);
-    cell.face_areas(areas);
-    std::fprintf(out, "%d %.17g", site, cell.volume());
-    for (size_t f = 0; f < neighbours.size(); f++) std::fprintf(out, " %d:%.17g", neighbours[f], areas[f]);
-    std::fputc('\n', out);
-}
 
 void put(voro::container &c, const Input &in, int i) {
     c.put(i, in.points[3 * i], in.points[3 * i + 1], in.points[3 * i + 2]);
@@ -69,12 +50,13 @@ template <class Loop, class Container> int run(const Input &in, Container &conta
             }
         while (loop.inc());
     const double cpu = static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC;
-    std::printf("%zu %.17g %zu %.4f %.4f %llu voro++-0.4.6\n", cells, sum, faces, watch.seconds(), cpu, peer::peak_bytes());
+    std::printf("%zu %.17g %zu %.4f %.4f %llu voro++-0.4.6\n", cells, sum, faces, watch.seconds(), cpu,
+                peer::peak_bytes());
     if (!in.cells) return 0;
     std::FILE *out = std::fopen(in.cells, "w");
     if (!out) return 2;
     if (loop.start()) do
-            if (container.compute_cell(cell, loop)) write_cell(out, loop.pid(), cell);
+            if (container.compute_cell(cell, loop)) voropp::write_cell(out, loop.pid(), cell);
         while (loop.inc());
     return std::fclose(out) ? 2 : 0;
 }
@@ -99,7 +81,7 @@ template <class Box, class Lattice> int run_in(const Input &in) {
 int main(int argc, char **argv) {
     Input in;
     if (argc < 3) return std::fprintf(stderr, "usage: voropp_periodic POINTS CELL [RADII] [--cells OUT]\n"), 1;
-    in.points = read_numbers(argv[1]);
+    in.points = peer::read_numbers(argv[1], 1);
     double *c = in.cell;
     if (std::sscanf(argv[2], "%lf,%lf,%lf,%lf,%lf,%lf", c, c + 1, c + 2, c + 3, c + 4, c + 5) != 6)
         return std::fprintf(stderr, "%s is no cell\n", argv[2]), 1;
@@ -107,7 +89,7 @@ int main(int argc, char **argv) {
         if (!std::strcmp(argv[i], "--cells") && i + 1 < argc)
             in.cells = argv[++i];
         else
-            in.radii = read_numbers(argv[i]);
+            in.radii = peer::read_numbers(argv[i], 1);
     if (in.radii.empty()) return run_in<voro::container, voro::container_periodic>(in);
     if (in.radii.size() != in.size()) return std::fprintf(stderr, "radii do not fit the points\n"), 1;
     return run_in<voro::container_poly, voro::container_periodic_poly>(in);

@@ -18,6 +18,14 @@ static inline int brio_simplex_of(const brio_alpha_complex *c, uint32_t number, 
     return k;
 }
 
+/** Counts the singular simplices of a dimension: those of the complex at alpha of which no tetrahedron is in it. */
+static inline size_t brio_count_singular(const brio_alpha_complex *c, int dimension, double alpha) {
+    size_t count = 0;
+    for (size_t i = 0; i < c->counts[dimension]; i++)
+        count += c->values[dimension][i] <= alpha && c->solid[dimension][i] > alpha;
+    return count;
+}
+
 /** Tetrahedra of which one of each class of translates counts. Points are numbered in lexicographic order, so that a
  *  simplex begins with its least vertex. It counts if that vertex is own. All tetrahedra at own points are there, and
  *  mates across facets that have an own point; other mates are the facet itself. */

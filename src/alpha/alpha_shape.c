@@ -133,23 +133,14 @@ done:
 
 /* --- one alpha --- */
 
-/* Counts the singular simplices of a dimension. A simplex of the complex is singular when all tetrahedra that contain
- * it are outside. */
-static size_t count_singular(const shape *s, int dimension) {
-    const double *value = s->complex->values[dimension], *solid = s->complex->solid[dimension];
-    size_t count = 0;
-    for (size_t i = 0; i < s->complex->counts[dimension]; i++) count += value[i] <= s->alpha && solid[i] > s->alpha;
-    return count;
-}
-
 static void count_all(shape *s) {
     const brio_alpha_complex *c = s->complex;
     for (size_t t = 0; t < c->counts[3]; t++) s->stats.tetrahedra += c->values[3][t] <= s->alpha;
     for (size_t v = 0; v < c->counts[0]; v++) s->stats.uncovered += c->solid[0][v] > s->alpha;
     s->stats.alpha = s->alpha;
-    s->stats.singular_vertices = count_singular(s, 0);
-    s->stats.singular_edges = count_singular(s, 1);
-    s->stats.singular_facets = count_singular(s, 2);
+    s->stats.singular_vertices = brio_count_singular(c, 0, s->alpha);
+    s->stats.singular_edges = brio_count_singular(c, 1, s->alpha);
+    s->stats.singular_facets = brio_count_singular(c, 2, s->alpha);
 }
 
 static brio_status make_surface(shape *s, const double *points) {

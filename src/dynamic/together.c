@@ -1,7 +1,7 @@
 /* Many changes together, by all threads.
  *
  * In a pass (triangulation/passes.h) each thread has a hand: a brio_dynamic that shares the arrays of rows and slots,
- * and has all else of its own. The functions that change one point alone change it by a hand, too: a hole is dug, or
+ * and nothing else. The functions that change one point alone change it by a hand, too: a hole is dug, or
  * a star listed, only as far as its vertices are in the hand's zone, and nothing is written before all of it is. What
  * meets another hand's zone is tried again. What has to do with hidden points, twins, or very many tetrahedra is left
  * to one thread, which does it after the passes: their lists reach across zones.

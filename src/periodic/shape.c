@@ -241,13 +241,6 @@ static brio_status fill_mesh(shape *s) {
 
 /* --- facts --- */
 
-static size_t count_singular(const shape *s, int dimension) {
-    const double *value = s->complex->values[dimension], *solid = s->complex->solid[dimension];
-    size_t count = 0;
-    for (size_t i = 0; i < s->complex->counts[dimension]; i++) count += value[i] <= s->alpha && solid[i] > s->alpha;
-    return count;
-}
-
 static brio_status count_surface(shape *s) {
     brio_status status = BRIO_OK;
     uint8_t *met = NULL;
@@ -293,9 +286,9 @@ static brio_status make_surface(shape *s) {
     for (size_t t = 0; t < c->counts[3]; t++) s->stats.tetrahedra += c->values[3][t] <= s->alpha;
     for (size_t v = 0; v < c->counts[0]; v++) s->stats.uncovered += c->solid[0][v] > s->alpha;
     s->stats.alpha = s->alpha;
-    s->stats.singular_vertices = count_singular(s, 0);
-    s->stats.singular_edges = count_singular(s, 1);
-    s->stats.singular_facets = count_singular(s, 2);
+    s->stats.singular_vertices = brio_count_singular(s->complex, 0, s->alpha);
+    s->stats.singular_edges = brio_count_singular(s->complex, 1, s->alpha);
+    s->stats.singular_facets = brio_count_singular(s->complex, 2, s->alpha);
     BRIO_EXPECT(s->ctx, s->stats.tetrahedra > 0, BRIO_BECAUSE(s->ctx, NO_VALUE, BRIO_ERR_NO_ANSWER),
                 "no tetrahedron has a value of at most alpha = %g", s->alpha);
     BRIO_FORWARD(brio_refuse_small_alpha(s->ctx, c, s->alpha));

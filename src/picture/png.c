@@ -1,8 +1,8 @@
 /* Writes PNG files, without a library, so that a picture has the same bytes wherever it is made.
  *
  * Each row is replaced by its differences from what its neighbours foretell: of five filters the one whose
- * differences have the least sum. Runs of equal bytes become matches at the distance 1, and each block has Huffman
- * codes of its own.
+ * differences have the least sum. Runs of equal bytes become matches at the distance 1, and each block brings the
+ * Huffman codes that suit it.
  *
  * Based on: Deutsch. DEFLATE compressed data format specification. RFC 1951, 1996.
  *           Huffman. A method for the construction of minimum-redundancy codes. Proc. IRE 1952.
@@ -121,7 +121,7 @@ static brio_status end_block(packer *p, bool last) {
     int length;
     for (size_t i = 0; i < p->num_tokens; i++) weight[symbol_of(p->token[i], &length)]++;
     find_codes(weight, depth, code);
-    BRIO_FORWARD(put_bits(p, last ? 5 : 4, 3)); /* whether it is the last one; codes of its own */
+    BRIO_FORWARD(put_bits(p, last ? 5 : 4, 3)); /* whether it is the last one; it brings its codes */
     BRIO_FORWARD(put_depths(p, depth));
     for (size_t i = 0; i < p->num_tokens; i++) {
         int s = symbol_of(p->token[i], &length);
