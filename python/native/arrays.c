@@ -105,15 +105,17 @@ PyType_Spec array_spec = {"brio._native.Array", sizeof(array), 0,
 
 /* --- arrays of the caller --- */
 
-int is_of_format(const char *found, char wanted) {
+int is_of_format(const Py_buffer *view, char wanted) {
     static const char of_64[] = "LQ", signed_of_64[] = "lq", of_32[] = "IL", signed_of_32[] = "il";
     const int wide = sizeof(long) == 8;
+    const char *found = view->format;
     if (!found || found[1] || !*found) return 0;
     if (wanted == 'L') return strchr(wide ? of_64 : "Q", *found) != NULL;
     if (wanted == 'l') return strchr(wide ? signed_of_64 : "q", *found) != NULL;
     if (wanted == 'I') return strchr(wide ? "I" : of_32, *found) != NULL;
     if (wanted == 'i') return strchr(wide ? "i" : signed_of_32, *found) != NULL;
     if (wanted == 'B') return strchr("B?", *found) != NULL;
+    if (wanted == 'd' && view->itemsize == sizeof(double)) return strchr("dg", *found) != NULL;
     return *found == wanted;
 }
 
@@ -127,8 +129,7 @@ static int open_view(input *in, PyObject *object, const char *name, char format,
     in->rows = view->ndim > 0 ? (size_t)view->shape[0] : 0;
     in->columns = view->ndim > 1 ? (size_t)view->shape[1] : 1;
     in->bytes = (size_t)view->len;
-    if (is_of_format(view->format, format) && view->ndim == ndim && (columns <= 0 || in->columns == (size_t)columns))
-        return 0;
+    if (is_of_format(view, format) && view->ndim == ndim && (columns <= 0 || in->columns == (size_t)columns)) return 0;
     PyErr_Format(PyExc_ValueError, "%s: an array of another type or shape than wanted (%c, %d dimensions)", name,
                  format, ndim);
     PyBuffer_Release(&in->view);

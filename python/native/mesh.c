@@ -29,7 +29,7 @@ static brio_status add_property(brio_mesh *mesh, const owner *of, size_t count, 
     brio_status status = BRIO_ERR_ARGUMENT;
     if (PyObject_GetBuffer(array, &view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT)) return status;
     int type = 0;
-    while (type < BRIO_SCALAR_END && !is_of_format(view.format, letters[type])) type++;
+    while (type < BRIO_SCALAR_END && !is_of_format(&view, letters[type])) type++;
     if (type == BRIO_SCALAR_END || view.ndim != 1 || (size_t)view.shape[0] != count)
         PyErr_Format(PyExc_ValueError, "property %s: not one number a %s, of a type of at most 32 bits or float64",
                      name, of->name);

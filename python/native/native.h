@@ -83,8 +83,8 @@ typedef struct {
 } layout;
 
 /* Whether an array's format is that which is wanted: numpy may say q for l, or Q for L; and where long has 32 bits, as on
- * Windows, l for i, and L for I. */
-int is_of_format(const char *found, char wanted);
+ * Windows, l for i, and L for I; and g for d where C's long double is a double, as on Windows and on Macs with ARM. */
+int is_of_format(const Py_buffer *view, char wanted);
 
 /** Makes an object with a read-only buffer that keeps `base` alive; numpy.asarray makes an array of it. */
 PyObject *array_new(module_state *state, PyObject *base, layout shown);

@@ -321,6 +321,12 @@ def test_paths_that_are_not_utf8(tmp_path):
     """Errors that name such a path were a UnicodeDecodeError."""
     import os
 
+    if os.name == "nt":  # names are UTF-16 there, and one with half a pair has no UTF-8
+        for kind, call in ((brio.OpenError, lambda: brio.read("b\udcff.xyz")), (brio.WriteError, lambda: brio.write("b\udcff.ply", SPACE))):
+            with pytest.raises(kind, match=r"b\\xed\\xb3\\xbf") as caught:
+                call()
+            str(caught.value).encode()
+        return
     folder = os.fsencode(tmp_path) + b"/b\xff"
     try:
         os.mkdir(folder)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""targets.py ROOT OUT [--only NAME,...] [--no-units]: tries brio on every system that it is for, from one machine.
+"""targets.py ROOT OUT [--only NAME,...] [--no-units] [--again]: tries brio on every system that it is for, from one machine.
 
 Builds the program and the unit tests for each target of scripts/cross.py. What can run here runs: in emulation where it must. It runs
 
@@ -12,7 +12,9 @@ emulation suites run in so much time as is allowed: a suite that needs more is s
 tests print is in OUT/TARGET/failures. Of what cannot run the libraries and symbols that the program asks its system for are checked; so
 are the versions of symbols of glibc. The exit status is 1 where something fails or differs.
 
-OUT/TARGET/made-of is the hash of the sources whose program the row is about: scripts/release.sh asks for both."""
+OUT/TARGET/made-of is the hash of the sources whose program the row is about: scripts/release.sh asks for both. OUT/TARGET/tried is that of
+the programs and of what tried them. A target that has neither changed nor failed since keeps its row, except with --again: what was cut off
+goes on where it was."""
 import argparse
 import concurrent.futures
 import contextlib
@@ -238,8 +240,24 @@ def run_target(root, folder, target, script, native, points, most_seconds):
     return facts, bool(failed or different)
 
 
-def try_target(root, out, target, units, native, points, most_seconds):
-    """The row of a target and whether something is wrong with it."""
+def hash_of(facts, files):
+    """A hash of what is said and of what is in files."""
+    digest = hashlib.sha256(repr(facts).encode())
+    for file in files:
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def tried_with(root, folder, target, native, units):
+    """A hash of a target's programs, of the tests that they meet, and of the checksums that are expected."""
+    tests = [p for name in ('tests/cli', 'tests/targets') for p in sorted((root / name).rglob('*')) if p.suffix in ('.py', '.c', '.mjs', '.sh')]
+    programs = [folder / (name + end) for name in ('brio', 'unit_tests') for end in ('', '.exe', '.wasm')]
+    return hash_of((units, RUNS.get(target.name), OPERATIONS, sorted(native.items())),
+                   [p for p in tests if p.parent.name != 'targets' or p.suffix != '.py'] + [p for p in programs if p.is_file()])
+
+
+def try_target(root, out, target, units, native, points, most_seconds, kept):
+    """The row of a target and whether something is wrong with it. The row `kept` stands where nothing has changed since."""
     row = dict(target=target.name, built='no', ran='no', passed='', failed='', checksums='')
     folder = out / target.name
     try:
@@ -248,13 +266,20 @@ def try_target(root, out, target, units, native, points, most_seconds):
         cross.configure_and_build(root, folder, options, ['brio-cli'] + ['unit_tests'] * (units and target.name in RUNS))
     except RuntimeError as error:
         return {**row, 'failed': str(error)}, True
+    mark, tried = folder / 'tried', tried_with(root, folder, target, native, units)
+    if kept and mark.is_file() and mark.read_text() == tried:
+        return kept, False
+    mark.unlink(missing_ok=True)
     needs = needs_of(folder, target)
     if needs:
         return {**row, 'built': 'yes', 'failed': 'needs ' + ' '.join(needs)}, True
     script, why = runner_of(root, folder, target, 'brio')
     if script is None:
+        mark.write_text(tried)
         return {**row, 'built': 'yes', 'ran': 'no: ' + why}, False
     facts, wrong = run_target(root, folder, target, script, native, points, most_seconds)
+    if not wrong:
+        mark.write_text(tried)
     return {**row, 'built': 'yes', **facts}, wrong
 
 
@@ -264,6 +289,7 @@ def main():
     parser.add_argument('out', type=pathlib.Path)
     parser.add_argument('--only', default='', help='names of targets, with commas')
     parser.add_argument('--no-units', action='store_true', help='no unit tests, whose build takes most of the time')
+    parser.add_argument('--again', action='store_true', help='targets that have not changed, too')
     parser.add_argument('--native', type=pathlib.Path, help='the program of this machine; built where it is not given')
     parser.add_argument('--minutes', type=float, default=10, help='for the unit tests of a target in emulation')
     a = parser.parse_args()
@@ -282,10 +308,11 @@ def main():
     for target in wanted:
         mark, made_of = out / target.name / 'made-of', cross.made_of(root)
         mark.unlink(missing_ok=True)
-        with wine(out) if RUNS.get(target.name, ('',))[0] == 'wine' else contextlib.nullcontext():
-            row, bad = try_target(root, out, target, not a.no_units, expected, points, 60 * a.minutes)
-        wrong |= bad
         rows = {line.split('\t')[0]: line for line in table.read_text().splitlines()[1:]} if table.exists() else {}
+        kept = dict(zip(columns, rows[target.name].split('\t'))) if target.name in rows and not a.again else None
+        with wine(out) if RUNS.get(target.name, ('',))[0] == 'wine' else contextlib.nullcontext():
+            row, bad = try_target(root, out, target, not a.no_units, expected, points, 60 * a.minutes, kept)
+        wrong |= bad
         rows[target.name] = '\t'.join(str(row[c]) for c in columns)
         print(rows[target.name], flush=True)
         table.write_text('\n'.join(['\t'.join(columns), *(rows[t.name] for t in cross.TARGETS if t.name in rows)]) + '\n')

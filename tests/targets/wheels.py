@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""wheels.py ROOT WHEELS OUT [--native PROGRAM] [--only NAME,...] [--tests FILE,...]: tries the Python packages of scripts/wheels.py where they belong.
+"""wheels.py ROOT WHEELS OUT [--native PROGRAM] [--only NAME,...] [--tests FILE,...] [--again]: tries the Python packages of scripts/wheels.py where they belong.
 
 Each wheel of WHEELS meets a CPython 3.11 of its system, that runs here, in emulation where it must:
 
@@ -146,7 +146,7 @@ def seen_by(target, path):
     return 'Z:' + str(path).replace('/', '\\') if target.system == 'Windows' else str(path)
 
 
-def try_wheel(root, out, wheel, target, files, seconds):
+def try_wheel(root, out, wheel, target, files, seconds, again):
     """The row's facts of a wheel, and whether something is wrong with it."""
     python, why = python_of(root, target)
     if python is None:
@@ -178,26 +178,46 @@ def try_wheel(root, out, wheel, target, files, seconds):
     facts = {'pip': pip_seconds, 'first': '%s (%.1f inside)' % (first, float(inner)), 'checksum': checksum}
     done, _ = install(extra, 'pytest', 'scipy')
     environment['PYTHONPATH'] = (';' if target.system == 'Windows' else ':').join(seen_by(target, p) for p in (site, extra))
+    wrong = run_tests(root, folder, python, environment, target, files, seconds, hash_of_installed(root, wheel, packages), facts, again)
+    return facts, checksum, wrong
+
+
+def hash_of_installed(root, wheel, packages):
+    """A hash of what a test meets: the wheel, the packages beside it, what tests share."""
+    shared = [p for p in sorted((root / 'python/tests').glob('*.py')) if not p.name.startswith('test_')]
+    return targets.hash_of(sorted(p.name for p in packages.iterdir()), [wheel, *shared])
+
+
+def run_tests(root, folder, python, environment, target, files, seconds, installed, facts, again):
+    """Runs the package's tests, file by file; their sums go to the row's facts. Whether something is wrong. FOLDER/results.json has what
+    came of each file: one that passed and met the same is not run again. What they print is in FOLDER/logs."""
     files = [root / 'python/tests' / f for f in files] if files else sorted((root / 'python/tests').glob('test_*.py'))
-    totals, wrong = dict.fromkeys(('passed', 'failed', 'skipped', 'error'), 0), []
-    with open(folder / 'tests', 'w') as log:
-        for file in files:
+    kept, results, logs = folder / 'results.json', {}, folder / 'logs'
+    if kept.exists() and not again:
+        results = json.loads(kept.read_text())
+    logs.mkdir(exist_ok=True)
+    sums, wrong, left_out = dict.fromkeys(('passed', 'failed', 'skipped', 'error'), 0), [], []
+    for file in files:
+        met = targets.hash_of(installed, [file])
+        if results.get(file.name, {}).get('met') != met or results[file.name]['wrong']:
             try:
-                done, used = timed([*python, '-X', 'faulthandler', '-m', 'pytest', '-o', 'addopts=', '-q', '-rs', '-p', 'no:cacheprovider', seen_by(target, file)],
+                done, used = timed([*python, '-X', 'faulthandler', '-m', 'pytest', '-o', 'addopts=', '-q', '-rsfE', '-p', 'no:cacheprovider', seen_by(target, file)],
                                    environment, seconds, cwd=root / 'python')
             except subprocess.TimeoutExpired:
-                log.write('== %s: needs over %d s\n' % (file.name, seconds))
-                facts.setdefault('left out', []).append(file.name)
+                left_out.append('%s: over %d s' % (file.name, seconds))
                 continue
-            log.write('== %s: exit %d, %s s\n%s%s\n' % (file.name, done.returncode, used, done.stdout, done.stderr))
-            log.flush()
+            (logs / (file.name + '.txt')).write_text('exit %d, %s s\n%s%s\n' % (done.returncode, used, done.stdout, done.stderr))
             found = re.findall(r'(\d+) (passed|failed|skipped|error)', done.stdout[-300:])
-            for number, word in found:
-                totals[word] += int(number)
-            wrong += re.findall(r'^(?:FAILED|ERROR) (\S+)', done.stdout, re.M) or ([] if found and done.returncode in (0, 5) else [file.name])
-    facts.update(passed=totals['passed'], skipped=totals['skipped'], failed=' '.join(wrong) or 0)
-    facts['left out'] = ' '.join(facts.get('left out', []))
-    return facts, checksum, bool(wrong)
+            failed = re.findall(r'^(?:FAILED|ERROR) (?:.*?::)?(.*?)(?: - .*)?$', done.stdout, re.M)
+            results[file.name] = {'met': met, 'sums': {word: int(number) for number, word in found},
+                                  'wrong': failed or ([] if found and done.returncode in (0, 5) else [file.name])}
+            kept.write_text(json.dumps(results, indent=1))
+        for word, number in results[file.name]['sums'].items():
+            sums[word] += number
+        wrong += results[file.name]['wrong']
+    facts.update(passed=sums['passed'], skipped=sums['skipped'], failed='%d: %s' % (len(wrong), ', '.join(wrong)) if wrong else 0)
+    facts['left out'] = ', '.join(left_out)
+    return bool(wrong)
 
 
 def main():
@@ -207,6 +227,7 @@ def main():
     parser.add_argument('out', type=pathlib.Path)
     parser.add_argument('--only', default='', help='names of targets, with commas')
     parser.add_argument('--tests', default='', help='files of python/tests, with commas')
+    parser.add_argument('--again', action='store_true', help='files of tests that passed with the same wheel, too')
     parser.add_argument('--native', type=pathlib.Path, help='the program of this machine')
     parser.add_argument('--seconds', type=float, default=900, help='for a file of tests')
     a = parser.parse_args()
@@ -221,7 +242,7 @@ def main():
         wheel = next(a.wheels.resolve().glob('brio_geometry-%s-*-%s.whl' % (version, target.platform)), None)
         if wheel:
             with targets.wine(out) if target.system == 'Windows' else contextlib.nullcontext():
-                facts, checksum, bad = try_wheel(root, out, wheel, target, [f for f in a.tests.split(',') if f], a.seconds)
+                facts, checksum, bad = try_wheel(root, out, wheel, target, [f for f in a.tests.split(',') if f], a.seconds, a.again)
         else:
             facts, checksum, bad = {'pip': 'no wheel: make wheels'}, None, False
         expected = expected or checksum

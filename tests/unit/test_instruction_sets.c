@@ -142,7 +142,27 @@ static void the_environment_lowers_the_set(void) {
     }
 }
 
+/* The programs and packages of the cross compiler used no instruction set but the plain one. */
+static void the_largest_set_is_that_which_the_system_lists(void) {
+    static char line[1 << 16];
+    FILE *facts = fopen("/proc/cpuinfo", "r");
+    bool listed = false;
+    while (facts && !listed && fgets(line, sizeof line, facts)) listed = !strncmp(line, "flags", 5);
+    if (facts) fclose(facts);
+    if (!listed) {
+        printf("skipped: no system lists here what an x86 processor has\n");
+        return;
+    }
+    bool avx2 = strstr(line, " avx2 ") && strstr(line, " fma ");
+    bool avx512 = avx2 && strstr(line, " avx512f ") && strstr(line, " avx512dq ") && strstr(line, " avx512vl ");
+    EXPECT(brio_most_instructions() == (avx512 ? BRIO_AVX512
+                                        : avx2 ? BRIO_AVX2
+                                               : BRIO_PLAIN),
+           "%s: %s", brio_instruction_set_name(brio_most_instructions()), line);
+}
+
 SUITE(test_instruction_sets) {
+    RUN(the_largest_set_is_that_which_the_system_lists);
     RUN(the_environment_lowers_the_set);
     RUN(triangulations_have_the_same_bits);
     RUN(centres_have_the_same_bits);

