@@ -228,13 +228,19 @@ done:
     return status;
 }
 
-/* Takes the options, refuses wrong ones, and makes what a triangulation begins with: its lattice. */
-static brio_status begin(brio_context *ctx, const double *points, size_t n, const brio_periodic_options *options,
-                         brio_periodic_options *o, brio_periodic **out) {
+brio_status brio_periodic_take(brio_context *ctx, const brio_periodic_options *options, brio_periodic_options *o) {
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_periodic_options, options, o));
     BRIO_EXPECT(ctx, o->cell, BRIO_ERR_ARGUMENT, "the options have no cell");
     BRIO_EXPECT(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_int is not 0");
     BRIO_EXPECT(ctx, o->halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o->halo);
+    BRIO_EXPECT(ctx, o->reach >= 0 && o->reach < INFINITY, BRIO_ERR_ARGUMENT, "a reach of %g", o->reach);
+    return BRIO_OK;
+}
+
+/* Takes the options, and makes what a triangulation begins with: its lattice. */
+static brio_status begin(brio_context *ctx, const double *points, size_t n, const brio_periodic_options *options,
+                         brio_periodic_options *o, brio_periodic **out) {
+    BRIO_FORWARD(brio_periodic_take(ctx, options, o));
     BRIO_EXPECT(ctx, n < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", n);
     BRIO_FORWARD(brio_refuse_not_finite(ctx, points, NULL, n, NULL));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, *out, 1));

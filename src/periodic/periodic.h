@@ -90,6 +90,9 @@ struct brio_periodic {
 /** The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it. Measured. */
 static const double BRIO_PERIODIC_HALO = 2.5;
 
+/** Takes the caller's options, and refuses wrong ones. */
+brio_status brio_periodic_take(brio_context *ctx, const brio_periodic_options *options, brio_periodic_options *own);
+
 /** Makes all of a triangulation that has its lattice and its points' shifts to the domain. */
 brio_status brio_periodic_make(brio_periodic *t, const brio_stars_task *task);
 
