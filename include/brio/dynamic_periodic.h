@@ -40,18 +40,18 @@ typedef struct brio_dynamic_periodic_stats {
 } brio_dynamic_periodic_stats;
 
 /** Makes a triangulation of points.
- *  points    #P by 3; none at all are allowed.   weights  #P, or NULL.
- *  weighted  1 if points will have weights, those without one having 0; 0 with weights is BRIO_ERR_ARGUMENT.
- *  options   with the cell, as of brio_delaunay_periodic. With fewer than three directions `reach` says how far points
- *            will ever be from the first of them, in coordinates in which vectors of the cell go anywhere; 0 is four
- *            times as far as these points reach, or the longest vector. The grid is that much coarser.
- *  out       owned by the caller, freed with brio_dynamic_periodic_free before the context; NULL on error. All later
- *            calls work with this context.
+ *  points   #P by 3; none at all are allowed.   weights  #P, or NULL. With weights, or with `weighted` of the options,
+ *           points have weights, those without one 0.
+ *  options  with the cell, as of brio_delaunay_periodic. With fewer than three directions points may be half of `reach`
+ *           away from the least of these, in coordinates in which vectors of the cell go anywhere. 0 is at least four
+ *           times as far as these points reach, and as the longest vector. The grid is as much coarser.
+ *  out      owned by the caller, freed with brio_dynamic_periodic_free before the context; NULL on error. All later
+ *           calls work with this context.
  *  Memory: that of a brio_dynamic of the points and the translates within 2.5 spacings of the domain, and 12 bytes for
  *  each of these and 48 for each index.
  *  Returns BRIO_OK, and as brio_delaunay_periodic. */
 BRIO_API brio_status brio_dynamic_periodic_new(brio_context *ctx, const double *points, const double *weights,
-                                               size_t num_points, int weighted, const brio_periodic_options *options,
+                                               size_t num_points, const brio_periodic_options *options,
                                                brio_dynamic_periodic **out);
 
 /** Frees a triangulation; NULL is accepted. */
@@ -120,7 +120,7 @@ BRIO_API brio_status brio_dynamic_periodic_locate(brio_dynamic_periodic *d, cons
  *  in that sequence, which brio_dynamic_periodic_points writes.
  *  ctx  that of the triangulation, or another one, to which the snapshot belongs then.
  *  out  owned by the caller, freed with brio_periodic_free; NULL on error.
- *  Cost: as sorting the tetrahedra of the points and translates, and a search from their hull: a third of building anew.
+ *  Cost: as sorting the tetrahedra of the points and translates, and a search from their hull.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE, BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_dynamic_periodic_snapshot(brio_context *ctx, const brio_dynamic_periodic *d,
                                                     brio_periodic **out);

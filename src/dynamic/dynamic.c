@@ -388,7 +388,8 @@ static brio_status change_anew(brio_dynamic *d, const brio_live_changes *c) {
     return status;
 }
 
-/*  paths  receives what all rows were, where they move together; the caller puts that back if a later step fails. */
+/* Makes the changes one kind after the other.
+ *  paths  receives what all rows were, where they move together; the caller puts that back if a later step fails. */
 static brio_status change_each(brio_dynamic *d, const brio_live_changes *c, brio_paths *paths) {
     if (c->moved.count && are_many(d, &c->moved)) {
         BRIO_FORWARD(brio_paths_new(d, &c->moved, paths));

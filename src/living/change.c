@@ -84,7 +84,7 @@ brio_status brio_dynamic_periodic_insert(brio_dynamic_periodic *d, const double 
     double moved = d->moved;
     brio_status status = BRIO_OK;
     size_t begin = d->num_points;
-    BRIO_FORWARD(check_points(d, points, weights, num_points));
+    BRIO_TRY(check_points(d, points, weights, num_points));
     BRIO_TRY(BRIO_ALLOC(d->ctx, edit, num_points + 1));
     for (size_t i = 0; i < num_points; i++) {
         edit[i] = (brio_edit){.index = (uint32_t)(begin + i), .to.weight = weights ? weights[i] + 0.0 : 0};
@@ -103,7 +103,7 @@ brio_status brio_dynamic_periodic_remove(brio_dynamic_periodic *d, const uint32_
     BRIO_DOOR;
     brio_edit *edit = NULL;
     brio_status status = BRIO_OK;
-    BRIO_FORWARD(check_indices(d, indices, num_indices));
+    BRIO_TRY(check_indices(d, indices, num_indices));
     BRIO_TRY(BRIO_ALLOC(d->ctx, edit, num_indices + 1));
     for (size_t i = 0; i < num_indices; i++) edit[i] = (brio_edit){.index = indices[i], .gone = true};
     status = brio_wrapped_apply(d, edit, num_indices, d->num_points, d->alive - num_indices);
@@ -112,19 +112,16 @@ done:
     return status;
 }
 
-/*  points, weights  NULL where they stay. */
+/* Moves or reweights points.   points, weights  NULL where they stay. */
 static brio_status move_points(brio_dynamic_periodic *d, const uint32_t *indices, const double *points,
                                const double *weights, size_t n) {
     brio_edit *edit = NULL;
     double moved = d->moved;
     brio_status status = BRIO_OK;
-    if (indices) {
-        BRIO_FORWARD(check_indices(d, indices, n));
-    } else {
-        BRIO_EXPECT(d->ctx, n == d->alive, BRIO_ERR_ARGUMENT, "%zu positions for %zu points", n, d->alive);
-    }
-    BRIO_EXPECT(d->ctx, d->weighted || !weights, BRIO_ERR_ARGUMENT, "weights for a triangulation without weights");
-    if (points) BRIO_FORWARD(brio_refuse_not_finite(d->ctx, points, weights, n, NULL));
+    if (indices) BRIO_TRY(check_indices(d, indices, n));
+    BRIO_REQUIRE(d->ctx, indices || n == d->alive, BRIO_ERR_ARGUMENT, "%zu positions for %zu points", n, d->alive);
+    BRIO_REQUIRE(d->ctx, d->weighted || !weights, BRIO_ERR_ARGUMENT, "weights for a triangulation without weights");
+    if (points) BRIO_TRY(brio_refuse_not_finite(d->ctx, points, weights, n, NULL));
     BRIO_TRY(BRIO_ALLOC(d->ctx, edit, n + 1));
     for (size_t i = 0, index = 0; i < n; i++, index++) {
         while (!indices && d->point[index].first == BRIO_NONE) index++;
@@ -171,17 +168,16 @@ static brio_status make_grid(brio_dynamic_periodic *d, const double *points, siz
 }
 
 brio_status brio_dynamic_periodic_new(brio_context *ctx, const double *points, const double *weights, size_t num_points,
-                                      int weighted, const brio_periodic_options *options, brio_dynamic_periodic **out) {
+                                      const brio_periodic_options *options, brio_dynamic_periodic **out) {
     BRIO_DOOR;
     brio_dynamic_periodic *d = NULL;
     brio_periodic_options o = {0};
     brio_status status = BRIO_OK;
     *out = NULL;
-    BRIO_REQUIRE(ctx, weighted || !weights, BRIO_ERR_ARGUMENT, "weights, but weighted is 0");
     BRIO_TRY(brio_periodic_take(ctx, options, &o));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, d, 1));
     d->ctx = ctx;
-    d->weighted = weighted != 0;
+    d->weighted = o.weighted || weights;
     d->halo = o.halo > 0 ? o.halo : BRIO_PERIODIC_HALO;
     BRIO_TRY(check_points(d, points, weights, num_points));
     BRIO_TRY(make_grid(d, points, num_points, &o));

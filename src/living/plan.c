@@ -1,9 +1,9 @@
 /* Changes of points as changes of their translates.
  *
- * Where a point moves, its new translates are those of its new position. Each old one goes to the nearest new one, which
- * it reaches by the same short way as the point, also where the point itself comes to the domain's other side. Those
- * that enter or leave the margin are inserted or removed. All is one change of the inner triangulation, so it happens as
- * a whole or not at all. What says which point is which is written after it, and cannot fail.
+ * Where a point moves, its new translates are those of its new position. Each old one goes to the nearest new one,
+ * which it reaches by the same short way as the point, also where the point itself comes to the domain's other side.
+ * Those that enter or leave the margin are inserted or removed. All is one change of the inner triangulation, so it
+ * happens as a whole or not at all. What says which point is which is written after it, and cannot fail.
  *
  * Where the number of points has doubled or halved, margin and inner triangulation are made anew. */
 #include "base/memory.h"

@@ -118,7 +118,7 @@ done:
     return status;
 }
 
-/*  index  NULL, or receives the index of each place; the caller frees it. */
+/* Takes a snapshot.   index  NULL, or receives the index of each place; the caller frees it. */
 static brio_status take_snapshot(brio_context *ctx, const brio_dynamic_periodic *d, brio_periodic **out,
                                  uint32_t **index) {
     brio_periodic *t = NULL;

@@ -234,6 +234,7 @@ brio_status brio_periodic_take(brio_context *ctx, const brio_periodic_options *o
     BRIO_EXPECT(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_int is not 0");
     BRIO_EXPECT(ctx, o->halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o->halo);
     BRIO_EXPECT(ctx, o->reach >= 0 && o->reach < INFINITY, BRIO_ERR_ARGUMENT, "a reach of %g", o->reach);
+    BRIO_EXPECT(ctx, !o->reserved_more, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_more is not 0");
     return BRIO_OK;
 }
 

@@ -87,7 +87,8 @@ struct brio_periodic {
     brio_tetrahedron *tet;      /* I1, I2: finite ones first */
 };
 
-/** The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it. Measured. */
+/** The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it.
+ *  Measured. */
 static const double BRIO_PERIODIC_HALO = 2.5;
 
 /** Takes the caller's options, and refuses wrong ones. */

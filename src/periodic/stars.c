@@ -147,7 +147,7 @@ static brio_status push(layer *y, size_t tet) {
     return BRIO_OK;
 }
 
-/* K is taken a bit smaller: the coordinates of the known translates in the basis were rounded. */
+/* Takes K a bit smaller: the coordinates of the known translates in the basis were rounded. */
 bool brio_stars_leaves(const brio_lattice *lattice, const double margin[3], double heaviest, const brio_ball *b) {
     static const double SLACK = 0x1p-30;
     if (b->infinite || !(b->square < INFINITY)) return true;

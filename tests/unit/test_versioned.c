@@ -221,7 +221,7 @@ ENDS_WITH(brio_ranks_options, key);
 ENDS_WITH(brio_transport, end);
 ENDS_WITH(brio_ranks_traffic, waited_seconds);
 ENDS_WITH(brio_tile_part, num_tetrahedra);
-ENDS_WITH(brio_periodic_options, reach);
+ENDS_WITH(brio_periodic_options, reserved_more);
 ENDS_WITH(brio_periodic_stats, seconds);
 ENDS_WITH(brio_periodic_alpha, periodic);
 ENDS_WITH(brio_periodic_shape_stats, volume);

@@ -38,8 +38,8 @@ static inline wrapped wrapped_new(shape s, int weighted, int cell, int open, siz
 
 static inline void wrapped_start(wrapped *w) {
     w->options.cell = w->cell;
-    EXPECT(brio_dynamic_periodic_new(w->ctx, NULL, NULL, 0, w->weighted, &w->options, &w->d) == BRIO_OK, "%s",
-           brio_message(w->ctx));
+    w->options.weighted = w->weighted;
+    EXPECT(brio_dynamic_periodic_new(w->ctx, NULL, NULL, 0, &w->options, &w->d) == BRIO_OK, "%s", brio_message(w->ctx));
 }
 
 static inline void wrapped_free(wrapped *w) {
