@@ -87,28 +87,29 @@
 #ifndef BRIO_H
 #define BRIO_H
 
-#include "context.h"       /* status, context, versions */
-#include "surface.h"       /* surfaces from points */
-#include "files.h"         /* reading, writing, converting */
-#include "mesh.h"          /* meshes and their properties */
-#include "certificate.h"   /* of a mesh: closed, components, genus, area, volume, what is wrong; distances */
-#include "page.h"          /* pages that show meshes in a browser */
-#include "points.h"        /* thinning, outliers, samples of a mesh */
-#include "triangulation.h" /* Delaunay and regular triangulations */
-#include "tiles.h"         /* triangulations of more points than fit in memory */
-#include "ranks.h"         /* the same by many processes */
-#include "dynamic.h"       /* triangulations that live: points inserted, removed, moved */
-#include "queries.h"       /* location, nearest vertices, interpolation */
-#include "cells.h"         /* Voronoi and power cells */
-#include "periodic.h"      /* triangulations and cells of space that repeats */
-#include "shapes.h"        /* convex hulls, alpha shapes, restricted triangulations */
-#include "balls.h"         /* unions of balls */
-#include "offset.h"        /* offsets of closed meshes */
-#include "medial.h"        /* medial axes */
-#include "iso.h"           /* iso-surfaces of maps and atoms */
-#include "plane.h"         /* triangulations of the plane */
-#include "curve.h"         /* curves of points in a plane */
-#include "predicates.h"    /* exact signs */
-#include "estimate.h"      /* memory that a call will take */
+#include "context.h"          /* status, context, versions */
+#include "surface.h"          /* surfaces from points */
+#include "files.h"            /* reading, writing, converting */
+#include "mesh.h"             /* meshes and their properties */
+#include "certificate.h"      /* of a mesh: closed, components, genus, area, volume, what is wrong; distances */
+#include "page.h"             /* pages that show meshes in a browser */
+#include "points.h"           /* thinning, outliers, samples of a mesh */
+#include "triangulation.h"    /* Delaunay and regular triangulations */
+#include "tiles.h"            /* triangulations of more points than fit in memory */
+#include "ranks.h"            /* the same by many processes */
+#include "dynamic.h"          /* triangulations that live: points inserted, removed, moved */
+#include "queries.h"          /* location, nearest vertices, interpolation */
+#include "cells.h"            /* Voronoi and power cells */
+#include "periodic.h"         /* triangulations and cells of space that repeats */
+#include "dynamic_periodic.h" /* the same in space that repeats */
+#include "shapes.h"           /* convex hulls, alpha shapes, restricted triangulations */
+#include "balls.h"            /* unions of balls */
+#include "offset.h"           /* offsets of closed meshes */
+#include "medial.h"           /* medial axes */
+#include "iso.h"              /* iso-surfaces of maps and atoms */
+#include "plane.h"            /* triangulations of the plane */
+#include "curve.h"            /* curves of points in a plane */
+#include "predicates.h"       /* exact signs */
+#include "estimate.h"         /* memory that a call will take */
 
 #endif

@@ -24,6 +24,10 @@ typedef struct brio_periodic_options {
                       where they are needed. 0: the usual 2.5. Only the order of the result depends on it */
     int open[3];        /* 1 for a direction that does not repeat */
     int reserved_int;   /* 0 */
+    double reach;       /* with fewer than three directions, the grid is made for points that reach at least this far.
+                      0: as far as these do, and the longest vector. So sets of points can have one grid */
+    int weighted;       /* of brio_dynamic_periodic_new alone: 1 if later points will have weights */
+    int reserved_more;  /* 0 */
 } brio_periodic_options;
 
 /** Facts of a periodic triangulation. */

@@ -81,17 +81,23 @@ static void read_record(double record[4], const double *points, const double *we
     record[3] = weights ? weights[i] + 0.0 : 0;
 }
 
+/* Appends points that are inserted to a list, which has room. */
+static void append_points(const brio_dynamic *d, brio_live_points *list, const double *points, const double *weights,
+                          size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        double record[4];
+        read_record(record, points, weights, i);
+        memcpy(list->point + 3 * list->count, record, 3 * sizeof *record);
+        if (list->weight) list->weight[list->count] = record[3];
+        list->name[list->count++] = (uint32_t)(d->num_names + i);
+    }
+}
+
 static brio_status insert_anew(brio_dynamic *d, const double *points, const double *weights, size_t n) {
     brio_live_points list;
     brio_status status = brio_live_list(d->ctx, d, n, &list);
     if (status != BRIO_OK) return status;
-    for (size_t i = 0; i < n; i++) {
-        double record[4];
-        read_record(record, points, weights, i);
-        memcpy(list.point + 3 * list.count, record, 3 * sizeof *record);
-        if (list.weight) list.weight[list.count] = record[3];
-        list.name[list.count++] = (uint32_t)(d->num_names + i);
-    }
+    append_points(d, &list, points, weights, n);
     status = brio_live_build(d, &list, d->num_names + n, true);
     brio_live_list_free(d->ctx, &list);
     return status;
@@ -338,4 +344,98 @@ brio_status brio_dynamic_move(brio_dynamic *d, const uint32_t *indices, const do
 brio_status brio_dynamic_reweight(brio_dynamic *d, const uint32_t *indices, const double *weights, size_t num_indices) {
     BRIO_DOOR;
     return move_points(d, &(brio_moves){indices, NULL, weights, num_indices});
+}
+
+/* --- several kinds at once --- */
+
+/* Lists the points that the changes leave. */
+static brio_status list_changed(brio_dynamic *d, const brio_live_changes *c, brio_live_points *list) {
+    enum { GONE = UINT32_MAX };
+    uint32_t *place = NULL;
+    size_t kept = 0;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC(d->ctx, place, d->num_names));
+    for (size_t i = 0; i < list->count; i++) place[list->name[i]] = (uint32_t)i;
+    for (size_t i = 0; i < c->moved.count; i++) {
+        double record[4];
+        size_t at = place[c->moved.indices[i]];
+        BRIO_TRY(brio_new_record(d, &c->moved, i, list->name[at], record));
+        memcpy(list->point + 3 * at, record, 3 * sizeof *record);
+        if (list->weight) list->weight[at] = record[3];
+    }
+    for (size_t i = 0; i < c->num_removed; i++) place[c->removed[i]] = GONE;
+    for (size_t i = 0; i < list->count; i++) {
+        if (place[list->name[i]] == GONE) continue;
+        memmove(list->point + 3 * kept, list->point + 3 * i, 3 * sizeof *list->point);
+        if (list->weight) list->weight[kept] = list->weight[i];
+        list->name[kept++] = list->name[i];
+    }
+    list->count = kept;
+    append_points(d, list, c->points, c->weights, c->num_inserted);
+done:
+    brio_release(d->ctx, place);
+    return status;
+}
+
+static brio_status change_anew(brio_dynamic *d, const brio_live_changes *c) {
+    brio_live_points list;
+    brio_status status = brio_live_list(d->ctx, d, c->num_inserted, &list);
+    if (status != BRIO_OK) return status;
+    bool sorted = c->moved.count < d->counts.alive / 2;
+    status = list_changed(d, c, &list);
+    if (status == BRIO_OK) status = brio_live_build(d, &list, d->num_names + c->num_inserted, sorted);
+    brio_live_list_free(d->ctx, &list);
+    return status;
+}
+
+/* Makes the changes one kind after the other.
+ *  paths  receives what all rows were, where they move together; the caller puts that back if a later step fails. */
+static brio_status change_each(brio_dynamic *d, const brio_live_changes *c, brio_paths *paths) {
+    if (c->moved.count && are_many(d, &c->moved)) {
+        BRIO_FORWARD(brio_paths_new(d, &c->moved, paths));
+        brio_status status = brio_live_move_many(d, paths, most_repairs(d));
+        if (status != BRIO_OK) brio_paths_free(d->ctx, paths); /* it has taken all back */
+        BRIO_FORWARD(status);
+    } else if (c->moved.count) {
+        BRIO_FORWARD(move_each(d, &c->moved));
+    }
+    if (c->num_removed) BRIO_FORWARD(remove_each(d, c->removed, c->num_removed));
+    return c->num_inserted ? insert_each(d, c->points, c->weights, c->num_inserted) : BRIO_OK;
+}
+
+brio_status brio_live_change(brio_dynamic *d, const brio_live_changes *c) {
+    size_t left = d->counts.alive - c->num_removed + c->num_inserted;
+    uint64_t in_place = d->in_place, replaced = d->replaced;
+    double cost = REMOVE_COST * (double)c->num_removed + INSERT_COST * (double)c->num_inserted;
+    brio_paths paths = {0};
+    brio_status status = BRIO_OK;
+    assert(c->moved.indices || c->moved.count == 0);
+    BRIO_EXPECT(d->ctx, d->num_names + c->num_inserted < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE,
+                "more than 2^32 - 17 points");
+    d->needs_anew =
+        d->dimension < 3 || left < 8 || d->counts.alive == c->num_removed || cost > (double)most_changes(1, left);
+    if (!d->needs_anew) {
+        if (c->num_inserted) BRIO_FORWARD(brio_live_refresh_hints(d));
+        brio_live_begin(d);
+        status = brio_live_end(d, change_each(d, c, &paths));
+        if (status != BRIO_OK && paths.record) {
+            memcpy(d->record, paths.record, d->num_rows * sizeof *d->record);
+            brio_slack_end_all(d);
+        }
+        brio_paths_free(d->ctx, &paths);
+    }
+    if (status != BRIO_OK) d->in_place = in_place, d->replaced = replaced;
+    return d->needs_anew ? change_anew(d, c) : status;
+}
+
+void brio_live_renumber(brio_dynamic *d, uint32_t *now) {
+    uint32_t count = 0;
+    for (size_t i = 0; i < d->num_names; i++) {
+        uint32_t row = d->row_of[i];
+        now[i] = row == BRIO_NONE ? BRIO_NONE : count;
+        if (row == BRIO_NONE) continue;
+        d->row[row].name = count;
+        d->row_of[count++] = row;
+    }
+    d->num_names = count;
 }

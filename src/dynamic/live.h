@@ -422,4 +422,28 @@ brio_status brio_live_build(brio_dynamic *d, const brio_live_points *list, size_
 /** Frees what a store has, not the store. */
 void brio_live_clear(brio_dynamic *d);
 
+/* --- dynamic.c --- */
+
+/** Changes of several kinds. Indices are those of points that are there, in one of the lists and once. */
+typedef struct {
+    brio_moves moved; /* with a list of indices */
+    const uint32_t *removed;
+    const double *points, *weights; /* of those that are inserted; they get the next indices */
+    size_t num_removed, num_inserted;
+} brio_live_changes;
+
+/** Makes all of them, or none: points move first, then go, then come. */
+brio_status brio_live_change(brio_dynamic *d, const brio_live_changes *changes);
+
+/** Gives the points that are there the names 0, 1, ... by their order.
+ *  now  #num_names: receives the new name of each, BRIO_NONE where there is no point. */
+void brio_live_renumber(brio_dynamic *d, uint32_t *now);
+
+/* --- view.c --- */
+
+/** Makes what brio_delaunay makes of the points of a list, which has all that are there, in any order; its names are
+ *  those of the points. */
+brio_status brio_live_snapshot(brio_context *ctx, const brio_dynamic *d, const brio_live_points *list,
+                               brio_triangulation **out);
+
 #endif

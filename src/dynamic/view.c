@@ -92,34 +92,38 @@ brio_status brio_dynamic_locate(brio_dynamic *d, const double position[3], uint3
 
 /* --- snapshot --- */
 
-/* Sets place[row] to the place of its point among those that are there. */
-static brio_status list_places(brio_context *ctx, const brio_dynamic *d, uint32_t **place) {
-    uint32_t n = 0;
-    BRIO_FORWARD(BRIO_ALLOC(ctx, *place, d->num_rows));
-    for (size_t i = 0; i < d->num_names; i++)
-        if (d->row_of[i] != BRIO_NONE) (*place)[d->row_of[i]] = n++;
-    return BRIO_OK;
+/* Returns the place of the point that stands for the twins of a vertex: the first of the heaviest ones. In another
+ * order than that of the names it need not be the vertex (L3). */
+static uint32_t first_of_twins(const brio_dynamic *d, const uint32_t *place, uint32_t vertex) {
+    uint32_t first = place[vertex];
+    for (uint32_t r = d->row[vertex].twins; r != BRIO_NONE; r = d->row[r].next)
+        if (d->record[r][3] == d->record[vertex][3] && place[r] < first) first = place[r];
+    return first;
 }
 
-/* Makes the snapshot of these points, which are all. */
-static brio_status snapshot(brio_context *ctx, const brio_dynamic *d, const brio_live_points *list,
-                            brio_triangulation **out) {
+brio_status brio_live_snapshot(brio_context *ctx, const brio_dynamic *d, const brio_live_points *list,
+                               brio_triangulation **out) {
     brio_status status = BRIO_OK;
-    uint32_t *place = NULL, *vertex_of = NULL;
+    uint32_t *place = NULL, *vertex_of = NULL; /* of each row: its place in the list; of each place: its vertex */
+    uint32_t *standing = NULL;                 /* of each row that is a vertex: the place that stands for it */
     brio_tetrahedron *tet = NULL;
     uint32_t *moved = NULL;
     size_t live = d->counts.finite + d->counts.infinite, n = 0;
     if (d->dimension < 3) return brio_delaunay(ctx, list->point, list->weight, list->count, NULL, out);
-    BRIO_TRY(list_places(ctx, d, &place));
+    BRIO_TRY(BRIO_ALLOC(ctx, place, d->num_rows));
+    BRIO_TRY(BRIO_ALLOC(ctx, standing, d->num_rows));
     BRIO_TRY(BRIO_ALLOC(ctx, vertex_of, list->count));
     BRIO_TRY(BRIO_ALLOC(ctx, tet, live));
     BRIO_TRY(BRIO_ALLOC(ctx, moved, d->t.count));
+    for (size_t i = 0; i < list->count; i++) place[d->row_of[list->name[i]]] = (uint32_t)i;
+    for (uint32_t r = 1; r < d->num_rows; r++)
+        if (brio_row_kind(d, r) == ROW_VERTEX) standing[r] = first_of_twins(d, place, r);
     for (size_t r = 1; r < d->num_rows; r++) {
         uint32_t home = d->home[r];
         int kind = brio_row_kind(d, (uint32_t)r);
         if (kind == ROW_FREE) continue;
         uint32_t v = kind == ROW_VERTEX ? (uint32_t)r : kind == ROW_TWIN ? home : d->t.tet[home].vertex[0];
-        vertex_of[place[r]] = place[v];
+        vertex_of[place[r]] = standing[v];
     }
     for (size_t s = 0; s < d->t.count; s++)
         if (!(d->state[s] & SLOT_UNUSED)) moved[s] = (uint32_t)n++;
@@ -129,7 +133,7 @@ static brio_status snapshot(brio_context *ctx, const brio_dynamic *d, const brio
         brio_tetrahedron *to = &tet[moved[s]];
         for (int k = 0; k < 4; k++) {
             uint32_t v = d->t.tet[s].vertex[k], mate = d->t.tet[s].mate[k];
-            to->vertex[k] = v ? place[v] : BRIO_INFINITE;
+            to->vertex[k] = v ? standing[v] : BRIO_INFINITE;
             to->mate[k] = brio_facet_of(moved[brio_tet_of(mate)], brio_slot_of(mate));
         }
     }
@@ -138,6 +142,7 @@ static brio_status snapshot(brio_context *ctx, const brio_dynamic *d, const brio
     status = brio_delaunay_adopt(ctx, &(brio_input){list->point, list->weight, list->count}, &from, out);
 done:
     brio_release(ctx, place);
+    brio_release(ctx, standing);
     brio_release(ctx, vertex_of);
     brio_release(ctx, tet);
     brio_release(ctx, moved);
@@ -149,7 +154,7 @@ brio_status brio_dynamic_snapshot(brio_context *ctx, const brio_dynamic *d, brio
     brio_live_points list;
     *out = NULL;
     BRIO_FORWARD(brio_live_list(ctx, d, 0, &list));
-    brio_status status = snapshot(ctx, d, &list, out);
+    brio_status status = brio_live_snapshot(ctx, d, &list, out);
     brio_live_list_free(ctx, &list);
     return status;
 }
@@ -160,7 +165,7 @@ brio_status brio_dynamic_checksum(brio_context *ctx, const brio_dynamic *d, uint
     brio_live_points list = {0};
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_live_list(ctx, d, 0, &list));
-    BRIO_TRY(snapshot(ctx, d, &list, &t));
+    BRIO_TRY(brio_live_snapshot(ctx, d, &list, &t));
     status = brio_triangulation_checksum(ctx, t, list.point, checksum);
 done:
     brio_triangulation_free(t);
@@ -200,7 +205,7 @@ brio_status brio_dynamic_check(brio_context *ctx, const brio_dynamic *d) {
     brio_status status = BRIO_OK;
     BRIO_TRY(check_rows(ctx, d));
     BRIO_TRY(brio_live_list(ctx, d, 0, &list));
-    BRIO_TRY(snapshot(ctx, d, &list, &t));
+    BRIO_TRY(brio_live_snapshot(ctx, d, &list, &t));
     status = brio_triangulation_check(ctx, t, list.point, list.weight, list.count);
 done:
     brio_triangulation_free(t);

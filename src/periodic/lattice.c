@@ -341,6 +341,25 @@ bool brio_lattice_home(const brio_lattice *l, const double *point, brio_home *ho
     return true;
 }
 
+double brio_lattice_size(const brio_lattice *l, int k) {
+    return ldexp(l->unit[k], UNIT_BITS);
+}
+
+bool brio_lattice_reaches(const brio_lattice *l, const double *x) {
+    for (int k = 0; k < 3 && l->rank < 3; k++)
+        if (!(fabs(x[k] + l->corner[k]) <= brio_lattice_size(l, k) / 2) && l->unit[k] > 0) return false;
+    return true;
+}
+
+void brio_lattice_given(const brio_lattice *l, const double *x, const int32_t shift[3], double *out) {
+    for (int k = 0; k < 3; k++) {
+        double high = x[k] + l->corner[k], low = 0; /* exact: both are on the grid */
+        add_product(&high, &low, 1, l->origin[k]);
+        for (int j = 0; j < l->rank; j++) add_product(&high, &low, -shift[j], l->given[j][k]);
+        out[k] = high + low + 0.0;
+    }
+}
+
 /* --- all together --- */
 
 /* Takes the lexicographically least point for the origin, in the coordinates that are rounded. */
@@ -419,6 +438,7 @@ brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *opt
     BRIO_EXPECT(ctx, complete(l->near, l->rank, l->near_dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
     BRIO_EXPECT(ctx, find_reach(l, points, num_points, reach), BRIO_ERR_ARGUMENT,
                 "a point is more than 2^26 cells away from the others");
+    for (int k = 0; k < 3 && l->rank < 3; k++) reach[k] = fmax(reach[k], options->reach);
     BRIO_EXPECT(ctx, choose_units(l, (const double(*)[3])l->near, reach), BRIO_ERR_ARGUMENT, TOO_SKEWED);
     round_basis(l);
     find_used(l);

@@ -48,6 +48,17 @@ brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *opt
 /** Finds the translate of a point in the domain.   Returns false if it is more than 2^26 cells away. */
 bool brio_lattice_home(const brio_lattice *lattice, const double *point, brio_home *home);
 
+/** Returns how far points may reach in coordinate k with the grid that there is; 0 where nothing is rounded. */
+double brio_lattice_size(const brio_lattice *lattice, int k);
+
+/** Returns whether a position in the domain is no farther than half of what the grid is made for: then any origin among
+ *  such positions gives the same grid. */
+bool brio_lattice_reaches(const brio_lattice *lattice, const double *x);
+
+/** Writes the position of which x is the translate in the domain, by `shift` of the vectors that were given, in the
+ *  caller's space: rounded to doubles once. */
+void brio_lattice_given(const brio_lattice *lattice, const double *x, const int32_t shift[3], double *out);
+
 /** Writes a position moved by shift[i] basis[i]: exact (I2). */
 static inline void brio_lattice_move(const brio_lattice *l, const double *x, const int32_t *shift, double *out) {
     for (int k = 0; k < 3; k++) {

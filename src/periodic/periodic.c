@@ -15,9 +15,6 @@
 #include <math.h>
 #include <string.h>
 
-/* The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it. Measured. */
-static const double HALO = 2.5;
-
 void brio_periodic_free(brio_periodic *t) {
     if (!t) return;
     brio_context *ctx = t->ctx;
@@ -196,16 +193,11 @@ static void describe(brio_periodic *t, const brio_stars *s) {
     t->stats.rounds = s->rounds;
 }
 
-static brio_status build(brio_periodic *t, const double *points, const double *weights, size_t n,
-                         const brio_periodic_options *o) {
+brio_status brio_periodic_make(brio_periodic *t, const brio_stars_task *task) {
     brio_context *ctx = t->ctx;
     brio_status status = BRIO_OK;
-    double(*home)[3] = NULL;
     brio_stars stars = {0};
-    BRIO_TRY(bring_home(t, points, n, &home));
-    brio_stars_task task = {&t->lattice, (const double(*)[3])home,     weights,
-                            n,           o->halo > 0 ? o->halo : HALO, o->seed ? o->seed : BRIO_SEED};
-    BRIO_TRY(brio_stars_new(ctx, &task, &stars));
+    BRIO_TRY(brio_stars_new(ctx, task, &stars));
     describe(t, &stars);
     BRIO_TRY(brio_periodic_fold(ctx, &stars, &t->tet, &t->stats.tetrahedra, &t->stats.hull_facets));
     t->images = stars.images;
@@ -216,17 +208,40 @@ static brio_status build(brio_periodic *t, const double *points, const double *w
 done:
     if (stars.images.list == t->images.list) stars.images = (brio_images){.ctx = ctx};
     brio_stars_free(&stars);
-    brio_release(ctx, home);
     return status;
 }
 
-/* Takes the options, refuses wrong ones, and makes what a triangulation begins with: its lattice. */
-static brio_status begin(brio_context *ctx, const double *points, size_t n, const brio_periodic_options *options,
-                         brio_periodic_options *o, brio_periodic **out) {
+static brio_status build(brio_periodic *t, const double *points, const double *weights, size_t n,
+                         const brio_periodic_options *o) {
+    brio_status status = BRIO_OK;
+    double(*home)[3] = NULL;
+    BRIO_TRY(bring_home(t, points, n, &home));
+    brio_stars_task task = {.lattice = &t->lattice,
+                            .home = (const double(*)[3])home,
+                            .weights = weights,
+                            .num_points = n,
+                            .halo = o->halo > 0 ? o->halo : BRIO_PERIODIC_HALO,
+                            .seed = o->seed ? o->seed : BRIO_SEED};
+    status = brio_periodic_make(t, &task);
+done:
+    brio_release(t->ctx, home);
+    return status;
+}
+
+brio_status brio_periodic_take(brio_context *ctx, const brio_periodic_options *options, brio_periodic_options *o) {
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_periodic_options, options, o));
     BRIO_EXPECT(ctx, o->cell, BRIO_ERR_ARGUMENT, "the options have no cell");
     BRIO_EXPECT(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_int is not 0");
     BRIO_EXPECT(ctx, o->halo >= 0, BRIO_ERR_ARGUMENT, "a halo of %g spacings", o->halo);
+    BRIO_EXPECT(ctx, o->reach >= 0 && o->reach < INFINITY, BRIO_ERR_ARGUMENT, "a reach of %g", o->reach);
+    BRIO_EXPECT(ctx, !o->reserved_more, BRIO_ERR_ARGUMENT, "brio_periodic_options.reserved_more is not 0");
+    return BRIO_OK;
+}
+
+/* Takes the options, and makes what a triangulation begins with: its lattice. */
+static brio_status begin(brio_context *ctx, const double *points, size_t n, const brio_periodic_options *options,
+                         brio_periodic_options *o, brio_periodic **out) {
+    BRIO_FORWARD(brio_periodic_take(ctx, options, o));
     BRIO_EXPECT(ctx, n < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", n);
     BRIO_FORWARD(brio_refuse_not_finite(ctx, points, NULL, n, NULL));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, *out, 1));
@@ -262,7 +277,10 @@ brio_status brio_periodic_count(brio_context *ctx, const double *points, size_t 
     double(*home)[3] = NULL;
     BRIO_TRY(begin(ctx, points, num_points, options, &o, &t));
     BRIO_TRY(bring_home(t, points, num_points, &home));
-    brio_stars_task task = {&t->lattice, (const double(*)[3])home, NULL, num_points, o.halo > 0 ? o.halo : HALO, 0};
+    brio_stars_task task = {.lattice = &t->lattice,
+                            .home = (const double(*)[3])home,
+                            .num_points = num_points,
+                            .halo = o.halo > 0 ? o.halo : BRIO_PERIODIC_HALO};
     *count = brio_stars_count(&task);
 done:
     brio_release(ctx, home);

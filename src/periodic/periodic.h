@@ -6,6 +6,7 @@
 #ifndef BRIO_PERIODIC_PERIODIC_H
 #define BRIO_PERIODIC_PERIODIC_H
 
+#include "completion/completion.h"
 #include "periodic/images.h"
 
 /* --- the stars of the points in the domain, in the triangulation of all translates --- */
@@ -25,6 +26,15 @@ typedef struct brio_stars {
     int rounds;
 } brio_stars;
 
+/** A triangulation of images that is there already, where one is. */
+typedef struct brio_stars_known {
+    double margin[3]; /* #rank: that of its images; see brio_stars_shifts */
+    /** Makes it: of the points of the domain, then of their translates in the margin, point by point.
+     *  out  the owner is who called. */
+    brio_status (*make)(void *user, const brio_images *images, brio_triangulation **out);
+    void *user;
+} brio_stars_known;
+
 /** Points whose stars are to be found. */
 typedef struct brio_stars_task {
     const brio_lattice *lattice;
@@ -33,6 +43,7 @@ typedef struct brio_stars_task {
     size_t num_points;
     double halo; /* in spacings */
     uint64_t seed;
+    const brio_stars_known *known; /* NULL: images in the halo are triangulated */
 } brio_stars_task;
 
 /** Finds the stars.   Returns BRIO_OK, and as brio_delaunay; freed with brio_stars_free in any case. */
@@ -41,6 +52,21 @@ void brio_stars_free(brio_stars *stars);
 
 /** Returns the number of points and translates that brio_stars_new triangulates at first. */
 double brio_stars_count(const brio_stars_task *task);
+
+/** Sets the margin of a halo, at most the lattice's range: translates with coordinates in the basis from -margin to
+ *  1 + margin are triangulated at first. */
+void brio_stars_margin(const brio_stars_task *task, double margin[3]);
+
+/** Sets the shifts, from `from` to `to` in each direction, of the translates in the margin of a position x in the
+ *  domain. Shift 0 is one of them. */
+void brio_stars_shifts(const brio_lattice *lattice, const double margin[3], const double *x, int32_t from[3],
+                       int32_t to[3]);
+
+/** Returns whether the margin has all translates that matter for any point of the domain. */
+bool brio_stars_has_all(const brio_lattice *lattice, const double margin[3]);
+
+/** Returns whether a translate outside of the margin may be in conflict with a ball.   heaviest  no weight is more. */
+bool brio_stars_leaves(const brio_lattice *lattice, const double margin[3], double heaviest, const brio_ball *ball);
 
 /** Counts them for a call of brio_delaunay_periodic.   Returns as it does. */
 brio_status brio_periodic_count(brio_context *ctx, const double *points, size_t num_points,
@@ -60,6 +86,16 @@ struct brio_periodic {
     bool stays;                 /* all points are in the domain as they were given: `home` is 0 */
     brio_tetrahedron *tet;      /* I1, I2: finite ones first */
 };
+
+/** The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it.
+ *  Measured. */
+static const double BRIO_PERIODIC_HALO = 2.5;
+
+/** Takes the caller's options, and refuses wrong ones. */
+brio_status brio_periodic_take(brio_context *ctx, const brio_periodic_options *options, brio_periodic_options *own);
+
+/** Makes all of a triangulation that has its lattice and its points' shifts to the domain. */
+brio_status brio_periodic_make(brio_periodic *t, const brio_stars_task *task);
 
 /** Makes the classes of stars.   tet  owned by the caller.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, or BRIO_ERR_INTERNAL if facets have no mates. */

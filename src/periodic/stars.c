@@ -61,14 +61,14 @@ static double spacing_of(const brio_lattice *l, const double (*home)[3], size_t 
     return most;
 }
 
-/* Finds the shifts of the translates in K of a position in the domain. */
-static void find_shifts(const layer *y, const double *x, int32_t *from, int32_t *to) {
+void brio_stars_shifts(const brio_lattice *lattice, const double margin[3], const double *x, int32_t from[3],
+                       int32_t to[3]) {
     for (int i = 0; i < 3; i++) {
         from[i] = to[i] = 0;
-        if (i >= y->lattice->rank) continue;
-        double share = brio_lattice_share(y->lattice, i, x);
-        from[i] = (int32_t)ceil(-y->margin[i] - share);
-        to[i] = (int32_t)floor(1 + y->margin[i] - share);
+        if (i >= lattice->rank) continue;
+        double share = brio_lattice_share(lattice, i, x);
+        from[i] = (int32_t)ceil(-margin[i] - share);
+        to[i] = (int32_t)floor(1 + margin[i] - share);
         if (from[i] > 0) from[i] = 0;
         if (to[i] < 0) to[i] = 0;
     }
@@ -78,7 +78,7 @@ static void find_shifts(const layer *y, const double *x, int32_t *from, int32_t 
 static brio_status add_translates(const layer *y, uint32_t p) {
     brio_images *m = &y->s->images;
     int32_t from[3], to[3], s[3];
-    find_shifts(y, m->x[p], from, to);
+    brio_stars_shifts(y->lattice, y->margin, m->x[p], from, to);
     for (s[0] = from[0]; s[0] <= to[0]; s[0]++)
         for (s[1] = from[1]; s[1] <= to[1]; s[1]++)
             for (s[2] = from[2]; s[2] <= to[2]; s[2]++)
@@ -86,14 +86,13 @@ static brio_status add_translates(const layer *y, uint32_t p) {
     return BRIO_OK;
 }
 
-static void set_margin(layer *y, const double (*home)[3], double halo) {
-    double width = halo * spacing_of(y->lattice, home, y->num_points);
-    for (int i = 0; i < y->lattice->rank; i++)
-        y->margin[i] = fmin(width * brio_length(y->lattice->dual[i]), y->lattice->range[i]);
+void brio_stars_margin(const brio_stars_task *task, double margin[3]) {
+    const brio_lattice *l = task->lattice;
+    double width = task->halo * spacing_of(l, task->home, task->num_points);
+    for (int i = 0; i < l->rank; i++) margin[i] = fmin(width * brio_length(l->dual[i]), l->range[i]);
 }
 
-static brio_status add_margin(layer *y, double halo) {
-    set_margin(y, (const double(*)[3])y->s->images.x, halo);
+static brio_status add_margin(layer *y) {
     for (size_t p = 0; p < y->num_points; p++) {
         BRIO_FORWARD(add_translates(y, (uint32_t)p));
         BRIO_FORWARD(brio_look(y->ctx, 1));
@@ -102,22 +101,24 @@ static brio_status add_margin(layer *y, double halo) {
 }
 
 double brio_stars_count(const brio_stars_task *task) {
-    layer y = {.lattice = task->lattice, .num_points = task->num_points};
-    double count = 0;
-    set_margin(&y, task->home, task->halo);
-    for (size_t p = 0; p < y.num_points; p++) {
+    double count = 0, margin[3];
+    brio_stars_margin(task, margin);
+    for (size_t p = 0; p < task->num_points; p++) {
         int32_t from[3], to[3];
-        find_shifts(&y, task->home[p], from, to);
+        brio_stars_shifts(task->lattice, margin, task->home[p], from, to);
         count += (to[0] - from[0] + 1.0) * (to[1] - from[1] + 1.0) * (to[2] - from[2] + 1.0);
     }
     return count;
 }
 
-static brio_status triangulate(layer *y, uint64_t seed) {
+static brio_status triangulate(layer *y, const brio_stars_task *task) {
     brio_stars *s = y->s;
-    brio_delaunay_options o = {.size = sizeof o, .seed = seed};
+    brio_delaunay_options o = {.size = sizeof o, .seed = task->seed};
     s->num_known = s->images.count;
-    BRIO_FORWARD(brio_delaunay(y->ctx, s->images.x[0], s->images.weight, s->num_known, &o, &s->t));
+    if (task->known)
+        BRIO_FORWARD(task->known->make(task->known->user, &s->images, &s->t));
+    else
+        BRIO_FORWARD(brio_delaunay(y->ctx, s->images.x[0], s->images.weight, s->num_known, &o, &s->t));
     s->triangulated += s->num_known;
     s->rounds++;
     const brio_delaunay_stats *facts = brio_triangulation_stats(s->t);
@@ -130,10 +131,9 @@ static brio_status triangulate(layer *y, uint64_t seed) {
     return BRIO_OK;
 }
 
-/* Returns whether K has all translates that matter for any point of the domain. */
-static bool has_all(const layer *y) {
-    for (int i = 0; i < y->lattice->rank; i++)
-        if (y->margin[i] < y->lattice->range[i]) return false;
+bool brio_stars_has_all(const brio_lattice *lattice, const double margin[3]) {
+    for (int i = 0; i < lattice->rank; i++)
+        if (margin[i] < lattice->range[i]) return false;
     return true;
 }
 
@@ -147,18 +147,17 @@ static brio_status push(layer *y, size_t tet) {
     return BRIO_OK;
 }
 
-/* Returns whether a position of K's outside may be in conflict. K is taken a bit smaller: the coordinates of the known
- * translates in the basis were rounded. */
-static bool leaves(const layer *y, const brio_ball *b) {
+/* Takes K a bit smaller: the coordinates of the known translates in the basis were rounded. */
+bool brio_stars_leaves(const brio_lattice *lattice, const double margin[3], double heaviest, const brio_ball *b) {
     static const double SLACK = 0x1p-30;
     if (b->infinite || !(b->square < INFINITY)) return true;
-    double most = b->square + y->heaviest, radius;
+    double most = b->square + heaviest, radius;
     if (most < 0) return false;
     radius = sqrt(most) * (1 + SLACK);
-    for (int i = 0; i < y->lattice->rank; i++) {
-        double share = brio_lattice_share(y->lattice, i, b->centre), slack = SLACK * (1 + fabs(share));
-        double way = radius * brio_length(y->lattice->dual[i]) + slack;
-        if (!(share - way > -y->margin[i] && share + way < 1 + y->margin[i])) return true;
+    for (int i = 0; i < lattice->rank; i++) {
+        double share = brio_lattice_share(lattice, i, b->centre), slack = SLACK * (1 + fabs(share));
+        double way = radius * brio_length(lattice->dual[i]) + slack;
+        if (!(share - way > -margin[i] && share + way < 1 + margin[i])) return true;
     }
     return false;
 }
@@ -197,7 +196,7 @@ static bool is_own(const layer *y, const uint32_t *v) {
 static brio_status look_at(layer *y, uint32_t tet, const brio_ball *ball) {
     const brio_tetrahedron *t = &y->tet[tet];
     brio_set_point found;
-    if (!leaves(y, ball)) return BRIO_OK;
+    if (!brio_stars_leaves(y->lattice, y->margin, y->heaviest, ball)) return BRIO_OK;
     for (int i = 0; i < 4; i++) BRIO_FORWARD(push(y, t->mate[i] >> 2));
     if (!is_own(y, t->vertex)) return BRIO_OK;
     bool known = true;
@@ -320,23 +319,30 @@ static brio_status complete(layer *y) {
 /* --- all --- */
 
 /* Triangulates the points and the translates in a margin about them. */
-static brio_status begin(layer *y, const brio_stars_task *task, double halo) {
+static brio_status begin(layer *y, const brio_stars_task *task) {
     *y = (layer){.ctx = y->ctx, .lattice = task->lattice, .s = y->s, .num_points = task->num_points};
     BRIO_FORWARD(brio_images_new(y->ctx, task->lattice, task->home, task->weights, task->num_points, &y->s->images));
-    BRIO_FORWARD(add_margin(y, halo));
-    return triangulate(y, task->seed);
+    if (task->known)
+        memcpy(y->margin, task->known->margin, sizeof y->margin);
+    else
+        brio_stars_margin(task, y->margin);
+    BRIO_FORWARD(add_margin(y));
+    return triangulate(y, task);
 }
 
 brio_status brio_stars_new(brio_context *ctx, const brio_stars_task *task, brio_stars *s) {
     brio_status status = BRIO_OK;
     layer y = {.ctx = ctx, .s = s};
     *s = (brio_stars){.images = {.ctx = ctx}};
-    BRIO_TRY(begin(&y, task, task->halo));
-    if (brio_triangulation_stats(s->t)->dimension < 3 && !has_all(&y)) { /* of a plane or a line: all at once */
+    BRIO_TRY(begin(&y, task));
+    if (brio_triangulation_stats(s->t)->dimension < 3 && !brio_stars_has_all(y.lattice, y.margin)) {
+        brio_stars_task all = *task; /* of a plane or a line: all at once */
+        all.halo = INFINITY;
+        all.known = NULL;
         brio_stars_free(s);
-        BRIO_TRY(begin(&y, task, INFINITY));
+        BRIO_TRY(begin(&y, &all));
     }
-    if (task->num_points && !has_all(&y)) BRIO_TRY(complete(&y));
+    if (task->num_points && !brio_stars_has_all(y.lattice, y.margin)) BRIO_TRY(complete(&y));
 done:
     brio_translates_free(&y.translates);
     brio_release(ctx, y.left_out);

@@ -55,6 +55,18 @@ static void widen(brio_ball_box *b, const double *low, const double *high, doubl
     b->weight = fmax(b->weight, weight);
 }
 
+brio_ball_box brio_translates_box(const brio_lattice *l, const double low[3], const double high[3], double heaviest) {
+    brio_ball_box box = {.weight = heaviest};
+    for (int k = 0; k < 3; k++) {
+        box.low[k] = low[k], box.high[k] = high[k];
+        for (int i = 0; i < l->rank; i++) {
+            double way = (ceil(l->range[i]) + 1) * fabs(l->basis[i][k]);
+            box.low[k] -= way, box.high[k] += way;
+        }
+    }
+    return box;
+}
+
 static const brio_ball_box NOTHING = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, -INFINITY};
 
 static brio_status make_boxes(brio_translates *t) {
@@ -110,11 +122,8 @@ brio_status brio_translates_new(brio_context *ctx, const brio_images *m, const u
     for (int i = 0; i < l->rank; i++) {
         t->most[i] = (int32_t)ceil(l->range[i]);
         assert(t->most[i] <= BRIO_LATTICE_MOST_SHIFT);
-        for (int k = 0; k < 3; k++) {
-            t->all.low[k] -= (t->most[i] + 1) * fabs(l->basis[i][k]);
-            t->all.high[k] += (t->most[i] + 1) * fabs(l->basis[i][k]);
-        }
     }
+    t->all = brio_translates_box(l, t->all.low, t->all.high, t->all.weight);
     for (int k = 0; k < 3; k++) extent[k] = fmax(t->all.high[k] - t->all.low[k], 0);
     brio_filter_set(&t->filter, extent, t->count ? t->all.weight - least : 0, m->weight != NULL);
     return BRIO_OK;

@@ -28,6 +28,10 @@ brio_status brio_translates_new(brio_context *ctx, const brio_images *images, co
                                 brio_translates *out);
 void brio_translates_free(brio_translates *t);
 
+/** Returns a box that holds all translates that matter.   low, high, heaviest  of the points in the domain. */
+brio_ball_box brio_translates_box(const brio_lattice *lattice, const double low[3], const double high[3],
+                                  double heaviest);
+
 /** Finds the translate deepest in conflict with a tetrahedron. Returns whether there is one.
  *  filter  a copy of t->filter; each thread has its own. */
 bool brio_translates_deepest(const brio_translates *t, brio_filter *filter, const brio_ball *ball, brio_set_point *out);

@@ -4,8 +4,11 @@
  * With all rows relative to vertex a, the in-sphere determinant of (a, b, c, d) and a query e is
  *   D = lift(e) V - e . X,   V = det [b, c, d],   X = lift(b) (c x d) + lift(c) (d x b) + lift(d) (b x c),
  * so what a tetrahedron has is computed once for the vertices behind all of its facets. First-order errors:
- * minors 13 u of their permanents, products 15 u, the sum 18 u; one and a half times the static bound, which is 18 u,
- * covers the rest. On a lattice everything is exact, as in conflict_lanes.h.
+ * minors 13 u of their permanents, products 15 u, the sum 18 u; one and a half times that covers the rest, 20 u and
+ * 27 u. A permanent is at most what the static bound has. Where no row is longer than L, and no lift greater than L^2,
+ * it is also at most the product of the sums of the magnitudes in three rows, sqrt(27) L^3, and four times that with
+ * lifts: the errors are below 128 u L^3 and 1024 u L^5, far less than the static bounds in a large box. On a lattice
+ * everything is exact, as in conflict_lanes.h.
  *
  * The slack of a tetrahedron is a distance that each point may go while V > 0 and all D > 0 hold; derived in
  * docs/decisions/025. X = 2 V c for the orthocentre c. With V_i, V with vertex i replaced by e, M the largest of
@@ -85,35 +88,50 @@ static inline void tets_set(moved_tets *m, const moved_row *b, const moved_row *
     m->above = all(0), m->below = m->least = all(1e200);
 }
 
-/* Takes the vertices behind a facet into the bounds. Returns the bits of those that are certainly in no conflict. */
-static inline unsigned stand(moved_tets *m, const moved_row *e, lanes bound, const bool weighted) {
+/* Takes the vertices behind a facet into the bounds. Returns the bits of those at the position of vertex a, which are
+ * left out. */
+static inline unsigned stand(moved_tets *m, const moved_row *e, const bool weighted) {
     lanes b = dot(e->v, m->b_normal), c = dot(e->v, m->c_normal), d = dot(e->v, m->d_normal);
-    lanes over = multiply_subtract(e->v[3], m->volume, dot(e->v, m->x)) - bound;
     lanes volumes = magnitude(b) + magnitude(c) + magnitude(d) + magnitude(m->volume - b - c - d);
     lanes rate = m->most * volumes + m->volume * (weighted ? root(square_reach(m, e)) : m->most);
-    lanes det = choose(equal(e->square, all(0)), all(1e200), over); /* where none was asked for: vertex a */
+    lane_mask none = equal(e->square, all(0));
+    lanes det = choose(none, all(1e200), multiply_subtract(e->v[3], m->volume, dot(e->v, m->x)));
     lane_mask worse = greater(rate * m->below, m->above * det);
     m->above = choose(worse, rate, m->above);
     m->below = choose(worse, det, m->below);
     m->least = choose(greater(m->least, det), det, m->least);
     lengthen(m, e, weighted);
-    return bits_of(greater(over, all(0)));
+    return bits_of(none);
+}
+
+static inline lanes minimum(lanes x, lanes y) {
+    return choose(greater(x, y), y, x);
+}
+
+/* Takes what roundings may have added off V and all D; every D loses the share that the least one does, at least.
+ * Returns the bits of the lanes in which they stay positive. */
+static inline unsigned take_errors_off(moved_tets *m, const brio_filter *f, lane_mask ordinary, lanes length) {
+    lanes cube = length * m->longest, none = all(INFINITY);
+    lanes orient = choose(ordinary, all(0x1p-46) * cube, none);
+    lanes insphere = choose(ordinary, all(0x1p-43) * (cube * m->longest), none);
+    lanes least = m->least - minimum(insphere, all(1.5 * f->insphere_static));
+    m->volume -= minimum(orient, all(1.5 * f->orient_static));
+    m->below *= all(1 - 0x1p-40) * least / m->least;
+    m->least = least;
+    return bits_of(both(greater(m->volume, all(0)), greater(least, all(0))));
 }
 
 /* Returns the slacks of tetrahedra that are sound: 0 where roundings might count. */
-static inline lanes slacks(const moved_tets *m, lanes volume, const bool weighted) {
-    lanes about[3], length = root(m->longest), cube = length * m->longest;
+static inline lanes slacks(const moved_tets *m, lane_mask ordinary, lanes length, const bool weighted) {
+    lanes about[3], cube = length * m->longest, volume = m->volume;
     for (int k = 0; k < 3; k++) about[k] = m->b_normal[k] + m->c_normal[k] + m->d_normal[k];
     lanes area = all(2) * root(dot(about, about) + dot(m->b_normal, m->b_normal) + dot(m->c_normal, m->c_normal) +
                                dot(m->d_normal, m->d_normal)); /* of four lengths, by their squares */
     lanes rate = m->above / m->below + area;
     if (!weighted) rate += all(2) * volume * volume / m->most;
     lanes first = all(0.9) * volume / rate;
-    lanes twice = all(26) * volume * m->longest;
-    lanes second = root(all(0.1 / 320) * choose(greater(twice, m->least), m->least, twice) / cube);
-    lanes slack = choose(greater(first, second), second, first), far = length * all(1.0 / 32);
-    slack = choose(greater(slack, far), far, slack);
-    lane_mask ordinary = both(greater(m->longest, all(1e-40)), greater(all(1e40), m->longest));
+    lanes second = root(all(0.1 / 320) * minimum(all(26) * volume * m->longest, m->least) / cube);
+    lanes slack = minimum(minimum(first, second), length * all(1.0 / 32));
     return choose(both(ordinary, greater(volume, all(0x1p-20) * cube)), all(0.999) * slack, all(0));
 }
 
@@ -142,13 +160,15 @@ static inline __attribute__((always_inline)) unsigned lanes_sound(const brio_tet
     row_about(row[2], a, &c, weighted);
     row_about(row[3], a, &d, weighted);
     tets_set(&m, &b, &c, &d, weighted);
-    lanes volume = m.volume - all(1.5 * f->orient_static);
-    unsigned sound = bits_of(greater(volume, all(0)));
+    unsigned met = 0; /* vertices that have met vertex a */
     for (int s = 0; s < 4; s++) {
         row_about(apex[s], a, &e, weighted);
-        sound &= stand(&m, &e, all(1.5 * f->insphere_static), weighted) | ~asked[s];
+        met |= stand(&m, &e, weighted) & asked[s];
     }
-    store_lanes(slack, slacks(&m, volume, weighted));
+    lanes length = root(m.longest);
+    lane_mask ordinary = both(greater(m.longest, all(1e-40)), greater(all(1e40), m.longest));
+    unsigned sound = take_errors_off(&m, f, ordinary, length) & ~met;
+    store_lanes(slack, slacks(&m, ordinary, length, weighted));
     return sound;
 }
 
