@@ -134,11 +134,17 @@ brio_status cli_show(run *r, const brio_mesh *mesh) {
     report = brio_program_text(write_report, r);
     if (!report) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for the report on a page");
     const char *path = r->common.output ? r->common.output : r->operands[0];
-    const brio_page_layer layer = {.mesh = mesh, .name = cli_page_name(path), .report = report};
+    const brio_page_layer layer = {.size = sizeof layer,
+                                   .mesh = mesh,
+                                   .name = cli_page_name(path),
+                                   .report = report,
+                                   .explanation = r->explanation};
     const brio_page_layer more = {.mesh = r->beside, .name = r->beside_name};
     const brio_page_layer *layers[] = {&layer, &more};
     if (r->common.view) TRY(cli_write_page(r, r->common.view, layers, r->beside ? 2 : 1, NULL));
     if (r->common.picture) TRY(cli_write_picture(r, layers, 1, NULL));
+    if (r->explanation && r->explanation->num_samples < r->explanation->all_samples)
+        cli_warn(r, WARNING_EXPLAIN, r->common.view, r->explanation->num_samples, r->explanation->all_samples);
     r->shown = true;
 done:
     free(report);

@@ -69,8 +69,13 @@ async function open(name, { width = 900, height = 600, hash = "", ...more } = {}
     await settled(page);
     return page;
 }
-/** Waits until the picture is whole, after frames that were asked for. */
-const settled = page => page.waitForFunction(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(window.brioPage.complete && !window.brioPage.dirty)))), null, { timeout: 60000 });
+/** Waits until the picture is whole, after frames that were asked for. Not by waitForFunction: it takes the promise that its function
+ *  returns for an answer that is true, and would wait for two frames only, while the address is written when the picture is whole. */
+const settled = page => page.evaluate(async () => {
+    const app = window.brioPage, end = performance.now() + 60000;
+    do await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done))); while (!(app.complete && !app.dirty) && performance.now() < end);
+    if (!app.complete || app.dirty) throw new Error("the picture is not whole after a minute");
+});
 
 /** The pixels of the canvas that differ from the background: their number, box and mean colour. In the page, since a picture is large. */
 const picture = page => page.evaluate(() => {
@@ -363,6 +368,72 @@ async function apart() {
     await page.context().close();
 }
 
+/** How a surface came to be: the poles that are told of are those of brio medial, to the last bit, and their balls are drawn as large as
+ *  they are; a click chooses the nearest sample, and so does the address. */
+async function explained(method = "power-crust") {
+    run("generate", "scan", "-n", "300", "-o", "few.ply");
+    run("medial", "few.ply", "--sides", "both", "--noise", "keep", "-o", "poles.csv");
+    run("surface", "few.ply", "--method", method, "--noise", "keep", "-o", "explained.ply", "--explain", "--view", "explained.html");
+    const lines = readFileSync(at("poles.csv"), "utf8").trim().split("\n").map(l => l.split(",")), column = lines[0].indexOf("radius");
+    const known = new Map(lines.slice(1).map(l => [l.slice(0, 3).map(Number).join(" "), Number(l[column])]));
+    const page = await open("explained.html"), panel = page.locator(".explanation"), slider = panel.getByRole("slider", { name: "Sample" });
+    const told = () => page.evaluate(() => window.brioPage.drawings[0].told), samples = 1 + +await slider.getAttribute("max");
+    await panel.getByLabel("show a sample").check();
+    let same = 0, shown = 0;
+    for (let i = 0; i < 10; i++) {
+        await slider.fill(String(Math.floor(i * samples / 10)));
+        const rows = await page.evaluate(() => [...document.querySelectorAll(".told dt")].map(e => [e.textContent, e.nextSibling.textContent])), t = await told();
+        rows.forEach(([name, value], k) => {
+            if (name !== "centre") return;
+            const centre = value.split(" ").map(Number), radius = +rows[k + 1][1], from = Math.hypot(...centre.map((x, k) => x - t.place[k]));
+            expect(Math.abs(from - radius) < 1e-9 * radius, `a ball of ${t.point} has the radius ${radius}, and is ${from} from its sample`);
+            shown++;
+            same += Object.is(known.get(centre.join(" ")), radius);
+        });
+    }
+    if (method === "power-crust") expect(shown >= 12 && same >= 10, `of ${shown} poles ${same} are those of brio medial`);
+    const ticks = method === "power-crust" ? ["its cell", "co-cone", "faces taken", "faces of power cells"] : ["its cell", "co-cone", "faces taken"];
+    await panel.getByRole("button", { name: "Look at it" }).click();
+    await settled(page);
+    let before = JSON.stringify(await picture(page));
+    for (const name of ticks) {
+        await panel.getByLabel(name).uncheck();
+        await settled(page);
+        const after = JSON.stringify(await picture(page));
+        expect(after !== before, `${name} changes nothing in the picture`);
+        before = after;
+    }
+    await page.getByLabel("faces", { exact: true }).uncheck();
+    await page.focus("#canvas");
+    await press(page, "o", "1");
+    const wrong = await page.evaluate(() => { // pixels that are in a ball and empty, or full outside of both
+        const app = window.brioPage, d = app.drawings[0], gl = app.renderer.gl, { width, height } = app.canvas, pixels = new Uint8Array(4 * width * height), m = app.camera.matrix(width, height);
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+        const on = p => [(m[0] * p[0] + m[4] * p[1] + m[8] * p[2] + m[12] + 1) / 2 * width, (m[1] * p[0] + m[5] * p[1] + m[9] * p[2] + m[13] + 1) / 2 * height];
+        const balls = d.told.poles.map(p => { const c = app.scene.fromFile(p.centre); return [...on(c), p.radius / app.scene.unit * height / 2 * Math.hypot(m[1], m[5], m[9])]; });
+        const back = app.look().background.map(c => Math.round(255 * c));
+        let wrong = 0, all = 0;
+        for (let i = 0; i < width * height; i++) {
+            const inside = balls.some(([x, y, r]) => Math.hypot(i % width + 0.5 - x, Math.floor(i / width) + 0.5 - y) < r), full = [0, 1, 2].some(k => Math.abs(pixels[4 * i + k] - back[k]) > 2);
+            all += inside;
+            wrong += inside !== full;
+        }
+        return [wrong, all, balls.map(b => b.map(Math.round)).join()];
+    });
+    expect(wrong[1] > 2000 && wrong[0] < 0.03 * wrong[1], `the balls are drawn with ${wrong}`);
+    await page.getByLabel("faces", { exact: true }).check();
+    await press(page, "0");
+    const was = (await told()).point;
+    await page.mouse.click(...await placeOf(page, await page.evaluate(async () => (await window.brioPage.drawings[0].layer.explained()).at(20).place)));
+    await page.waitForFunction(was => window.brioPage.drawings[0].told.point !== was, was, { timeout: 5000 });
+    const far = await page.evaluate(async () => { const d = window.brioPage.drawings[0], e = await d.layer.explained(), p = window.brioPage.picker.picks[0].place; return [e.nearest(p) === d.state.explain, Math.hypot(...p.map((x, k) => x - d.told.place[k]))]; });
+    expect(far[0] && far[1] < 1, `a click tells of a sample ${far} away`);
+    await page.evaluate(() => { location.hash = encodeURIComponent('{"l":{"0":{"explain":7,"cocone":false}}}'); });
+    await page.waitForFunction(() => window.brioPage.drawings[0].state.explain === 7 && +document.querySelector(".explanation input[type=range]").value === 7 && window.brioPage.drawings[0].told, null, { timeout: 5000 });
+    expect(!await page.locator(".explanation").getByLabel("co-cone").isChecked(), "a new address unticks the co-cone");
+    await page.context().close();
+}
+
 /** Balls about points have the size of their radius. */
 async function balls() {
     writeFileSync(at("two.csv"), "x,y,z,radius\n0,0,0,1\n4,0,0,0.5\n");
@@ -428,8 +499,8 @@ async function figures() {
 }
 
 /** At 400 pixels nothing is wider than the window, and what axe calls serious is nowhere, dark or light. */
-async function narrow() {
-    const page = await open("flaws.html", { width: 400, height: 760 });
+async function narrow(name = "flaws.html") {
+    const page = await open(name, { width: 400, height: 760 });
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);
     expect(wide <= 400, `the page is ${wide} pixels wide`);
     const box = await page.locator("#canvas").boundingBox();
@@ -602,8 +673,8 @@ async function large() {
     return mesh;
 }
 
-const SHORT = { silhouetteAndColour, picking, narrowed: async () => { ply("flaws.ply", ...bumps(8)); run("view", "flaws.ply", "-o", "flaws.html"); await narrow(); }, injection, alphas, apart, figures };
-const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, figures, narrow, injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
+const SHORT = { silhouetteAndColour, picking, explained, narrowed: () => narrow("explained.html"), injection, alphas, apart, figures };
+const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, explained, labeled: () => explained("labeled-delaunay"), figures, narrow, narrowed: () => narrow("explained.html"), injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
     for (const [name, test] of Object.entries({ short: SHORT, long: LONG, bench: { bench } }[length])) {
         const began = Date.now();

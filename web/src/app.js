@@ -139,7 +139,7 @@ export class App {
     }
     async recolour(drawing) { await drawing.recolour(); this.recut(); }
     async recolourAll() {
-        for (const d of this.drawings) { await d.recolour(); d.atAlpha(); if (d.state.wire) await d.wireframe(); }
+        for (const d of this.drawings) { await d.recolour(); d.atAlpha(); await d.tell(); if (d.state.wire) await d.wireframe(); }
         this.recut();
         this.fillPanel();
         this.tools.forEach(t => t.sync());
@@ -223,6 +223,15 @@ export class App {
         requestAnimationFrame(look);
     }
 
+    /** Turns about the sample that is told of, from as near as shows its polar balls. */
+    lookAt(drawing) {
+        const p = drawing.picture, place = drawing.place;
+        if (!p) return this.say("Tick “show a sample” first.");
+        const size = Math.max(3 * p.reach, ...p.balls.map(b => Math.min(b.row[3], 12 * p.reach)));
+        this.camera.target = p.origin.map((x, k) => x * place[3] + place[k]);
+        this.camera.distance = Math.max(1e-4, 6 * size * place[3]);
+        this.redraw(true);
+    }
     resetView() {
         this.camera.reset();
         this.redraw(true);
