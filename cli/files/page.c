@@ -128,6 +128,10 @@ static void write_report(FILE *stream, void *object) {
 }
 
 brio_status cli_show(run *r, const brio_mesh *mesh) {
+    return cli_show_both(r, mesh, mesh, NULL);
+}
+
+brio_status cli_show_both(run *r, const brio_mesh *mesh, const brio_mesh *pictured, const char *colour) {
     brio_status status = BRIO_OK;
     char *report = NULL;
     if (!cli_showing(r)) return BRIO_OK;
@@ -140,9 +144,11 @@ brio_status cli_show(run *r, const brio_mesh *mesh) {
                                    .report = report,
                                    .explanation = r->explanation};
     const brio_page_layer more = {.mesh = r->beside, .name = r->beside_name};
-    const brio_page_layer *layers[] = {&layer, &more};
+    const brio_page_layer drawn = {.mesh = pictured, .name = layer.name};
+    const brio_page_layer *layers[] = {&layer, &more}, *drawing[] = {&drawn};
     if (r->common.view) TRY(cli_write_page(r, r->common.view, layers, r->beside ? 2 : 1, NULL));
-    if (r->common.picture) TRY(cli_write_picture(r, layers, 1, NULL));
+    if (!r->common.colour_by) r->common.colour_by = colour;
+    if (r->common.picture) TRY(cli_write_picture(r, drawing, 1, NULL));
     if (r->explanation && r->explanation->num_samples < r->explanation->all_samples)
         cli_warn(r, WARNING_EXPLAIN, r->common.view, r->explanation->num_samples, r->explanation->all_samples);
     r->shown = true;

@@ -343,8 +343,7 @@ async function alphas() {
 /** Cells and tetrahedra moved apart: each by its own way, whole; the cutting plane takes whole pieces away; picking knows the cell. */
 async function apart() {
     run("generate", "cube", "-n", "40", "-o", "sites.xyz");
-    run("voronoi", "sites.xyz", "--box", "0,0,0,1,1,1", "-o", "cells.vtu");
-    run("view", "cells.vtu", "-o", "cells.html");
+    run("voronoi", "sites.xyz", "--box", "0,0,0,1,1,1", "--view", "cells.html");
     const page = await open("cells.html");
     await page.focus("#canvas");
     await press(page, "-", "-", "-", "-", "-");
