@@ -110,7 +110,7 @@ BRIO_API brio_status brio_cells_write(brio_context *ctx, const char *path, const
                                       brio_cells_format format, const char *comment);
 
 /** Makes a mesh of cells, to be looked at: a polygon for each face of each cell, with the properties "site" (uint32)
- *  and "volume" (float64) of the cell. Cells share no vertices, so that each is a closed solid, seen counterclockwise from
+ *  and "volume" (float64) of the cell. Cells share no vertices: each is a closed solid, seen counterclockwise from
  *  outside. Cells without end, of no volume, and with vertices that doubles cannot hold are not there.
  *  cells     with vertices (brio_cells_options.vertices).
  *  most      of more cells an even choice of this number; 0: all.
