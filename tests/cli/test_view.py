@@ -406,7 +406,7 @@ class Text(ViewTest):
         self.assertNotIn("connect-src", policy[0])
 
     def test_it_is_small(self):
-        self.assertLess(os.path.getsize(os.path.join(ROOT, "web", "page.html")), 80000)
+        self.assertLess(os.path.getsize(os.path.join(ROOT, "web", "page.html")), 85000)
 
     def test_the_bundle_is_that_of_its_sources(self):
         folder, digest = os.path.join(ROOT, "web", "src"), hashlib.sha256()

@@ -64,7 +64,7 @@ export class App {
         const before = this.drawings || [], scene = new Scene(layers), drawings = layers.map(layer => new Drawing(this.renderer.gl, layer, defaultState(layer)));
         for (const d of drawings) d.place = scene.placeOf(d.layer);
         if (layers.length === 2 && layers[1].filtration) drawings[0].state.visible = false; // the shape at one alpha, which the filtration has
-        this.camera.fit(Math.hypot(...scene.half));
+        this.camera.fit(scene.half, scene.front());
         this.renderer.queue = null; // a picture that was begun is of what was there before
         Object.assign(this, { scene, drawings, initial: JSON.parse(JSON.stringify(drawings.map(d => d.state))) });
         if (source === document) readAddress(this);

@@ -16,6 +16,7 @@ export function defaultState(layer) {
         source: "plain", map: "viridis", low: 0, high: 1, alpha: 0.3, explode: 0, balls: false,
     };
     if (m.explanation) Object.assign(state, { explain: -1, cell: true, polar: true, cocone: true, labels: false, taken: true, power: true });
+    if (layer.hasPieces && m.triangles && m.triangles < 60000) state.explode = 0.15; // so that cells are seen as such
     if (layer.hasPieces) state.nonmanifold = false; // edges of cells have many faces by their nature
     if (layer.filtration) Object.assign(state, { boundary: false, nonmanifold: false, flipped: false, flat: true, points: true, alpha: layer.filtration.start });
     if (colours) state.source = "colours";
@@ -78,6 +79,7 @@ export class Drawing {
         if (l.hull.length) this.indices("hull", l.hull);
         if (l.edges.length) this.indices("edges", l.edges);
         for (const name of ["boundary", "nonmanifold", "flipped"]) this.wide(name, l[name]);
+        if (l.edges.length < 80000) this.wide("edgesWide", l.edges);
         if (l.crossing) this.indices("crossing", l.trianglesWhere(f => l.crossing[f]));
         const bridge = l.meta.face_properties.find(p => p.name === "bridge");
         if (bridge) {
@@ -309,6 +311,7 @@ export class Drawing {
         }
         if (s.wire && b.wire && small) put("lines", { index: "wire", primitive: gl.LINES, mode: s.faces ? 0 : single, colour: s.faces ? colours.line : this.colour, lit: false, opacity: s.faces ? 0.55 : 1 });
         if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, lit: false, pick: "edge", opacity: 1 });
+        if (s.edges && b.edgesWide && single === 0) put("wide", { wide: "edgesWide", count: b.edgesWide.count / 6, size: 1.8, lit: false, opacity: 1 });
         const wides = { boundary: [0.1, 0.62, 1], nonmanifold: [1, 0.24, 0.65], flipped: [0.95, 0.85, 0.1] };
         for (const [name, colour] of Object.entries(wides))
             if (s[name] && b[name] && s.faces && !apart) put("wide", { wide: name, count: b[name].count / 6, mode: 0, colour, size: 2.5, lit: false, opacity: 1 });
