@@ -223,11 +223,11 @@ export class App {
         requestAnimationFrame(look);
     }
 
-    /** Turns about the sample that is told of, from as near as shows its polar balls. */
+    /** Turns about the sample that is told of, from as near as shows the smaller one of its polar balls. */
     lookAt(drawing) {
         const p = drawing.picture, place = drawing.place;
         if (!p) return this.say("Tick “show a sample” first.");
-        const size = Math.max(3 * p.reach, ...p.balls.map(b => Math.min(b.row[3], 12 * p.reach)));
+        const size = Math.max(3 * p.reach, Math.min(12 * p.reach, ...p.balls.map(b => 2 * b.row[3])));
         this.camera.target = p.origin.map((x, k) => x * place[3] + place[k]);
         this.camera.distance = Math.max(1e-4, 6 * size * place[3]);
         this.redraw(true);
