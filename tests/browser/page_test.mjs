@@ -432,6 +432,7 @@ async function explained(method = "power-crust") {
     });
     expect(wrong[1] > 2000 && wrong[0] < 0.03 * wrong[1], `the balls are drawn with ${wrong}`);
     await page.getByLabel("faces", { exact: true }).check();
+    await page.focus("#canvas"); // the key is the picture's
     await press(page, "0");
     const was = (await told()).point;
     await page.mouse.click(...await placeOf(page, await page.evaluate(async () => (await window.brioPage.drawings[0].layer.explained()).at(20).place)));
