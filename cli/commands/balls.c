@@ -46,6 +46,24 @@ static void report(run *r, const brio_ball_union_stats *s, const brio_mesh *mesh
     cli_fact_count(f, "faces", mesh->num_faces);
 }
 
+/* Gives faces the colours of their balls, where these have some. */
+static brio_status colour_faces(run *r, const brio_mesh *input, brio_mesh *mesh) {
+    static const char *const names[] = {"red", "green", "blue"};
+    const brio_property *from[3];
+    for (int k = 0; k < 3; k++) from[k] = brio_mesh_property(input, names[k]);
+    if (!from[0] || !from[1] || !from[2]) return BRIO_OK;
+    for (int k = 0; k < 3; k++) {
+        uint8_t *to;
+        FORWARD(brio_mesh_add_face_property(mesh, names[k], BRIO_SCALAR_UINT8, (void **)&to));
+        const brio_property *ball = brio_mesh_face_property(mesh, "ball");
+        for (size_t f = 0; f < mesh->num_faces; f++) {
+            double value = brio_property_value(from[k], (size_t)brio_property_value(ball, f));
+            to[f] = (uint8_t)(value > 255 ? 255 : value > 0 ? value : 0);
+        }
+    }
+    return cli_check_interrupt(r);
+}
+
 static brio_status make_union(run *r, const brio_mesh *input, const double *weights) {
     const arguments *a = r->arguments;
     brio_ball_union_options o = {.size = sizeof o, .error = a->error, .seed = r->common.seed};
@@ -56,7 +74,7 @@ static brio_status make_union(run *r, const brio_mesh *input, const double *weig
                         cli_wants_mesh(r) ? &mesh : NULL, &s));
     report(r, &s, mesh);
     if (!mesh) goto done;
-    TRY(cli_check_interrupt(r));
+    TRY(colour_faces(r, input, mesh));
     TRY(cli_certify(r, mesh, 0));
     TRY(cli_write(r, mesh));
 done:
@@ -94,7 +112,7 @@ const command cli_balls = {
     .description =
         "A point with the property radius is a ball, as brio medial writes them. Volume and area are exact up "
         "to rounding. The surface is closed and manifold; its faces have the property ball, the index of "
-        "their ball.",
+        "their ball, and its colour if it has one.",
     .examples =
         "brio balls axis.ply -o union.ply\nof the balls that brio medial wrote: a solid as the union of its balls\n",
     .has_output = true,

@@ -26,7 +26,7 @@ enum { NO_LABELING = -1 };
 typedef struct arguments {
     int method;
     power_crust_options crust;
-    bool curves, polygons, boundaries, density, vertex_normals, self_intersections;
+    bool curves, polygons, boundaries, density, vertex_normals, self_intersections, explain;
     double theta; /* 0: not given */
     uint64_t pieces;
     int extraction;
@@ -61,6 +61,8 @@ static const option options[] = {
      "count the pairs of faces that run through each other", 0},
     {"left-out", 0, OPTION_OUTPUT, FIELD(left_out), "FILE",
      "write the points that the surface leaves more than two spacings away", 0},
+    {"explain", 0, OPTION_FLAG, FIELD(explain), NULL,
+     "with --view: the page also shows how the surface came to be at each sample, or at 5,000 of them", 0},
     {"normals", 0, OPTION_OUTPUT, FIELD(crust.normals), "FILE", "also write the points with oriented normals", 0},
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay and power-crust", 0},
     SOLID_ROWS(arguments, crust),
@@ -317,7 +319,8 @@ static const struct {
 static brio_surface_options library_options(run *r, int method) {
     const arguments *a = r->arguments;
     power_crust_options crust = crust_of(a);
-    brio_surface_options o = {.method = (brio_surface_method)method,
+    brio_surface_options o = {.size = sizeof o,
+                              .method = (brio_surface_method)method,
                               .noise = (brio_noise)crust.noise,
                               .seed = r->common.seed,
                               .simplify = crust.simplify,
@@ -355,6 +358,7 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     found->open = o.open > 0 || (is(method, BRIO_METHOD_MAY_END) && o.holes != BRIO_HOLES_CLOSED);
+    if (a->explain) o.explanation = &r->explanation;
     bool sided = has(method, "evidence");
     if (sided) TRY(cli_find_evidence(r, &a->evidence, points, &e));
     if (sided && a->pieces <= 1) o.evidence = &e.taken;
@@ -421,6 +425,7 @@ static brio_status check_method(run *r, int method) {
         {"vertex-normals", a->vertex_normals, NULL, false},
         {"self-intersections", a->self_intersections, NULL, false},
         {"left-out", a->left_out != NULL, NULL, false},
+        {"explain", a->explain, "explanation", false},
         {"normals", a->crust.normals != NULL, "normals", false},
         {"from", a->evidence.from != NULL, "evidence", false},
         {"ignore-normals", a->evidence.ignore_normals, "evidence", false},
@@ -449,6 +454,8 @@ static brio_status check_arguments(run *r) {
     if (a->curves && a->method != NO_METHOD && a->method != CURVES)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--curves and --method %s exclude each other", name_of(a->method));
     double spacings;
+    if (a->explain && !r->common.view) return cli_fail(r, BRIO_ERR_ARGUMENT, "--explain has no meaning without --view");
+    if (a->explain && a->pieces > 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "--explain and --pieces exclude each other");
     TRY(cli_read_open(r, &a->crust, &spacings));
     if (method_of(a) == CURVES) TRY(check_open_of_curves(r, spacings));
     if (a->crust.open && isnan(spacings) && method_of(a) == BRIO_SURFACE_POWER_CRUST)

@@ -123,7 +123,7 @@ static brio_status require_output(run *r, brio_cells_format *format) {
     const arguments *a = r->arguments;
     brio_status status = a->faces ? cli_check_beside(r, "faces", a->faces) : BRIO_OK;
     if (status != BRIO_OK) return status;
-    if (!c->output && (c->json || a->faces)) return BRIO_OK;
+    if (!c->output && (c->json || a->faces || cli_showing(r))) return BRIO_OK;
     if (!c->output) return cli_fail_output(r, "no output: -o FILE is missing");
     if (c->format)
         *format = brio_cells_format_of(c->format);
@@ -217,6 +217,28 @@ done:
     return status;
 }
 
+/* What a page and a picture show: cells, and by how much each is smaller there, so that it can be told from others. */
+enum { MOST_SHOWN = 8000 };
+static const double SMALLER = 0.1;
+
+/* Shows the cells: on a page, which moves them apart by itself, and in a picture. */
+static brio_status show(run *r, const brio_cells *cells) {
+    const common_options *c = &r->common;
+    brio_mesh *whole = NULL, *small = NULL;
+    brio_status status = BRIO_OK;
+    size_t left_out = 0;
+    if (!cli_showing(r)) return BRIO_OK;
+    TRY(brio_cells_mesh(r->ctx, cells, MOST_SHOWN, 0, &left_out, &whole));
+    if (!whole->num_faces) FAIL(r, BRIO_ERR_NO_ANSWER, "no cell ends: nothing to show; --box cuts cells off");
+    if (c->picture) TRY(brio_cells_mesh(r->ctx, cells, MOST_SHOWN, SMALLER, NULL, &small));
+    TRY(cli_show_both(r, whole, small, "volume"));
+    if (left_out) cli_warn(r, WARNING_CELLS, cli_showing(r), left_out, cells->num_cells);
+done:
+    brio_mesh_free(whole);
+    brio_mesh_free(small);
+    return status;
+}
+
 static brio_status compute(run *r, const brio_mesh *mesh, const double *weights, brio_cells_options *o,
                            brio_triangulation **t, brio_cells **cells) {
     FORWARD(brio_delaunay(r->ctx, mesh->vertices, weights, mesh->num_vertices, NULL, t));
@@ -273,6 +295,7 @@ static int take_cells(const brio_cells *cells, const uint64_t *site, void *user)
 static brio_status check_tiles(run *r, brio_cells_format format) {
     const arguments *a = r->arguments;
     if (cli_is_periodic(&a->periodic)) return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell, --periodic: not with --tiles");
+    if (cli_showing(r)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: not with --tiles", cli_showing(r));
     if (format == BRIO_CELLS_FORMAT_VTU)
         return cli_fail_output(r, "%s: --tiles writes cells to .npy and .csv", r->common.output);
     return cli_check_tiles(r, &a->weights, a->tiles);
@@ -345,7 +368,7 @@ static brio_status voronoi(run *r) {
     TRY(cli_check_periodic(r, &a->periodic));
     if (a->box) TRY(read_box(r, a->box, box));
     o.box = a->box ? box : NULL;
-    o.vertices = format == BRIO_CELLS_FORMAT_VTU;
+    o.vertices = format == BRIO_CELLS_FORMAT_VTU || cli_showing(r);
     if (a->tiles) {
         TRY(check_tiles(r, format));
         return voronoi_in_tiles(r, &o, format);
@@ -364,6 +387,7 @@ static brio_status voronoi(run *r) {
     }
     TRY(write_file(r, r->common.output, cells, format));
     TRY(write_file(r, a->faces, cells, BRIO_CELLS_FORMAT_FACES_CSV));
+    TRY(show(r, cells));
 done:
     brio_cells_free(cells);
     brio_triangulation_free(t);
@@ -377,11 +401,13 @@ const command cli_voronoi = {
     .operands = "IN",
     .summary = "Voronoi cells of points, power cells with weights",
     .examples = "brio voronoi atoms.xyz --box 0,0,0,1,1,1 -o cells.vtu\ncells clipped to a box, for ParaView\n"
+                "brio voronoi atoms.xyz --box 0,0,0,1,1,1 --view cells.html\na page that moves the cells apart\n"
                 "brio voronoi atoms.xyz -o cells.csv\nvolume, area and centroid of each cell\n"
                 "brio voronoi atoms.xyz --cell 20,20,20 -o cells.csv\natoms in a box that repeats\n"
                 "brio voronoi scan.las --tiles 8 --scratch /var/tmp -o cells.npy\nmore points than fit in memory\n",
     .has_output = true,
     .outputs = ".vtu .npy .csv",
+    .shown = true,
     .group = GROUP_TRIANGULATIONS,
     .min_operands = 1,
     .max_operands = 1,

@@ -61,7 +61,7 @@ static brio_status refuse_idle(run *r) {
 static brio_status check_shown(run *r) {
     const command *c = r->command;
     const char *name = c->shows ? r->common.view ? "--view" : NULL : cli_showing(r);
-    if (name && (!c->has_output || c->outputs || c->writes_last))
+    if (name && !c->shown && (!c->has_output || c->outputs || c->writes_last))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s has no meaning for %s; brio view shows files", name, c->name);
     FORWARD(cli_check_page(r, "view", r->common.view));
     return cli_check_picture(r);

@@ -65,5 +65,8 @@ brio_status cli_write_picture(run *r, const brio_page_layer *const *layers, size
 /** Writes the page of --view, with the report so far beside the mesh, and the picture of --picture; does nothing
  *  without them. */
 brio_status cli_show(run *r, const brio_mesh *mesh);
+/** Does the same where a picture shows another mesh than the page.
+ *  colour  the property that colours the picture unless --colour-by says otherwise; NULL: as ever. */
+brio_status cli_show_both(run *r, const brio_mesh *mesh, const brio_mesh *pictured, const char *colour);
 
 #endif

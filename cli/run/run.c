@@ -215,6 +215,7 @@ brio_status cli_experiment(run *r, const brio_laboratory_options *options) {
 
 void cli_end(run *r) {
     cli_facts_free(&r->facts);
+    brio_explanation_free(r->explanation);
     brio_laboratory_free(r->lab);
     brio_context_free(r->ctx);
 }

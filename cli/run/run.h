@@ -108,11 +108,12 @@ typedef struct run {
     char message[1024];            /* of a failure found here; the library's is in the context */
     brio_failure failure;          /* what is known of the failure of `message` */
     notes warnings, hints;
-    bool flat;               /* a failure is explained by the points: they lie in a plane or on a line */
-    const brio_mesh *beside; /* set by a command before it writes: a second layer of the page of --view, */
-    const char *beside_name; /* and what it is called there */
-    bool shown;              /* the page of --view, the picture of --picture was written */
-    bool over_limit;         /* an estimate is over --max-memory */
+    bool flat;                     /* a failure is explained by the points: they lie in a plane or on a line */
+    const brio_mesh *beside;       /* set by a command before it writes: a second layer of the page of --view, */
+    const char *beside_name;       /* and what it is called there */
+    brio_explanation *explanation; /* set by a command: how its surface came to be, for the page; freed with the run */
+    bool shown;                    /* the page of --view, the picture of --picture was written */
+    bool over_limit;               /* an estimate is over --max-memory */
 } run;
 
 /** Where the help lists a command. */
@@ -131,6 +132,7 @@ typedef struct command {
     command_group group;
     int min_operands, max_operands;
     bool writes_last; /* the last of max_operands operands is the output, as -o is */
+    bool shown;       /* what it makes can be shown (cli_show), though it writes files of `outputs` */
     bool shows;       /* shows files: its output is a page, and it has pictures, but no --view */
     int first_input;  /* operands before it say what to do; without inputs the report names the first */
     const option *options;

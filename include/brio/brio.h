@@ -89,6 +89,7 @@
 
 #include "context.h"          /* status, context, versions */
 #include "surface.h"          /* surfaces from points */
+#include "explanation.h"      /* how a surface came to be at its samples */
 #include "files.h"            /* reading, writing, converting */
 #include "mesh.h"             /* meshes and their properties */
 #include "certificate.h"      /* of a mesh: closed, components, genus, area, volume, what is wrong; distances */

@@ -2,6 +2,7 @@
 #ifndef BRIO_CELLS_H
 #define BRIO_CELLS_H
 
+#include "mesh.h"
 #include "triangulation.h"
 
 #ifdef __cplusplus
@@ -107,6 +108,18 @@ BRIO_API brio_cells_format brio_cells_format_of(const char *path);
  *  BRIO_ERR_CANCELLED. */
 BRIO_API brio_status brio_cells_write(brio_context *ctx, const char *path, const brio_cells *cells,
                                       brio_cells_format format, const char *comment);
+
+/** Makes a mesh of cells, to be looked at: a polygon for each face of each cell, with the properties "site" (uint32)
+ *  and "volume" (float64) of the cell. Cells share no vertices: each is a closed solid, seen counterclockwise from
+ *  outside. Cells without end, of no volume, and with vertices that doubles cannot hold are not there.
+ *  cells     with vertices (brio_cells_options.vertices).
+ *  most      of more cells an even choice of this number; 0: all.
+ *  shrink    0, or how much each cell shrinks towards its middle, below 1: 0.1 shows gaps between them.
+ *  left_out  NULL, or receives the number of cells that are not there.   out  owned by the caller.
+ *  Cost: linear, 8 bytes a vertex beside the mesh.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_cells_mesh(brio_context *ctx, const brio_cells *cells, size_t most, double shrink,
+                                     size_t *left_out, brio_mesh **out);
 
 /** A file of cells that is written part after part: as brio_cells_write writes all cells at once. */
 typedef struct brio_cells_table brio_cells_table;

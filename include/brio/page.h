@@ -2,7 +2,7 @@
 #ifndef BRIO_PAGE_H
 #define BRIO_PAGE_H
 
-#include "mesh.h"
+#include "explanation.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,6 +15,9 @@ typedef struct brio_page_layer {
     const brio_mesh *mesh;
     const char *name;   /* such as the file's; NULL: a number */
     const char *report; /* NULL, or lines that the page shows beside the mesh */
+    /* NULL, or how the surface came to be (brio_surface_options.explanation): a sample is picked, and the page shows
+     * its cell, poles, polar balls, co-cone, labels, and the faces that were taken there. */
+    const brio_explanation *explanation;
 } brio_page_layer;
 
 /** Options of a page. A field of 0 is the default. */
@@ -46,7 +49,7 @@ typedef struct brio_page_stats {
  *  out. The page says so. Arrays are compressed if the library was built with zlib, and stored otherwise.
  *  Faces of fewer than three corners are not shown.
  *  path     "-" is standard output; written as by brio_write.
- *  layers   num_layers pointers, 1 or more.
+ *  layers   num_layers pointers, 1 or more. An explanation takes about 800 bytes a sample.
  *  options  NULL for the defaults.   stats  NULL, or receives facts.
  *  Cost: linear, and the sort of the edges for the certificate. Memory beside the meshes, for one layer at a time: 50
  *  bytes a triangle, 45 a tetrahedron and 8 a vertex; for points 20 bytes each.

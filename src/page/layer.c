@@ -421,6 +421,7 @@ static brio_status describe(layer *l, const brio_certificate *c, size_t hull) {
     BRIO_FORWARD(describe_properties(l, of_vertices(l)));
     BRIO_FORWARD(describe_properties(l, of_faces(l)));
     if (m->num_faces) BRIO_FORWARD(describe_certificate(out, c));
+    BRIO_FORWARD(brio_page_describe_explanation(out, l->how->explanation));
     return brio_output_string(out, "}</script>\n");
 }
 
@@ -465,6 +466,7 @@ brio_status brio_page_layer_write(brio_output *out, const brio_mesh *mesh, const
     if (mesh->num_edges) BRIO_TRY(put_corners(&l, "edges", mesh->edges, 2, mesh->num_edges));
     BRIO_TRY(put_properties(&l, of_vertices(&l)));
     BRIO_TRY(put_properties(&l, of_faces(&l)));
+    BRIO_TRY(brio_page_explanation(out, how));
     BRIO_TRY(describe(&l, &c, hull));
     *thinned = mesh->num_vertices - l.order.num_vertices;
 done:

@@ -52,6 +52,7 @@ static brio_status put_layers(brio_output *out, const brio_page_layer *const *la
         how->number = i;
         how->name = layer.name;
         how->report = layer.report;
+        how->explanation = layer.explanation;
         BRIO_FORWARD(brio_page_layer_write(out, layer.mesh, how, &thinned));
         stats->points_thinned += thinned;
     }

@@ -59,7 +59,12 @@ async function drop(page, name, wait = true) {
     if (wait) await page.evaluate(() => window.brioDrop.ready);
 }
 const wrong = page => page.textContent(".wrong"), done = page => page.textContent(".done");
-const settled = page => page.waitForFunction(() => new Promise(f => requestAnimationFrame(() => requestAnimationFrame(() => f(window.brioPage.complete && !window.brioPage.dirty)))), null, { timeout: 60000 });
+/** Waits until the picture is whole; page_test.mjs says why not by waitForFunction. */
+const settled = page => page.evaluate(async () => {
+    const app = window.brioPage, end = performance.now() + 60000;
+    do await new Promise(f => requestAnimationFrame(() => requestAnimationFrame(f))); while (!(app.complete && !app.dirty) && performance.now() < end);
+    if (!app.complete || app.dirty) throw new Error("the picture is not whole after a minute");
+});
 /** The pixels of the picture that differ from the background. */
 const seen = page => page.evaluate(() => {
     const app = window.brioPage, gl = app.renderer.gl, { width, height } = app.canvas, p = new Uint8Array(4 * width * height);

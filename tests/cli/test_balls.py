@@ -1,6 +1,7 @@
 """brio balls: volumes, what is counted, and the surface of unions of balls."""
 
 import math
+import re
 
 from brio_cli import CliTest, main
 
@@ -18,6 +19,16 @@ class Balls(CliTest):
         self.assertAlmostEqual(facts["certificate"]["volume"], facts["union_volume"], delta=0.02)
         coarse = self.facts("balls", balls, "-o", out, "--error", "0.05")
         self.assertLess(coarse["faces"], facts["faces"] / 10)
+
+    def test_faces_have_the_colours_of_their_balls(self):
+        balls, out = self.file("a.csv", "x,y,z,radius,red,green,blue\n0,0,0,1,200,10,30\n1,0,0,1,0,90,255\n"), self.path("out.ply")
+        self.expect(0, "balls", balls, "-o", out, "--error", "0.1", "--ascii", "--quiet")
+        with open(out, encoding="ascii") as f:
+            head, rows = f.read().split("end_header\n")
+        faces = [row.split() for row in rows.splitlines() if row.startswith("3 ")][-int(re.search(r"element face (\d+)", head).group(1)):]
+        names = re.findall(r"property \w+ (\w+)", head[head.index("element face"):])
+        self.assertEqual(names[-4:], ["ball", "red", "green", "blue"])
+        self.assertEqual({tuple(f[4:]) for f in faces}, {("0", "200", "10", "30"), ("1", "0", "90", "255")})
 
     def test_weights_are_squares_and_may_be_in_a_file(self):
         points, weights = self.xyz("a.xyz", [(0, 0, 0), (5, 0, 0)]), self.file("w.txt", "4\n1\n")

@@ -20,7 +20,7 @@ OWN_OPTIONS = {
                  "--edges", "--tiles"],
     "surface": ["--method", "--curves", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
-                "--vertex-normals", "--self-intersections", "--polygons", "--extraction", "--keep-largest",
+                "--vertex-normals", "--self-intersections", "--explain", "--polygons", "--extraction", "--keep-largest",
                 "--min-component", "--from", "--ignore-normals", "--ignore-origins", "--left-out"],
     "medial": ["--sides", "--spacing", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust", "--scale-axis", "--method", "--theta", "--rho",
                "--sampling-density", "--sharp"],

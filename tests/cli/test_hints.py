@@ -33,8 +33,8 @@ def joined(strings):
 
 
 # Evoked by no input of a few vertices: an offset whose faults could not be mended (a large mesh that crosses itself does),
-# and a page for 60,000 points.
-UNSEEN = {"WARNING_PROVEN", "WARNING_FILTRATION"}
+# a page for 60,000 points, and an explanation of over 5,000 (test_view.py).
+UNSEEN = {"WARNING_PROVEN", "WARNING_FILTRATION", "WARNING_EXPLAIN"}
 
 
 def sentences():
@@ -171,6 +171,7 @@ ROWS = {
     "WARNING_APART": ("check apart.off --open", 0, ["{hint}", Silent("check out.ply --open")]),
     "WARNING_OUTSIDE": ("voronoi few.xyz --box 0,0,0,0.2,1,1 -o out.csv", 0,
                         ["{hint}", Silent("voronoi few.xyz --box 0,0,0,1,1,1 -o out.csv")]),
+    "WARNING_CELLS": ("voronoi scan.ply --view page.html", 0, [Silent("voronoi few.xyz --box 0,0,0,1,1,1 --view page.html")]),
     "WARNING_CELL": ("voronoi atoms.extxyz -o out.csv", 0, [Silent("voronoi atoms.extxyz --periodic xyz -o out.csv")]),
     "WARNING_FULL": ("alpha few.xyz --cell 9,9,9 --alpha 1000 -o out.ply", 0, [Silent("alpha few.xyz --cell 9,9,9 --alpha auto -o out.ply")]),
     "WARNING_NUMBERED": ("info ids.xyz", 0, [Silent("info ids.xyz --columns -,x,y,z")]),

@@ -272,6 +272,62 @@ class Holds(ViewTest):
                                              "property float y\nproperty float z\nend_header\n")).layers[0]["vertices"], 0)
 
 
+class Explains(ViewTest):
+    """How a surface came to be, on a page. tests/unit/test_explanation.c holds it against the library."""
+
+    def lists(self, page, name, n):
+        counts = page.column(0, name, n, 4)
+        return [sum(counts[:i]) for i in range(n + 1)]
+
+    def test_poles_labels_and_faces_are_those_of_the_surface(self):
+        self.expect(0, "generate", "scan", "-n", "150", "-o", self.path("few.ply"))
+        self.expect(0, "surface", self.path("few.ply"), "--noise", "keep", "-o", self.path("out.ply"), "--view", self.path("page.html"), "--explain")
+        page = self.read("page.html")
+        m = page.layers[0]["explanation"]
+        n, t = m["samples"], m["tetrahedra"]
+        self.assertEqual((m["method"], n), ("labeled-delaunay", m["all_samples"]))
+        self.assertAlmostEqual(m["theta"], math.pi / 8, places=15)
+        place = list(zip(*(page.reals(0, "e-place-%d" % k, n, "d") for k in range(3))))
+        ball = list(zip(*(page.reals(0, "e-pole-%d" % k, n, "d") for k in range(8))))
+        points = page.column(0, "e-point", n, 4)
+        for s in range(n):
+            for pole in ball[s][:4], ball[s][4:]:
+                if math.isfinite(pole[3]):
+                    self.assertAlmostEqual(math.dist(pole[:3], place[s]), pole[3], delta=1e-9 * pole[3])
+                    self.assertGreater(min(math.dist(pole[:3], p) for p in place), (1 - 1e-9) * pole[3])
+        vertices, tetrahedra = self.lists(page, "e-vertices", n), self.lists(page, "e-tetrahedra", n)
+        near = list(zip(*(page.reals(0, "e-vertex-%d" % k, m["vertices"], "f") for k in range(3))))
+        corners = list(zip(*(page.column(0, "e-tetrahedron-%d" % k, t, 4) for k in range(3))))
+        taken, side, sure = (page.column(0, "e-" + name, t, 1) for name in ("taken", "side", "confidence"))
+        self.assertEqual((set(side), max(sure) <= 254), ({0, 2}, True))
+
+        def sample(s, local):
+            at = [x + d for x, d in zip(place[s], near[vertices[s] + local])]
+            return points[min(range(n), key=lambda other: math.dist(place[other], at))]
+
+        found = {frozenset((points[s], *(sample(s, c) for k, c in enumerate(corners[i], 1) if k != bit)))
+                 for s in range(n) for i in range(tetrahedra[s], tetrahedra[s + 1]) for bit in (1, 2, 3) if taken[i] >> bit & 1}
+        number = {p: points[s] for s, p in enumerate(place)}
+        of = [number[p] for p in zip(*(page.reals(0, "exact-" + k, page.layers[0]["vertices"], "d") for k in "xyz"))]
+        self.assertEqual(found, {frozenset(of[v] for v in f) for f in page.triangles(0)})
+
+    def test_of_many_samples_an_even_choice(self):
+        self.expect(0, "generate", "sphere", "-n", "5400", "-o", self.path("many.npy"))
+        report = self.expect(0, "surface", self.path("many.npy"), "--method", "cocone", "-o", self.path("out.ply"), "--view", self.path("page.html"), "--explain")
+        self.assertIn("the page explains an even choice of 5000 of 5400 samples", report.err)
+        m = self.read("page.html").layers[0]["explanation"]
+        self.assertEqual((m["samples"], m["all_samples"]), (5000, 5400))
+        self.assertLess(os.path.getsize(self.path("page.html")), 8e6)
+
+    def test_wrong_uses(self):
+        few = self.xyz("few.xyz", CUBE)
+        for words, said in (("--explain", "--explain has no meaning without --view"), ("--explain --picture a.png", "without --view"),
+                            ("--explain --view p.html --method cocone --pieces 2", "--explain and --pieces exclude each other"),
+                            ("--explain --view p.html --curves", "--explain is for --method")):
+            result = self.expect(1, "surface", few, "-o", self.path("out.ply"), *words.replace("a.png", self.path("a.png")).replace("p.html", self.path("p.html")).split())
+            self.assertIn(said, result.err, words)
+
+
 class Command(ViewTest):
     def test_several_files_are_layers(self):
         facts = self.facts("view", self.off("o.off", OCTAHEDRON, OCTAHEDRON_FACES), self.xyz("p.xyz", CUBE), "--side-by-side",
@@ -350,7 +406,7 @@ class Text(ViewTest):
         self.assertNotIn("connect-src", policy[0])
 
     def test_it_is_small(self):
-        self.assertLess(os.path.getsize(os.path.join(ROOT, "web", "page.html")), 70000)
+        self.assertLess(os.path.getsize(os.path.join(ROOT, "web", "page.html")), 85000)
 
     def test_the_bundle_is_that_of_its_sources(self):
         folder, digest = os.path.join(ROOT, "web", "src"), hashlib.sha256()

@@ -2,6 +2,8 @@
 
 import json
 import math
+import os
+import re
 import struct
 
 from brio_cli import CliTest, COMMON_FACTS, count, CUBE, main, number
@@ -134,6 +136,24 @@ class Voronoi(CliTest):
             self.assertEqual(at, end)
             self.assertEqual(corners, set(arrays["Cells", "connectivity"][8 * cell:8 * cell + 8]))
             begin = end
+
+    def test_what_is_shown(self):
+        """Pages and pictures of cells in a box, in space that repeats, and without a box: closed solids, of the volumes of the table."""
+        points = self.xyz("a.xyz", LATTICE)
+        for how, cells in (("--box=-0.5,-0.5,-0.5,3.5,3.5,3.5",), 64), (("--cell", "4,4,4"), 64), ((), 8):
+            run = self.expect(0, "voronoi", points, *how, "--view", self.path("p.html"), "--picture", self.path("p.png"), "--picture-size", "150x100", "--json")
+            self.assertEqual("are not shown" in run.err, not how, run.err)
+            with open(self.path("p.html"), encoding="utf-8") as f:
+                layer = json.loads(re.search(r'class="layer">(.*?)</script>', f.read()).group(1))
+            self.assertEqual((layer["faces"], layer["vertices"]), (6 * cells, 8 * cells), how)
+            c = layer["certificate"]
+            self.assertEqual((c["closed"], c["manifold"], c["components"]), (True, True, cells))
+            self.assertAlmostEqual(c["volume"], cells, delta=1e-12)
+            self.assertEqual([p["name"] for p in layer["face_properties"]], ["site", "volume"])
+            self.assertGreater(os.path.getsize(self.path("p.png")), 1000)
+        run = self.expect(3, "voronoi", self.xyz("b.xyz", CUBE), "--view", self.path("q.html"))
+        self.assertIn("nothing to show", run.err)
+        self.expect(1, "voronoi", points, "--tiles", "2", "--scratch", self.path("."), "--view", self.path("q.html"), "-o", self.path("c.csv"))
 
     def test_faces(self):
         points, out = self.xyz("a.xyz", LATTICE), self.path("faces.csv")

@@ -575,7 +575,10 @@ static brio_status compute_some(brio_context *ctx) {
     integer_points(2, N, 4, points);
     o.box = WIDE_BOX;
     o.vertices = 1;
+    brio_mesh *mesh = NULL;
     brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, N, &o, &cells);
+    if (status == BRIO_OK) status = brio_cells_mesh(ctx, cells, 7, 0.1, NULL, &mesh);
+    brio_mesh_free(mesh);
     brio_cells_free(cells);
     if (status != BRIO_OK) return status;
     o.vertices = 0;
@@ -749,6 +752,41 @@ static void normals_are_unit_vectors_between_points_of_any_sizes(void) {
     brio_context_free(ctx);
 }
 
+/* Cells as a mesh: each a closed solid of its volume; a choice is of whole cells, and shrinks each towards its middle. */
+static void cells_are_solids_of_a_mesh(void) {
+    enum { N = 100, FEW = 9 };
+    double points[3 * N], volume = 0;
+    brio_context *ctx = new_context();
+    brio_mesh *all, *few;
+    size_t left_out;
+    uniform_points(3, N, points);
+    brio_cells *cells = cells_of(ctx, points, NULL, N, UNIT_BOX, 1),
+               *flat = cells_of(ctx, points, NULL, N, UNIT_BOX, 0);
+    EXPECT(brio_cells_mesh(ctx, cells, 0, 0, &left_out, &all) == BRIO_OK && left_out == 0, "%s", brio_message(ctx));
+    EXPECT(brio_cells_mesh(ctx, cells, FEW, 0.5, &left_out, &few) == BRIO_OK && left_out == N - FEW);
+    const brio_mesh *meshes[] = {all, few};
+    for (int i = 0; i < 2; i++) {
+        const brio_mesh *m = meshes[i];
+        const brio_property *site = &m->face_properties[0];
+        brio_certificate c = {.size = sizeof c};
+        size_t f = 0, components = i ? FEW : N;
+        EXPECT(brio_mesh_certificate(ctx, m, &c) == BRIO_OK && c.closed && c.manifold && c.oriented);
+        EXPECT(c.components == components && c.genus == 0, "%zu components", c.components);
+        for (volume = 0; f < m->num_faces; f++) /* each cell's faces follow each other */
+            if (!f || brio_property_value(site, f) != brio_property_value(site, f - 1))
+                volume += brio_property_value(&m->face_properties[1], f);
+        EXPECT(near_to(i ? c.volume * 8 : c.volume, volume, 1e-12), "%g, and cells of %g", c.volume, volume);
+        brio_certificate_free(&c);
+    }
+    brio_mesh_free(few);
+    EXPECT(brio_cells_mesh(ctx, flat, 0, 0, NULL, &few) == BRIO_ERR_ARGUMENT && !few);
+    EXPECT(brio_cells_mesh(ctx, cells, 0, 1, NULL, &few) == BRIO_ERR_ARGUMENT && !few);
+    brio_mesh_free(all);
+    brio_cells_free(cells);
+    brio_cells_free(flat);
+    brio_context_free(ctx);
+}
+
 static void memory_may_run_out(void) {
     expect_clean_failures(compute_some);
 }
@@ -775,6 +813,7 @@ SUITE(test_cells) {
     RUN(a_region_too_small_beside_its_sites_is_refused);
     RUN(what_doubles_cannot_hold_is_infinite);
     RUN(normals_are_unit_vectors_between_points_of_any_sizes);
+    RUN(cells_are_solids_of_a_mesh);
     RUN(memory_may_run_out);
     return harness_end();
 }

@@ -102,6 +102,7 @@ static void the_table_lists_the_options_that_are_taken(void) {
     static const brio_evidence evidence = {0};
     double normals[3 * N];
     brio_mesh *cube = NULL;
+    brio_explanation *explanation = NULL;
     brio_context *ctx = new_context();
     EXPECT(brio_generate_solid(ctx, BRIO_SOLID_IMPLICIT, 1, 16, &cube) == BRIO_OK, "%s", brio_message(ctx));
     const struct {
@@ -123,7 +124,8 @@ static void the_table_lists_the_options_that_are_taken(void) {
                 {{.theta = 0.4}, "theta"},
                 {{.boundaries = 1}, "boundaries"},
                 {{.density = 1}, "density"},
-                {{.pieces = 2}, "pieces"}};
+                {{.pieces = 2}, "pieces"},
+                {{.size = sizeof uses->o, .explanation = &explanation}, "explanation"}};
     for (int method = 0; method < BRIO_SURFACE_END; method++) {
         const char *options = brio_surface_method_facts((brio_surface_method)method)->options;
         size_t listed = *options != 0, known = 0;
@@ -136,6 +138,8 @@ static void the_table_lists_the_options_that_are_taken(void) {
             EXPECT(refused == !has(method, uses[i].name), "%d, %s: %s", method, uses[i].name, brio_message(ctx));
             known += has(method, uses[i].name);
             brio_mesh_free(mesh);
+            brio_explanation_free(explanation);
+            explanation = NULL;
         }
         EXPECT(known == listed, "%d: %zu options listed, %zu known", method, listed, known);
     }

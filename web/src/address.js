@@ -2,7 +2,7 @@
 // nothing from there but numbers, and words that it knows.
 import { MAPS } from "./colours.js";
 
-const SWITCHES = ["visible", "faces", "points", "wire", "edges", "boundary", "nonmanifold", "flipped", "crossing", "bridges", "flat", "balls"];
+const SWITCHES = ["visible", "faces", "points", "wire", "edges", "boundary", "nonmanifold", "flipped", "crossing", "bridges", "flat", "balls", "cell", "polar", "cocone", "labels", "taken", "power"];
 
 export function writeAddress(app) {
     const c = app.scene.cutting, view = { c: app.camera.toArray() };
@@ -42,6 +42,7 @@ export function readAddress(app) {
         if (Number.isFinite(layer.opacity)) s.opacity = Math.max(0.1, Math.min(1, layer.opacity));
         if (Number.isFinite(layer.pointSize)) s.pointSize = Math.max(1, Math.min(16, layer.pointSize));
         if (Number.isFinite(layer.alpha)) s.alpha = Math.max(0, Math.min(1, layer.alpha));
+        if (d.layer.meta.explanation && Number.isInteger(layer.explain)) s.explain = Math.max(-1, Math.min(d.layer.meta.explanation.samples - 1, layer.explain));
         if (Number.isFinite(layer.explode)) s.explode = Math.max(0, Math.min(2, layer.explode));
         if (Number.isFinite(layer.low) && Number.isFinite(layer.high)) Object.assign(s, { low: layer.low, high: layer.high, keepRange: true });
     });

@@ -64,7 +64,7 @@ export class App {
         const before = this.drawings || [], scene = new Scene(layers), drawings = layers.map(layer => new Drawing(this.renderer.gl, layer, defaultState(layer)));
         for (const d of drawings) d.place = scene.placeOf(d.layer);
         if (layers.length === 2 && layers[1].filtration) drawings[0].state.visible = false; // the shape at one alpha, which the filtration has
-        this.camera.fit(Math.hypot(...scene.half));
+        this.camera.fit(scene.half, scene.front());
         this.renderer.queue = null; // a picture that was begun is of what was there before
         Object.assign(this, { scene, drawings, initial: JSON.parse(JSON.stringify(drawings.map(d => d.state))) });
         if (source === document) readAddress(this);
@@ -139,7 +139,7 @@ export class App {
     }
     async recolour(drawing) { await drawing.recolour(); this.recut(); }
     async recolourAll() {
-        for (const d of this.drawings) { await d.recolour(); d.atAlpha(); if (d.state.wire) await d.wireframe(); }
+        for (const d of this.drawings) { await d.recolour(); d.atAlpha(); await d.tell(); if (d.state.wire) await d.wireframe(); }
         this.recut();
         this.fillPanel();
         this.tools.forEach(t => t.sync());
@@ -223,6 +223,15 @@ export class App {
         requestAnimationFrame(look);
     }
 
+    /** Turns about the sample that is told of, from as near as shows the smaller one of its polar balls. */
+    lookAt(drawing) {
+        const p = drawing.picture, place = drawing.place;
+        if (!p) return this.say("Tick “show a sample” first.");
+        const size = Math.max(3 * p.reach, Math.min(12 * p.reach, ...p.balls.map(b => 2 * b.row[3])));
+        this.camera.target = p.origin.map((x, k) => x * place[3] + place[k]);
+        this.camera.distance = Math.max(1e-4, 6 * size * place[3]);
+        this.redraw(true);
+    }
     resetView() {
         this.camera.reset();
         this.redraw(true);

@@ -2,24 +2,33 @@
 import { add, cross, dot, multiply, sub, unit } from "./matrix.js";
 
 const FIELD = 35 * Math.PI / 180; // of view, the shorter side
+const FIRST = [-0.6, 0.45];
 const NEAREST = 1e-5, FARTHEST = 200; // distances from the target
 
 export class Camera {
     constructor() {
         this.up = 2;
         this.parallel = false;
-        this.home = 3.9; // the distance at first
+        this.first = FIRST; // yaw and pitch, and the distance, at first
+        this.home = 3.9;
         this.reset();
     }
-    /** Takes the distance from which a scene of that radius is seen whole; stays where it was moved to. */
-    fit(radius) {
-        const home = 3.9 * Math.max(1, radius / 1.3);
-        if (this.distance === this.home) this.distance = home;
-        this.home = home;
+    /** Takes a box of half sides about the middle, and from where it is looked at first: it is seen whole then. Stays where it was moved to. */
+    fit(half, first = FIRST) {
+        const was = [...this.first, this.home], now = [this.yaw, this.pitch, this.distance], wide = Math.tan(FIELD / 2) * 0.95;
+        const there = new Camera();
+        Object.assign(there, { up: this.up, yaw: first[0], pitch: first[1] });
+        const { right, up, back } = there.axes();
+        this.first = first;
+        this.home = 2;
+        for (let i = 0; i < 8; i++) {
+            const corner = half.map((x, k) => i >> k & 1 ? x : -x);
+            this.home = Math.max(this.home, dot(corner, back) + Math.max(Math.abs(dot(corner, right)), Math.abs(dot(corner, up))) / wide);
+        }
+        if (now.every((x, i) => x === was[i])) this.reset();
     }
     reset() {
-        this.yaw = -0.6;
-        this.pitch = 0.45;
+        [this.yaw, this.pitch] = this.first;
         this.distance = this.home;
         this.target = [0, 0, 0];
     }

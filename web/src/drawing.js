@@ -1,6 +1,7 @@
 // A layer on the graphics card: buffers, made when something first needs them, and the list of what to draw.
 import { inParts } from "./decode.js";
 import { LAYER_COLOURS } from "./colours.js";
+import { colourOf, pictureOf } from "./explanation.js";
 
 const NOTHING = 3.4e38; // a value that is no number
 
@@ -14,6 +15,8 @@ export function defaultState(layer) {
         flat: layer.sharp > 0.12, opacity: 1, pointSize: m.vertices < 5000 ? 6 : m.vertices < 100000 ? 4 : 3,
         source: "plain", map: "viridis", low: 0, high: 1, alpha: 0.3, explode: 0, balls: false,
     };
+    if (m.explanation) Object.assign(state, { explain: -1, cell: true, polar: true, cocone: true, labels: false, taken: true, power: true });
+    if (layer.hasPieces && m.triangles && m.triangles < 60000) state.explode = 0.15; // so that cells are seen as such
     if (layer.hasPieces) state.nonmanifold = false; // edges of cells have many faces by their nature
     if (layer.filtration) Object.assign(state, { boundary: false, nonmanifold: false, flipped: false, flat: true, points: true, alpha: layer.filtration.start });
     if (colours) state.source = "colours";
@@ -76,6 +79,7 @@ export class Drawing {
         if (l.hull.length) this.indices("hull", l.hull);
         if (l.edges.length) this.indices("edges", l.edges);
         for (const name of ["boundary", "nonmanifold", "flipped"]) this.wide(name, l[name]);
+        if (l.edges.length < 80000) this.wide("edgesWide", l.edges);
         if (l.crossing) this.indices("crossing", l.trianglesWhere(f => l.crossing[f]));
         const bridge = l.meta.face_properties.find(p => p.name === "bridge");
         if (bridge) {
@@ -87,6 +91,7 @@ export class Drawing {
         if (radius) this.spheres(await l.property("v", radius));
         await this.recolour();
         this.atAlpha();
+        await this.tell();
         const all = l.triangles.length || l.hull.length;
         if (all / 3 > budget / 4 && !l.filtration) {
             let coarse = await l.coarse(96);
@@ -147,6 +152,42 @@ export class Drawing {
             for (let i = 0; i < n; i++) for (let k = 0; k < width; k++) out[width * i + k] = rows[width * (ofFaces ? face[Math.floor(i / 3)] : corner[i]) + k];
             this.buffer(`${name}E`, out);
         }
+    }
+    /** Fills the buffers of how the surface came to be at the sample of the state; none below 0. */
+    async tell() {
+        const l = this.layer, e = this.state.explain;
+        if (!l.meta.explanation) return;
+        const all = e >= 0 ? await l.explained() : null;
+        if (this.state.explain !== e) return; // another was asked for meanwhile
+        this.told = all && all.at(e);
+        this.onTold?.();
+        const picture = this.picture = this.told && pictureOf(this.told, l, l.meta.explanation.theta), empty = { place: [], rgba: [] };
+        for (const [set, name] of [["C", "cell"], ["K", "cone"], ["L", "labels"], ["T", "faces"]]) {
+            const pile = picture ? picture[name] : empty;
+            this.buffer(`place${set}`, Float32Array.from(pile.place));
+            this.buffer(`rgba${set}`, Uint8Array.from(pile.rgba));
+        }
+        for (const name of ["loops", "power", "lines"]) this.buffer(name, Float32Array.from(picture ? picture[name] : []));
+        this.ballsTold = picture ? picture.balls : [];
+        this.ballsTold.forEach((b, i) => this.buffer(`ball${i}`, Float32Array.from(b.row)));
+        const dots = picture ? [{ row: picture.origin, colour: [0.95, 0.7, 0.2] }, ...picture.balls] : [];
+        this.buffer("placeP", Float32Array.from(dots.flatMap(d => d.row.slice(0, 3))));
+        this.buffer("rgbaP", Uint8Array.from(dots.flatMap(d => [...d.colour.map(c => Math.round(255 * c)), 255])));
+    }
+    /** What to draw of it: the faces, edges and poles, and over them what is seen through. */
+    toldItems(put, colours) {
+        const s = this.state, b = this.buffers, gl = this.gl, plain = { mode: 1, back: false, uncut: true };
+        const pile = (set, more) => { if (b[`place${set}`].count) put("faces", { ...plain, set, count: b[`place${set}`].count / 3, opacity: 1, ...more }); };
+        const wide = (name, colour, size) => { if (b[name].count) put("wide", { ...plain, mode: 0, wide: name, count: b[name].count / 6, colour, size, lit: false, opacity: 1 }); };
+        if (s.taken) pile("T");
+        if (s.labels) pile("L");
+        if (s.cell) wide("loops", [0.45, 0.3, 0.75], 1.6);
+        if (s.power) wide("power", colours.line, 1);
+        if (s.polar) wide("lines", colours.line, 1.4);
+        put("points", { ...plain, set: "P", count: s.polar ? b.placeP.count / 3 : 1, primitive: gl.POINTS, size: 9, lit: false, opacity: 1 });
+        if (s.cell) pile("C", { veil: true, opacity: 0.16 });
+        if (s.cocone) pile("K", { veil: true, opacity: 0.3 });
+        if (s.polar) this.ballsTold.forEach((ball, i) => put("balls", { ...plain, mode: 0, spheres: `ball${i}`, count: 1, colour: colourOf(ball.side), veil: true, opacity: 0.35 }));
     }
     async wireframe() {
         if (!this.buffers.wire) this.indices("wire", await this.layer.wireframe());
@@ -248,6 +289,7 @@ export class Drawing {
         if (!s.visible) return out;
         const put = (program, more) => out.push({ drawing: this, program, set: "", index: null, primitive: gl.TRIANGLES, mode: single,
             colour: this.colour, size: 1, lit: true, back: true, opacity: s.opacity, ...more });
+        const thin = this.told ? { veil: true, opacity: Math.min(s.opacity, 0.22) } : {}; // so that what is told of a sample is seen
         const solid = l.triangles.length ? "triangles" : "hull", apart = s.explode > 0 && b.placeE;
         if (s.faces && l.filtration) {
             if (b.shape.count) put("faces", { index: "shape", pick: "shape", mode: this.expanded ? 0 : this.mode });
@@ -255,11 +297,11 @@ export class Drawing {
             if (s.wire && b.shapeWire.count) put("lines", { index: "shapeWire", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, opacity: 0.55 });
         } else if (s.faces && apart) put("faces", { set: "E", mode: b.valueE || b.rgbaE ? this.mode : 0, count: b.placeE.count / 3, pick: "piece", uncut: true });
         else if (s.faces && b[solid]) {
-            if (moving && b.coarse) put("faces", { index: "coarse", pick: false });
-            else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner" });
-            else put("faces", { index: solid, pick: "triangle" });
+            if (moving && b.coarse) put("faces", { index: "coarse", pick: false, ...thin });
+            else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner", ...thin });
+            else put("faces", { index: solid, pick: "triangle", ...thin });
         }
-        if (s.balls && b.spheres) put("balls", { spheres: true, count: b.spheres.count / 4, mode: 0, back: false });
+        if (s.balls && b.spheres) put("balls", { spheres: "spheres", count: b.spheres.count / 4, mode: 0, back: false });
         const small = (!moving || !b.coarse) && !apart;
         if (small && s.faces && s.crossing && b.crossing) put("marks", { index: "crossing", mode: 0, colour: [0.92, 0.16, 0.24], back: false, opacity: 1 });
         if (small && s.faces && s.bridges && b.bridges) put("marks", { index: "bridges", mode: 0, colour: [0.98, 0.66, 0.1], back: false, opacity: 1 });
@@ -269,9 +311,11 @@ export class Drawing {
         }
         if (s.wire && b.wire && small) put("lines", { index: "wire", primitive: gl.LINES, mode: s.faces ? 0 : single, colour: s.faces ? colours.line : this.colour, lit: false, opacity: s.faces ? 0.55 : 1 });
         if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, lit: false, pick: "edge", opacity: 1 });
+        if (s.edges && b.edgesWide && single === 0) put("wide", { wide: "edgesWide", count: b.edgesWide.count / 6, size: 1.8, lit: false, opacity: 1 });
         const wides = { boundary: [0.1, 0.62, 1], nonmanifold: [1, 0.24, 0.65], flipped: [0.95, 0.85, 0.1] };
         for (const [name, colour] of Object.entries(wides))
             if (s[name] && b[name] && s.faces && !apart) put("wide", { wide: name, count: b[name].count / 6, mode: 0, colour, size: 2.5, lit: false, opacity: 1 });
+        if (this.told && b.placeC) this.toldItems(put, colours);
         if (s.points) {
             const all = l.meta.vertices, count = moving ? Math.min(all, 2 * budget) : all;
             put("points", { count, primitive: gl.POINTS, size: s.pointSize, pick: "point" });

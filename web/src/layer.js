@@ -2,6 +2,7 @@
 //
 // Positions are whole numbers q of 21 bits; low + step * q are the coordinates of the file, rounded. The exact ones, and the
 // numbers of vertices and faces in the file, are decoded when something is picked for the first time.
+import { Explanation } from "./explanation.js";
 import { bytesOf, differences, inParts, reals, trianglesOf, valuesOf } from "./decode.js";
 
 export class Layer {
@@ -238,6 +239,12 @@ export class Layer {
         const properties = [];
         for (const p of this.meta.face_properties) properties.push([p, (await this.property("f", p))[f]]);
         return { number, properties };
+    }
+
+    /** How the surface came to be; null where the page does not tell. */
+    explained() {
+        if (!this.meta.explanation) return null;
+        return this.explanation ||= new Explanation(this).load();
     }
 
     /** The triangles of faces that `chosen(face)` holds of. */

@@ -1,6 +1,6 @@
 // The panel: for each layer what is shown of it, its colours, counts and certificate.
 import { MAPS, colourAt } from "./colours.js";
-import { count, labelled, make, short } from "./dom.js";
+import { count, exactly, labelled, make, short } from "./dom.js";
 
 const BINS = 64;
 
@@ -64,6 +64,40 @@ function histogram(drawing, changed) {
     return { canvas, draw };
 }
 
+/** What is told of a sample, as rows. */
+function toldRows(told) {
+    const name = side => side < 0 ? "inner" : side > 0 ? "outer" : "without a label", place = p => p.map(x => exactly(x)).join(" ");
+    const sides = told.tetrahedra.map(t => t.side), sure = told.tetrahedra.map(t => t.confidence).filter(c => c !== null);
+    return rows([["sample", `point ${told.point}`], ["at", place(told.place)],
+        ...told.poles.flatMap((p, i) => {
+            const words = `${i ? "other" : "farther"} pole`;
+            if (Number.isNaN(p.radius)) return [[words, "none"]];
+            return p.radius === Infinity ? [[words, `at infinity, ${name(p.side)}`]] : [[words, name(p.side)], ["centre", place(p.centre)], ["radius", exactly(p.radius)]];
+        }),
+        sides.some(Boolean) && ["tetrahedra", `${sides.filter(x => x < 0).length} inner, ${sides.filter(x => x > 0).length} outer`],
+        sure.length > 0 && ["least sure of these", short(+Math.min(...sure).toFixed(2))],
+        ["faces taken", count(told.tetrahedra.reduce((n, t) => n + (t.taken >> 1 & 1) + (t.taken >> 2 & 1) + (t.taken >> 3 & 1), 0) / 2 + told.polygons.filter(p => p.taken).length)]]);
+}
+
+/** How the surface came to be: a sample is chosen by a slider, or by a click on the surface. */
+function explanationPanel(drawing, app, tick) {
+    const { layer, state } = drawing, m = layer.meta.explanation, about = make("div", { role: "status", className: "told" });
+    const note = m.samples < m.all_samples ? `An even choice of ${count(m.samples)} of ${count(m.all_samples)} samples.` : `All ${count(m.samples)} samples.`;
+    const slider = make("input", { type: "range", min: 0, max: m.samples - 1, step: 1, value: Math.max(0, state.explain), oninput: async e => { state.explain = +e.target.value; on.checked = true; await drawing.tell(); app.redraw(true); } });
+    const on = make("input", { type: "checkbox", checked: state.explain >= 0, onchange: async e => { state.explain = e.target.checked ? +slider.value : -1; await drawing.tell(); app.redraw(); } });
+    drawing.onTold = () => {
+        about.replaceChildren(...(drawing.told ? [toldRows(drawing.told)] : []));
+        if (state.explain >= 0) slider.value = state.explain;
+        on.checked = state.explain >= 0;
+    };
+    drawing.onTold();
+    return make("details", { open: true, className: "explanation" }, make("summary", {}, "How it came to be"),
+        make("p", { className: "note" }, `${note} Tick, and click the surface: the nearest sample is shown.`), labelled("show a sample", on), labelled("Sample", slider),
+        make("button", { type: "button", onclick: () => app.lookAt(drawing) }, "Look at it"),
+        make("fieldset", {}, make("legend", {}, "Show of it"), tick("cell", "its cell", true), tick("polar", "poles and polar balls", true), tick("cocone", "co-cone", true),
+            tick("labels", "labels of tetrahedra", m.method !== "power-crust"), tick("taken", "faces taken", true), tick("power", "faces of power cells", m.method === "power-crust")), about);
+}
+
 /** The part of the panel about one layer.   app  has redraw() and recolour(drawing). */
 export function layerPanel(drawing, app) {
     const { layer, state } = drawing, m = layer.meta, name = m.name || `layer ${layer.number + 1}`;
@@ -117,7 +151,7 @@ export function layerPanel(drawing, app) {
     return make("section", { className: "layer", "aria-label": name },
         make("h2", {}, make("input", { type: "checkbox", id: `visible${layer.number}`, checked: state.visible, onchange: e => { state.visible = e.target.checked; app.redraw(); } }),
             make("label", { htmlFor: `visible${layer.number}`, className: "name" }, make("span", { className: "swatch", style: `background: rgb(${drawing.colour.map(c => Math.round(255 * c))})` }), name)),
-        counts(m), ...notes.map(words => make("p", { className: "note" }, words)), ...alphas, apart, shownParts, labelled("Colour by", source), range,
+        counts(m), m.explanation ? explanationPanel(drawing, app, tick) : null, ...notes.map(words => make("p", { className: "note" }, words)), ...alphas, apart, shownParts, labelled("Colour by", source), range,
         surface ? slide("opacity", "Opacity", 0.1, 1, 0.05) : null, slide("pointSize", "Point size", 1, 16, 1),
         m.certificate && !layer.filtration ? make("details", { open: true }, make("summary", {}, "Certificate"), certificate(m.certificate)) : null,
         m.report ? make("details", {}, make("summary", {}, "Report"), make("pre", { tabIndex: 0 }, m.report)) : null);

@@ -24,6 +24,12 @@ export class Picker {
         this.picks = this.measuring && this.picks.length === 1 ? [this.picks[0], pick] : [pick];
         this.show();
         this.place();
+        const { state, layer } = what.drawing;
+        if (state.explain >= 0 && !this.measuring) { // the sample that is nearest to what was picked
+            state.explain = (await layer.explained()).nearest(facts.place);
+            await what.drawing.tell();
+            app.redraw();
+        }
         return pick;
     }
     clear() {

@@ -88,7 +88,8 @@ export class Renderer {
             for (const d of view.drawings)
                 for (const item of d.items(moving, this.budget, scene.cut, scene.colours)) {
                     const whole = { ...item, view, matrix, look };
-                    if (item.opacity < 1 && item.primitive === gl.TRIANGLES) clear.push({ ...whole, depthOnly: true }, { ...whole, blended: true });
+                    if (item.veil) clear.push({ ...whole, blended: true });
+                    else if (item.opacity < 1 && item.primitive === gl.TRIANGLES) clear.push({ ...whole, depthOnly: true }, { ...whole, blended: true });
                     else this.queue.push(item.opacity < 1 ? { ...whole, blended: true } : whole);
                 }
             this.queue.push(...clear);
@@ -129,7 +130,7 @@ export class Renderer {
         for (let i = 0; i < 4; i++) { gl.disableVertexAttribArray(i); gl.vertexAttribDivisor(i, 0); }
         gl.vertexAttrib4f(1, 0, 0, 0, 0);
         if (item.spheres) {
-            this.attribute(0, b.spheres, 4, gl.FLOAT, false);
+            this.attribute(0, b[item.spheres], 4, gl.FLOAT, false);
             gl.vertexAttribDivisor(0, 1);
             return;
         }

@@ -1,5 +1,5 @@
 // The scene: all layers in one box of about [-1, 1], the cutting plane, and what stands at a place of the picture.
-import { dot, length, sub } from "./matrix.js";
+import { cross, dot, length, sub } from "./matrix.js";
 
 export class Scene {
     constructor(layers) {
@@ -14,6 +14,28 @@ export class Scene {
         this.unit = half > 0 ? half : 1;
         this.half = low.map((x, k) => (high[k] / 2 - x / 2) / this.unit);
         this.cutting = { on: false, axis: 0, at: 0.5, flip: false };
+    }
+    /** From where it is looked at first: [yaw, pitch]. Of an open surface, most of which would be seen from behind, the side that is its
+     *  front; undefined where the usual one will do. */
+    front() {
+        const sums = new Map(), views = [[-0.6, 0.45]];
+        for (const pitch of [-1.2, -0.45, 0, 0.45]) for (let i = 0; i < 8; i++) views.push([i * Math.PI / 4, pitch]);
+        const normals = this.layers.filter(l => l.boundary.length && !l.filtration).flatMap(l => {
+            const t = l.triangles, p = l.positions, step = 3 * Math.max(1, Math.floor(t.length / 30000)), unit = l.meta.step / this.unit, out = [];
+            for (let i = 0; i + 2 < t.length; i += step) {
+                const [a, b, c] = [0, 1, 2].map(k => [0, 1, 2].map(x => unit * p[3 * t[i + k] + x]));
+                out.push(cross(sub(b, a), sub(c, a)));
+            }
+            return out;
+        });
+        for (const [yaw, pitch] of views) {
+            const to = [Math.cos(pitch) * Math.sin(yaw), -Math.cos(pitch) * Math.cos(yaw), Math.sin(pitch)];
+            let front = 0, all = 1e-300;
+            for (const n of normals) { const seen = dot(n, to); all += Math.abs(seen); if (seen > 0) front += seen; }
+            sums.set([yaw, pitch], front / all);
+        }
+        const [usual] = sums.values(), best = [...sums].reduce((a, b) => b[1] > a[1] + 1e-6 ? b : a);
+        return best[1] > usual + 0.25 ? best[0] : undefined;
     }
     /** Where the whole numbers of a layer are in the scene: xyz, and the length of a step. */
     placeOf(layer) {

@@ -105,6 +105,8 @@ static brio_status check_options(brio_context *ctx, const brio_surface_options *
                 o->theta);
     BRIO_EXPECT(ctx, !BRIO_PART(ctx, extraction) || (o->method == BRIO_SURFACE_COCONE && o->pieces <= 1),
                 BRIO_ERR_ARGUMENT, "candidates, pruned and walk are extractions of the co-cone in one piece");
+    BRIO_EXPECT(ctx, !o->explanation || o->pieces <= 1, BRIO_ERR_ARGUMENT,
+                "an explanation is of a co-cone in one piece");
     BRIO_EXPECT(ctx, !o->evidence || o->pieces <= 1, BRIO_ERR_ARGUMENT, "evidence is for a co-cone in one piece");
     return BRIO_OK;
 }

@@ -18,6 +18,7 @@
 #include "reconstruct/cocone/flat_tetrahedra.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/cocone/sample_orientation.h"
+#include "reconstruct/explanation/explanation.h"
 #include <string.h>
 
 /* Of the samples. Half a sphere has 0.01, scans of one side 0.05, closed models with sharp edges 0.08, noisy ones 0.29.
@@ -138,6 +139,23 @@ done:
     return status;
 }
 
+/* Tells how the surface came to be. An experiment's has no labels. */
+static brio_status explain(reconstruction *r) {
+    const brio_explained s = {.options = r->options,
+                              .delaunay = r->delaunay,
+                              .dual = &r->dual,
+                              .points = r->points,
+                              .num_points = r->num_points,
+                              .num_samples = r->num_points,
+                              .order = r->evidence->order,
+                              .exponent = r->evidence->exponent,
+                              .theta = r->options->theta,
+                              .label = r->labels.label,
+                              .faces = r->out->faces,
+                              .num_faces = r->out->num_faces};
+    return brio_explain(r->ctx, &s);
+}
+
 static brio_status find_density(reconstruction *r) {
     brio_status status = BRIO_OK;
     if (r->options->density) BRIO_TRY(brio_feature_sizes(r->ctx, &r->dual, &r->out->size));
@@ -177,6 +195,7 @@ brio_status brio_cocone_surface_find(brio_context *ctx, const double *points, si
     brio_progress_part(ctx, bar, 0.8, 1);
     BRIO_TRY(part ? extract_as(&r, part) : extract(&r));
     BRIO_TRY(find_density(&r));
+    if (options->explanation) BRIO_TRY(explain(&r));
 done:
     brio_progress_part(ctx, bar, 0, 1);
     release(&r);

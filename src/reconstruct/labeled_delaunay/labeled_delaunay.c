@@ -27,6 +27,7 @@
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "reconstruct/surface/method.h"
 #include "reconstruct/labeled_delaunay/reconstruction.h"
+#include "reconstruct/explanation/explanation.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/surface_mesh.h"
 #include "reconstruct/labeled_delaunay/vote_confidence.h"
@@ -105,7 +106,7 @@ static brio_status label(brio_reconstruction *r) {
         for (size_t k = 0; k < 3 && r->turned[p] != r->is_inverted; k++) r->outside[p][k] = -r->outside[p][k];
     brio_compare_with_evidence(r);
     brio_lap(r, &r->stats.manifold_seconds);
-    if (!r->options->confidence) brio_vote_graph_free(&r->graph);
+    if (!r->options->confidence && !r->options->explanation) brio_vote_graph_free(&r->graph);
 done:
     return status;
 }
@@ -162,7 +163,7 @@ static brio_status extract(brio_reconstruction *r) {
     if (r->options->confidence) {
         BRIO_TRY(BRIO_ALLOC(r->ctx, r->confidence, r->num_points));
         BRIO_TRY(brio_vote_confidence(&r->graph, r->label, &boundary, r->confidence));
-        brio_vote_graph_free(&r->graph);
+        if (!r->options->explanation) brio_vote_graph_free(&r->graph);
     }
     brio_lap(r, &r->stats.manifold_seconds);
 done:
@@ -430,6 +431,32 @@ done:
     return status;
 }
 
+/* Tells how the surface came to be, before its vertices are smoothed. */
+static brio_status explain(brio_reconstruction *r) {
+    brio_status status = BRIO_OK;
+    float *confidence = NULL;
+    brio_explained s = {.options = r->options,
+                        .delaunay = r->delaunay,
+                        .points = r->points,
+                        .num_points = r->num_points,
+                        .num_samples = r->num_points,
+                        .order = r->order,
+                        .exponent = r->exponent,
+                        .theta = r->dual.theta,
+                        .outside = (const float(*)[3])r->outside,
+                        .label = r->label,
+                        .inverted = r->is_inverted,
+                        .faces = r->faces,
+                        .num_faces = r->num_faces};
+    BRIO_TRY(BRIO_ALLOC(r->ctx, confidence, r->dual.t.count));
+    brio_tetrahedron_confidence(&r->graph, r->label, confidence);
+    s.confidence = confidence;
+    BRIO_TRY(brio_explain(r->ctx, &s));
+done:
+    brio_release(r->ctx, confidence);
+    return status;
+}
+
 /* Finds the surface, and whether it is open. */
 static brio_status find_surface(brio_reconstruction *r, const double *points) {
     brio_status status = BRIO_OK;
@@ -446,6 +473,7 @@ static brio_status find_surface(brio_reconstruction *r, const double *points) {
     if (!r->is_open) BRIO_TRY(find_faces(r, by_itself && maybe, bar, 0.45, by_itself ? 0.7 : 0.95));
     if (by_itself && (r->is_open || r->stats.holes > 0) && !r->own) BRIO_TRY(find_sheets(r, bar, 0.7, 0.95));
     brio_progress_part(r->ctx, bar, 0.95, 1);
+    if (r->options->explanation) BRIO_TRY(explain(r));
     if (r->stats.smoothed) BRIO_TRY(smooth(r));
 done:
     brio_progress_part(r->ctx, bar, 0, 1);

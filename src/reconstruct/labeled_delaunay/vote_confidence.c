@@ -142,6 +142,19 @@ done:
     return status;
 }
 
+/* --- tetrahedra --- */
+
+void brio_tetrahedron_confidence(const brio_vote_graph *g, const uint8_t *label, float *confidence) {
+    const judgement j = {.g = g, .label = label};
+    const brio_tetrahedra *t = &g->dual->t;
+    for (uint32_t tet = 0; tet < t->count; tet++) {
+        double kept = 0, all = 0;
+        for (int i = 0; i < 4; i++)
+            if (t->tet[tet].vertex[i] != t->infinite) add_vote(&j, tet, i, &kept, &all);
+        confidence[tet] = (float)(1 / (1 + exp(-kept)));
+    }
+}
+
 /* --- triangles --- */
 
 /* Measured on 27 surfaces of 5 models, with holes left open and closed; each counts equally, and in it each triangle by

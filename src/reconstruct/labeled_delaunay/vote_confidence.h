@@ -13,6 +13,11 @@
 brio_status brio_vote_confidence(const brio_vote_graph *g, const uint8_t *label, const brio_facets *facets,
                                  float *confidence);
 
+/** Finds the probability of the label of each tetrahedron by the votes of its samples alone: below 1/2 where they were
+ *  outvoted.
+ *  label       #nodes of the graph.   confidence  #T, written. */
+void brio_tetrahedron_confidence(const brio_vote_graph *g, const uint8_t *label, float *confidence);
+
 /** Finds the probability that a triangle is right.
  *  corners     the confidences of its vertices.
  *  size        the radius of its circle, by the usual one there; INFINITY if its corners are collinear. */

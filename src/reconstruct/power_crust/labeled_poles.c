@@ -20,7 +20,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { BOUNDING_POINTS = 8 };
 /* The sampling density that `sharp` stands for. Chosen. */
 static const double SHARP_DENSITY = 0.5;
 static const double TRIANGULATION_SHARE = 0.75; /* of the bar of the poles */
@@ -52,7 +51,7 @@ done:
 static brio_status take_samples(brio_labeled_poles *l, const double *points) {
     brio_status status = BRIO_OK;
     size_t n = l->num_samples;
-    BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BOUNDING_POINTS)));
+    BRIO_TRY(BRIO_ALLOC(l->ctx, l->points, 3 * (n + BRIO_BOUNDING_POINTS)));
     BRIO_TRY(brio_canonical_points(l->ctx, points, n, &l->order));
     brio_copy_points(points, l->order, n, l->points);
     BRIO_TRY(brio_scale(l->ctx, l->points, 3 * n, -l->exponent, l->points));
@@ -78,7 +77,7 @@ static void bounding_corners(const double *points, size_t n, double margin, doub
         centre[k] = 0.5 * (low[k] + high[k]);
         half[k] = 2.5 * fmax(high[k] - low[k], longest / 5) + margin;
     }
-    for (int i = 0; i < BOUNDING_POINTS; i++)
+    for (int i = 0; i < BRIO_BOUNDING_POINTS; i++)
         for (int k = 0; k < 3; k++) corner[3 * i + k] = centre[k] + (i >> k & 1 ? half[k] : -half[k]);
 }
 
@@ -145,8 +144,9 @@ static brio_status find_poles(brio_labeled_poles *l, const brio_pole_request *re
     if (!request->solid && !request->experiment && request->labeling == BRIO_LABELING_GLOBAL)
         filter.shapes = BRIO_TRUSTED_SHAPE;
     brio_progress_part(l->ctx, bar, 0, TRIANGULATION_SHARE);
-    BRIO_TRY(brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BOUNDING_POINTS, &l->triangulation, &delaunay));
-    l->found.samples = brio_triangulation_stats(delaunay)->vertices - BOUNDING_POINTS;
+    BRIO_TRY(
+        brio_delaunay(l->ctx, l->points, NULL, l->num_samples + BRIO_BOUNDING_POINTS, &l->triangulation, &delaunay));
+    l->found.samples = brio_triangulation_stats(delaunay)->vertices - BRIO_BOUNDING_POINTS;
     BRIO_REQUIRE(l->ctx, l->found.samples >= 4, BRIO_ERR_NO_ANSWER, "%zu distinct points span no solid",
                  l->found.samples);
     l->found.delaunay_seconds = brio_seconds() - start;

@@ -4,6 +4,8 @@
 
 #include "reconstruct/labels/labeling.h"
 
+enum { BRIO_BOUNDING_POINTS = 8 }; /* that bound the cells of the samples */
+
 /** What to find. */
 typedef struct {
     uint64_t seed;

@@ -8,6 +8,7 @@
 #include "base/kept.h"
 #include "base/memory.h"
 #include "base/scale.h"
+#include "reconstruct/power_crust/crust_explanation.h"
 #include "reconstruct/power_crust/crust_faces.h"
 #include "reconstruct/power_crust/sample_normals.h"
 #include "mesh/properties.h"
@@ -75,12 +76,13 @@ brio_status brio_power_crust(brio_context *ctx, const double *points, size_t num
     brio_keep_begin(ctx);
     BRIO_TRY(brio_pole_request_of(ctx, &options->poles, options->noise, options->seed, &request));
     request.spacing = options->open > 0 || options->simplify;
-    request.representative = options->normals != NULL;
+    request.representative = options->normals || options->explanation;
     brio_progress_part(ctx, bar, 0, POLES_SHARE);
     BRIO_TRY(brio_labeled_poles_find(ctx, points, num_points, &request, &l));
     if (options->poles.solid) brio_labeled_poles_close_hull(&l);
     brio_progress_part(ctx, bar, POLES_SHARE, 1);
     BRIO_TRY(brio_make_crust(&l, options, mesh, options->normals, stats));
+    BRIO_TRY(brio_explain_crust(&l, options));
     BRIO_TRY(brio_mesh_add_samples(mesh, num_points, NULL));
 done:
     brio_give_pole_stats(&l, stats);

@@ -10,7 +10,13 @@
 
 brio_method_fn brio_labeled_delaunay, brio_power_crust, brio_cocone, brio_offset_surface;
 
-enum { LABELED_BYTES = 1110, CRUST_BYTES = 1426, OFFSET_BYTES = 1300, COCONE_BYTES = 616 }; /* a point */
+enum {
+    LABELED_BYTES = 1110,
+    CRUST_BYTES = 1426,
+    OFFSET_BYTES = 1300,
+    COCONE_BYTES = 616,
+    EXPLANATION_BYTES = 700
+}; /* a point */
 
 /* Adds what triangles and a simplification take to the bytes of a crust's balls and faces. Triangles: a scan of 20,000
  * points 210 bytes a point, bunny 350. Simplified: knot2 2,080, bunny 2,150, fandisk 2,200. */
@@ -42,26 +48,28 @@ static const brio_method_row table[] = {
     [BRIO_SURFACE_LABELED] =
         {{METHOD(LABELED), "labeled-delaunay",
           "also from noisy points; open where they end (--closed: closed); the one that is right most often",
-          "noise evidence normals open holes simplify confidence", BRIO_METHOD_MAY_END},
+          "noise evidence normals open holes simplify confidence explanation", BRIO_METHOD_MAY_END},
          "BRIO_SURFACE_LABELED",
          brio_labeled_delaunay,
          .bytes_a_point = LABELED_BYTES},
     [BRIO_SURFACE_POWER_CRUST] = {{METHOD(POWER_CRUST), "power-crust",
                                    "closed; sharp edges without points on them (--sharp)",
-                                   "noise normals open holes simplify polygons" POLES, BRIO_METHOD_OWN_VERTICES},
+                                   "noise normals open holes simplify polygons explanation" POLES,
+                                   BRIO_METHOD_OWN_VERTICES},
                                   "BRIO_SURFACE_POWER_CRUST",
                                   brio_power_crust,
                                   .bytes_a_point = CRUST_BYTES,
                                   .bytes = power_crust_bytes},
     [BRIO_SURFACE_COCONE] = {{METHOD(COCONE), "cocone", "the points are the vertices; open where they end",
-                              "evidence normals theta boundaries density pieces",
+                              "evidence normals theta boundaries density pieces explanation",
                               BRIO_METHOD_ALL_POINTS | BRIO_METHOD_MAY_END},
                              "BRIO_SURFACE_COCONE",
                              brio_cocone,
                              .bytes_a_point = COCONE_BYTES,
                              .bytes = cocone_bytes},
     [BRIO_SURFACE_TIGHT_COCONE] = {{METHOD(TIGHT_COCONE), "tight-cocone", "the points are the vertices; closed",
-                                    "evidence normals holes theta boundaries density", BRIO_METHOD_ALL_POINTS},
+                                    "evidence normals holes theta boundaries density explanation",
+                                    BRIO_METHOD_ALL_POINTS},
                                    "BRIO_SURFACE_TIGHT_COCONE",
                                    brio_cocone,
                                    .bytes_a_point = COCONE_BYTES,
@@ -94,5 +102,6 @@ int brio_surface_method_has(brio_surface_method method, const char *option) {
 }
 
 double brio_method_bytes(const brio_method_row *row, double points, const brio_surface_options *options) {
-    return row->bytes ? row->bytes(points, options) : row->bytes_a_point * points;
+    double bytes = row->bytes ? row->bytes(points, options) : row->bytes_a_point * points;
+    return options && options->explanation ? bytes + EXPLANATION_BYTES * points : bytes;
 }

@@ -40,7 +40,8 @@ static brio_status check_uses(brio_context *ctx, const brio_surface_options *o) 
                 {"theta", o->theta != 0},
                 {"boundaries", o->boundaries != 0},
                 {"density", o->density != 0},
-                {"pieces", o->pieces > 1}};
+                {"pieces", o->pieces > 1},
+                {"explanation", o->explanation != NULL}};
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
         char names[160];
         if (!uses[i].set || brio_surface_method_has(o->method, uses[i].name)) continue;
@@ -55,6 +56,7 @@ static brio_status check_uses(brio_context *ctx, const brio_surface_options *o) 
 static brio_status settle(brio_context *ctx, const brio_surface_options *options, brio_surface_options *o) {
     *o = (brio_surface_options){0};
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_surface_options, options, o));
+    if (o->explanation) *o->explanation = NULL;
     BRIO_EXPECT(ctx, (unsigned)o->method < BRIO_SURFACE_END, BRIO_ERR_ARGUMENT, "no such method: %d", (int)o->method);
     BRIO_EXPECT(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
                 (int)o->noise);
@@ -69,11 +71,18 @@ static brio_status settle(brio_context *ctx, const brio_surface_options *options
     return BRIO_OK;
 }
 
+/* Frees the explanation: a failure behind it leaves none. */
+static void drop_explanation(const brio_surface_options *o) {
+    if (!o->explanation) return;
+    brio_explanation_free(*o->explanation);
+    *o->explanation = NULL;
+}
+
 brio_status brio_surface(brio_context *ctx, const double *points, size_t num_points,
                          const brio_surface_options *options, brio_mesh **out, brio_surface_stats *stats) {
     BRIO_DOOR;
     brio_status status = BRIO_OK;
-    brio_surface_options o;
+    brio_surface_options o = {0};
     brio_surface_stats s = {0};
     brio_mesh *mesh = NULL;
     *out = NULL;
@@ -85,6 +94,7 @@ brio_status brio_surface(brio_context *ctx, const double *points, size_t num_poi
     *out = mesh;
     mesh = NULL;
 done:
+    if (status != BRIO_OK) drop_explanation(&o);
     BRIO_GIVE(brio_surface_stats, stats, &s);
     brio_mesh_free(mesh);
     return status;
