@@ -94,7 +94,65 @@ static void translates_that_come_and_go_need_no_room(void) {
     wrapped_free(&w);
 }
 
+/* Two points at one place, of which the first one's translates went and came back: there the second one's were the
+ * vertices, whose classes had no mates. */
+static void points_at_one_place_have_one_vertex(void) {
+    static const double NEAR[6] = {0.01, 0.5, 0.5, 0.01, 0.5, 0.5}, AWAY[3] = {0.5, 0.5, 0.5};
+    wrapped w = wrapped_new(UNIFORM, 0, 0, 0, 400);
+    uint32_t first, gone;
+    wrapped_start(&w);
+    EXPECT(brio_dynamic_periodic_insert(w.d, NEAR, NULL, 2, &first) == BRIO_OK);
+    for (int i = 0; i < 2; i++, w.num_points++) w.alive[w.num_indices++] = 1;
+    memcpy(w.point, (double[8]){0.01, 0.5, 0.5, 0, 0.01, 0.5, 0.5, 0}, 8 * sizeof(double));
+    fill_wrapped(&w, 300);
+    EXPECT(brio_dynamic_periodic_move(w.d, &first, AWAY, NULL, 1) == BRIO_OK);
+    EXPECT(brio_dynamic_periodic_move(w.d, &first, NEAR, NULL, 1) == BRIO_OK);
+    const brio_image *neighbours;
+    size_t count = 0;
+    for (uint32_t i = 0; i < 2; i++) {
+        EXPECT(brio_dynamic_periodic_neighbours(w.d, i, &neighbours, &count) == BRIO_OK && (count > 0) == (i == 0));
+    }
+    EXPECT(is_as_fresh(&w));
+    EXPECT(brio_dynamic_periodic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+    gone = 0;
+    EXPECT(brio_dynamic_periodic_remove(w.d, &gone, 1) == BRIO_OK);
+    w.alive[0] = 0, w.num_points--;
+    EXPECT(is_as_fresh(&w));
+    wrapped_free(&w);
+}
+
 /* --- failures --- */
+
+/* All points move together, and memory runs out when some translates come and go: their records were written without
+ * a journal. */
+static void failures_after_a_move_of_all_leave_all(void) {
+    enum { POINTS = 1050 };
+    static double p[3 * POINTS];
+    failing_memory memory = {0, 0};
+    brio_allocator allocator = {failing_alloc, failing_realloc, failing_free, &memory};
+    wrapped w = wrapped_new(UNIFORM, 0, 0, 0, POINTS);
+    size_t failed = 0;
+    brio_context_free(w.ctx);
+    EXPECT(brio_context_new(&allocator, &w.ctx) == BRIO_OK);
+    brio_context_set_threads(w.ctx, 1);
+    wrapped_start(&w);
+    fill_wrapped(&w, POINTS);
+    for (size_t i = 0; i < POINTS; i++)
+        for (size_t c = 0; c < 3; c++) p[3 * i + c] = w.point[4 * i + c] + (c == 0 ? 0.01 : 0) + 2e-4 * draw();
+    brio_status status = BRIO_ERR_NO_MEMORY;
+    for (size_t k = 1; status != BRIO_OK; k++) {
+        memory.left = k;
+        status = brio_dynamic_periodic_move(w.d, NULL, p, NULL, POINTS);
+        memory.left = 0;
+        failed += status == BRIO_ERR_NO_MEMORY;
+        if (status == BRIO_OK || (SHORT_TESTS && k % 4)) continue;
+        EXPECT(status == BRIO_ERR_NO_MEMORY && brio_dynamic_periodic_check(w.ctx, w.d) == BRIO_OK, "%s",
+               brio_message(w.ctx));
+    }
+    for (size_t i = 0; i < POINTS; i++) memcpy(w.point + 4 * i, p + 3 * i, 3 * sizeof *p);
+    EXPECT(failed > 10 && is_as_fresh(&w) && are_in_place(&w));
+    wrapped_free(&w);
+}
 
 /* One of each kind of change fails at each request for memory, or is stopped at each look; all stays as it was. */
 static void failures_leave_all(void) {
@@ -292,6 +350,8 @@ SUITE(test_dynamic_periodic) {
     RUN(any_changes_end_as_a_fresh_build);
     RUN(points_drift_round_the_box);
     RUN(translates_that_come_and_go_need_no_room);
+    RUN(points_at_one_place_have_one_vertex);
+    RUN(failures_after_a_move_of_all_leave_all);
     RUN(failures_leave_all);
     RUN(memory_that_runs_out_is_reported);
     RUN(wrong_arguments_are_refused);
