@@ -4,6 +4,7 @@
  *   o  medians and means of microseconds for one insertion at a random place, and for one removal;
  *   b  batches of 1 % of the points: wall and processor time, beside that of building anew;
  *   m  seconds for steps that move all points by shares of their spacing, beside building anew (processor time).
+ *   p  the same in a box that repeats, beside brio_delaunay_periodic, and for a snapshot.
  * THREADS: 1 if not given. */
 #include "brio/brio.h"
 #include "measure.h"
@@ -136,10 +137,45 @@ static void move_all(brio_context *ctx, const double *points, size_t n, double s
     free(p);
 }
 
+/* Moves all points of a box that repeats some times. */
+static void move_in_a_box(brio_context *ctx, const double *points, size_t n, double share) {
+    enum { STEPS = 4 };
+    static const double box[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    brio_periodic_options options = {.size = sizeof options, .cell = box};
+    double *p = malloc(3 * n * sizeof *p), first = 0, sum = 0;
+    brio_dynamic_periodic *d;
+    brio_periodic *t;
+    uint64_t own, built;
+    memcpy(p, points, 3 * n * sizeof *p);
+    check(ctx, brio_dynamic_periodic_new(ctx, p, NULL, n, &options, &d));
+    for (int i = 0; i < STEPS; i++) {
+        step_all(p, n, share / cbrt((double)n));
+        double start = seconds(CLOCK_PROCESS_CPUTIME_ID);
+        check(ctx, brio_dynamic_periodic_move(d, NULL, p, NULL, n));
+        *(i ? &sum : &first) += seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+    }
+    double start = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    check(ctx, brio_dynamic_periodic_snapshot(ctx, d, &t));
+    double snapshot = seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+    check(ctx, brio_periodic_checksum(ctx, t, &own));
+    brio_periodic_free(t);
+    brio_dynamic_periodic_points(d, NULL, p, NULL);
+    start = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    check(ctx, brio_delaunay_periodic(ctx, p, NULL, n, &options, &t));
+    double anew = seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+    check(ctx, brio_periodic_checksum(ctx, t, &built));
+    brio_periodic_free(t);
+    printf("in a box that repeats, move all by %g spacings: anew %.4f s; first step %.4f s; mean of %d more %.4f s; "
+           "snapshot %.4f s%s\n",
+           share, anew, first, STEPS - 1, sum / (STEPS - 1), snapshot, own == built ? "" : "  DIFFERENT");
+    brio_dynamic_periodic_free(d);
+    free(p);
+}
+
 int main(int argc, char **argv) {
     static const double SHARE[] = {1e-4, 1e-3, 5e-3, 2e-2, 0.1, 0.5, 5};
     size_t n = argc > 1 ? (size_t)atoll(argv[1]) : 100000, changes = argc > 2 ? (size_t)atoll(argv[2]) : n / 10;
-    const char *parts = argc > 4 ? argv[4] : "obm";
+    const char *parts = argc > 4 ? argv[4] : "obmp";
     double *points = malloc(3 * n * sizeof *points);
     brio_context *ctx;
     brio_dynamic *d;
@@ -153,6 +189,8 @@ int main(int argc, char **argv) {
     if (strchr(parts, 'b')) batches(ctx, d, points, n);
     brio_dynamic_free(d);
     for (size_t i = 0; i < sizeof SHARE / sizeof *SHARE && strchr(parts, 'm'); i++) move_all(ctx, points, n, SHARE[i]);
+    for (size_t i = 0; i < sizeof SHARE / sizeof *SHARE && strchr(parts, 'p'); i++)
+        move_in_a_box(ctx, points, n, SHARE[i]);
     brio_context_free(ctx);
     free(points);
     return 0;

@@ -1,5 +1,6 @@
 /* A gas: particles fly in a box and bounce off its walls; some leave, others come in. The triangulation lives through all
- * steps, and at the end it is the one that is built of the particles that are left. */
+ * steps, and at the end it is the one that is built of the particles that are left. Then the same without walls: what
+ * leaves the box comes back on its other side. */
 #include "common.h"
 
 enum { NUM_PARTICLES = 2000, STEPS = 50, EXCHANGED = 5 };
@@ -29,6 +30,37 @@ static void exchange(brio_context *ctx, brio_dynamic *gas, size_t i) {
     CHECK(ctx, brio_dynamic_remove(gas, &particle[i], 1));
     for (size_t c = 0; c < 3; c++) position[3 * i + c] = draw();
     CHECK(ctx, brio_dynamic_insert(gas, position + 3 * i, NULL, 1, &particle[i]));
+}
+
+/* Particles fly on in a box that repeats. */
+static void fly_in_space_that_repeats(brio_context *ctx) {
+    static const double box[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    const brio_periodic_options options = {.size = sizeof options, .cell = box};
+    brio_dynamic_periodic *gas = NULL;
+    brio_periodic *built = NULL;
+    brio_dynamic_periodic_stats facts = {.size = sizeof facts};
+    const brio_image *neighbours;
+    size_t count;
+    uint64_t lived, anew;
+    static double left[3 * NUM_PARTICLES];
+    CHECK(ctx, brio_dynamic_periodic_new(ctx, position, NULL, NUM_PARTICLES, &options, &gas));
+    for (int step = 0; step < STEPS; step++) {
+        for (size_t i = 0; i < 3 * NUM_PARTICLES; i++) position[i] += velocity[i];
+        CHECK(ctx, brio_dynamic_periodic_move(gas, NULL, position, NULL, NUM_PARTICLES));
+    }
+    CHECK(ctx, brio_dynamic_periodic_neighbours(gas, 0, &neighbours, &count));
+    printf("in space that repeats, particle 0 has %zu neighbours\n", count);
+    CHECK(ctx, brio_dynamic_periodic_facts(gas, &facts));
+    printf("some particles were taken out and put in again: %s\n", yes(facts.replaced > 0));
+    brio_dynamic_periodic_points(gas, NULL, left, NULL);
+    CHECK(ctx, brio_dynamic_periodic_checksum(ctx, gas, &lived));
+    CHECK(ctx, brio_delaunay_periodic(ctx, left, NULL, facts.points, &options, &built));
+    CHECK(ctx, brio_periodic_checksum(ctx, built, &anew));
+    printf("the same as built of the particles: %s\n", yes(lived == anew));
+    CHECK(ctx, brio_dynamic_periodic_check(ctx, gas));
+    printf("passes the exact check: yes\n");
+    brio_periodic_free(built);
+    brio_dynamic_periodic_free(gas);
 }
 
 int main(void) {
@@ -65,6 +97,7 @@ int main(void) {
 
     brio_triangulation_free(built);
     brio_dynamic_free(gas);
+    fly_in_space_that_repeats(ctx);
     brio_context_free(ctx);
     return 0;
 }

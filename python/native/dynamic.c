@@ -1,16 +1,19 @@
-/* Triangulations that live. Each has its own context, since its calls work with the context that made it; one call at
+/* Triangulations that live, in open space or in space that repeats. Each has its own context, since its calls work with the context that made it; one call at
  * a time uses it. */
 #include "native.h"
+#include <string.h>
 
 typedef struct {
     brio_context *ctx;
     brio_dynamic *d;
-    int busy; /* a call uses it; atomic */
+    brio_dynamic_periodic *wrapped; /* in space that repeats; then d is NULL */
+    int busy;                       /* a call uses it; atomic */
 } living;
 
 static void free_living(void *object) {
     living *l = object;
     brio_dynamic_free(l->d);
+    brio_dynamic_periodic_free(l->wrapped);
     brio_context_free(l->ctx);
     free(l);
 }
@@ -44,6 +47,39 @@ static PyObject *dynamic_new(PyObject *module, PyObject *args) {
     return call_end_with(&c, status, KIND_DYNAMIC, l, free_living, NULL);
 }
 
+/* dynamic_new_periodic(points, weights, weighted, cell, open, reach, threads, progress): one in space that repeats. */
+static PyObject *dynamic_new_periodic(PyObject *module, PyObject *args) {
+    PyObject *points, *weights, *cell, *progress, *result = NULL;
+    int threads;
+    brio_periodic_options o = {.size = sizeof o};
+    input p = {.held = 0}, w = {.held = 0}, m = {.held = 0};
+    call c;
+    if (!PyArg_ParseTuple(args, "OOiO(iii)diO", &points, &weights, &o.weighted, &cell, &o.open[0], &o.open[1],
+                          &o.open[2], &o.reach, &threads, &progress))
+        return NULL;
+    living *l = calloc(1, sizeof *l);
+    if (!l || brio_context_new(NULL, &l->ctx) != BRIO_OK) {
+        free(l);
+        return PyErr_NoMemory();
+    }
+    if (!input_open(&p, points, "points", 'd', 3) && !input_open_weights(&w, weights, p.rows) &&
+        !input_open(&m, cell, "cell", 'd', 3) && !input_has_rows(&m, "cell", 3) &&
+        !call_begin_in(&c, state_of(module), l->ctx, threads, progress)) {
+        brio_status status;
+        o.cell = m.data;
+        CALL(c, status, brio_dynamic_periodic_new(l->ctx, p.data, w.data, p.rows, &o, &l->wrapped));
+        if (!call_end(&c, status) && !call_begin(&c, state_of(module), 0, Py_None)) {
+            result = call_end_with(&c, BRIO_OK, KIND_DYNAMIC, l, free_living, NULL);
+            l = NULL; /* the handle has it, or it is freed */
+        }
+    }
+    if (l) free_living(l);
+    input_close(&m);
+    input_close(&w);
+    input_close(&p);
+    return result;
+}
+
 /* dynamic_insert(object, points, weights, threads, progress): the index of the first. */
 static PyObject *dynamic_insert(PyObject *module, PyObject *args) {
     PyObject *object, *points, *weights, *progress;
@@ -58,7 +94,9 @@ static PyObject *dynamic_insert(PyObject *module, PyObject *args) {
         if (!input_open_weights(&w, weights, p.rows) &&
             !call_begin_in(&c, state_of(module), l->ctx, threads, progress)) {
             brio_status status;
-            CALL(c, status, brio_dynamic_insert(l->d, p.data, w.data, p.rows, &first));
+            CALL(c, status,
+                 l->wrapped ? brio_dynamic_periodic_insert(l->wrapped, p.data, w.data, p.rows, &first)
+                            : brio_dynamic_insert(l->d, p.data, w.data, p.rows, &first));
             failed = call_end(&c, status);
         }
         input_close(&w);
@@ -66,6 +104,17 @@ static PyObject *dynamic_insert(PyObject *module, PyObject *args) {
     }
     leave(l);
     return failed ? NULL : PyLong_FromUnsignedLong(first);
+}
+
+static brio_status change(living *l, const uint32_t *indices, const double *points, const double *weights,
+                          size_t rows) {
+    if (l->wrapped)
+        return points    ? brio_dynamic_periodic_move(l->wrapped, indices, points, weights, rows)
+               : weights ? brio_dynamic_periodic_reweight(l->wrapped, indices, weights, rows)
+                         : brio_dynamic_periodic_remove(l->wrapped, indices, rows);
+    return points    ? brio_dynamic_move(l->d, indices, points, weights, rows)
+           : weights ? brio_dynamic_reweight(l->d, indices, weights, rows)
+                     : brio_dynamic_remove(l->d, indices, rows);
 }
 
 /* dynamic_change(object, indices, points, weights, threads, progress): removes the points of these indices where points
@@ -86,9 +135,8 @@ static PyObject *dynamic_change(PyObject *module, PyObject *args) {
     if (opened && !call_begin_in(&c, state_of(module), l->ctx, threads, progress)) {
         brio_status status;
         CALL(c, status,
-             points != Py_None    ? brio_dynamic_move(l->d, indices == Py_None ? NULL : i.data, p.data, w.data, rows)
-             : weights != Py_None ? brio_dynamic_reweight(l->d, i.data, w.data, rows)
-                                  : brio_dynamic_remove(l->d, i.data, rows));
+             change(l, indices == Py_None ? NULL : i.data, points == Py_None ? NULL : p.data,
+                    weights == Py_None ? NULL : w.data, rows));
         failed = call_end(&c, status);
     }
     input_close(&i);
@@ -99,9 +147,27 @@ static PyObject *dynamic_change(PyObject *module, PyObject *args) {
     Py_RETURN_NONE;
 }
 
+static PyObject *wrapped_facts(const living *l) {
+    brio_dynamic_periodic_stats s = {.size = sizeof s};
+    brio_dynamic_periodic_facts(l->wrapped, &s);
+    const double *c = s.cell;
+    return Py_BuildValue("{s:n,s:n,s:n,s:i,s:i,s:d,s:d,s:d,s:d,s:K,s:K,s:K,s:K,s:(ddddddddd)}", "indices",
+                         (Py_ssize_t)s.indices, "points", (Py_ssize_t)s.points, "translates", (Py_ssize_t)s.translates,
+                         "directions", s.directions, "dimension", s.dimension, "cell_volume", s.cell_volume,
+                         "cell_moved", s.cell_moved, "moved", s.moved, "reach", s.reach, "in_place",
+                         (unsigned long long)s.in_place, "replaced", (unsigned long long)s.replaced, "anew",
+                         (unsigned long long)s.anew, "snapshots", (unsigned long long)s.snapshots, "cell", c[0], c[1],
+                         c[2], c[3], c[4], c[5], c[6], c[7], c[8]);
+}
+
 static PyObject *dynamic_facts(PyObject *module, PyObject *object) {
     living *l = enter(module, object);
     if (!l) return NULL;
+    if (l->wrapped) {
+        PyObject *facts = wrapped_facts(l);
+        leave(l);
+        return facts;
+    }
     brio_dynamic_stats s = {.size = sizeof s};
     brio_dynamic_facts(l->d, &s);
     leave(l);
@@ -112,6 +178,16 @@ static PyObject *dynamic_facts(PyObject *module, PyObject *object) {
                          (unsigned long long)s.anew);
 }
 
+static size_t count_points(const living *l) {
+    brio_dynamic_stats s = {.size = sizeof s};
+    brio_dynamic_periodic_stats p = {.size = sizeof p};
+    if (l->wrapped)
+        brio_dynamic_periodic_facts(l->wrapped, &p);
+    else
+        brio_dynamic_facts(l->d, &s);
+    return s.points + p.points;
+}
+
 /* dynamic_points(object, indices, points, weights): arrays of as many rows as there are points. */
 static PyObject *dynamic_points(PyObject *module, PyObject *args) {
     PyObject *object, *indices, *points, *weights;
@@ -120,12 +196,14 @@ static PyObject *dynamic_points(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOOO", &object, &indices, &points, &weights)) return NULL;
     living *l = enter(module, object);
     if (!l) return NULL;
-    brio_dynamic_stats s = {.size = sizeof s};
-    brio_dynamic_facts(l->d, &s);
+    size_t count = count_points(l);
     if (!output_open(&i, indices, "indices", 'I', 0) && !output_open(&p, points, "points", 'd', 3) &&
-        !output_open(&w, weights, "weights", 'd', 0) && !input_has_rows(&i, "indices", s.points) &&
-        !input_has_rows(&p, "points", s.points) && !input_has_rows(&w, "weights", s.points)) {
-        brio_dynamic_points(l->d, i.data, p.data, w.data);
+        !output_open(&w, weights, "weights", 'd', 0) && !input_has_rows(&i, "indices", count) &&
+        !input_has_rows(&p, "points", count) && !input_has_rows(&w, "weights", count)) {
+        if (l->wrapped)
+            brio_dynamic_periodic_points(l->wrapped, i.data, p.data, w.data);
+        else
+            brio_dynamic_points(l->d, i.data, p.data, w.data);
         failed = 0;
     }
     input_close(&i);
@@ -136,26 +214,33 @@ static PyObject *dynamic_points(PyObject *module, PyObject *args) {
     Py_RETURN_NONE;
 }
 
-/* dynamic_neighbors(object, index): a bytes object of numbers of 32 bits. */
+/* dynamic_neighbors(object, index): a bytes object of numbers of 32 bits; in space that repeats four for each neighbour, its
+ * point and its shift. */
 static PyObject *dynamic_neighbors(PyObject *module, PyObject *args) {
     PyObject *object, *result = NULL;
     unsigned index;
-    const uint32_t *neighbours;
+    const uint32_t *neighbours = NULL;
+    const brio_image *images = NULL;
     size_t count;
     call c;
     if (!PyArg_ParseTuple(args, "OI", &object, &index)) return NULL;
     living *l = enter(module, object);
     if (!l) return NULL;
     if (!call_begin_in(&c, state_of(module), l->ctx, 1, Py_None)) {
-        brio_status status = brio_dynamic_neighbours(l->d, index, &neighbours, &count);
+        brio_status status;
+        CALL(c, status,
+             l->wrapped ? brio_dynamic_periodic_neighbours(l->wrapped, index, &images, &count)
+                        : brio_dynamic_neighbours(l->d, index, &neighbours, &count));
         if (!call_end(&c, status))
-            result = PyBytes_FromStringAndSize((const char *)neighbours, (Py_ssize_t)(count * sizeof *neighbours));
+            result =
+                PyBytes_FromStringAndSize(l->wrapped ? (const char *)images : (const char *)neighbours,
+                                          (Py_ssize_t)(count * (l->wrapped ? sizeof *images : sizeof *neighbours)));
     }
     leave(l);
     return result;
 }
 
-/* dynamic_locate(object, queries, out): the four vertices for each query. */
+/* dynamic_locate(object, queries, out): the four vertices for each query; in space that repeats each with a shift. */
 static PyObject *dynamic_locate(PyObject *module, PyObject *args) {
     PyObject *object, *queries, *array;
     input q = {.held = 0}, out = {.held = 0};
@@ -164,13 +249,17 @@ static PyObject *dynamic_locate(PyObject *module, PyObject *args) {
     if (!PyArg_ParseTuple(args, "OOO", &object, &queries, &array)) return NULL;
     living *l = enter(module, object);
     if (!l) return NULL;
-    if (!input_open(&q, queries, "queries", 'd', 3) && !output_open(&out, array, "out", 'I', 4) &&
+    if (!input_open(&q, queries, "queries", 'd', 3) && !output_open(&out, array, "out", 'I', l->wrapped ? 16 : 4) &&
         !input_has_rows(&out, "out", q.rows) && !call_begin_in(&c, state_of(module), l->ctx, 1, Py_None)) {
         brio_status status = BRIO_OK;
         const double *x = q.data;
         uint32_t *v = out.data;
-        for (size_t i = 0; i < q.rows && status == BRIO_OK; i++)
-            status = brio_dynamic_locate(l->d, x + 3 * i, v + 4 * i);
+        brio_image image[4];
+        for (size_t i = 0; i < q.rows && status == BRIO_OK; i++) {
+            status = l->wrapped ? brio_dynamic_periodic_locate(l->wrapped, x + 3 * i, image)
+                                : brio_dynamic_locate(l->d, x + 3 * i, v + 4 * i);
+            if (l->wrapped) memcpy(v + 16 * i, image, sizeof image);
+        }
         failed = call_end(&c, status);
     }
     input_close(&q);
@@ -183,20 +272,27 @@ static PyObject *dynamic_locate(PyObject *module, PyObject *args) {
 static void free_snapshot(void *t) {
     brio_triangulation_free(t);
 }
+static void free_wrapped_snapshot(void *t) {
+    brio_periodic_free(t);
+}
 
 /* dynamic_snapshot(object, threads, progress): a triangulation of the points by ascending index. */
 static PyObject *dynamic_snapshot(PyObject *module, PyObject *args) {
     PyObject *object, *progress, *result = NULL;
     int threads;
     brio_triangulation *t = NULL;
+    brio_periodic *p = NULL;
     call c;
     if (!PyArg_ParseTuple(args, "OiO", &object, &threads, &progress)) return NULL;
     living *l = enter(module, object);
     if (!l) return NULL;
     if (!call_begin(&c, state_of(module), threads, progress)) {
         brio_status status;
-        CALL(c, status, brio_dynamic_snapshot(c.ctx, l->d, &t));
-        result = call_end_with(&c, status, KIND_TRIANGULATION, t, free_snapshot, NULL);
+        CALL(c, status,
+             l->wrapped ? brio_dynamic_periodic_snapshot(c.ctx, l->wrapped, &p)
+                        : brio_dynamic_snapshot(c.ctx, l->d, &t));
+        result = l->wrapped ? call_end_with(&c, status, KIND_PERIODIC, p, free_wrapped_snapshot, NULL)
+                            : call_end_with(&c, status, KIND_TRIANGULATION, t, free_snapshot, NULL);
     }
     leave(l);
     return result;
@@ -204,6 +300,8 @@ static PyObject *dynamic_snapshot(PyObject *module, PyObject *args) {
 
 PyMethodDef dynamic_methods[] = {
     {"dynamic_new", dynamic_new, METH_VARARGS, "dynamic_new(weighted)"},
+    {"dynamic_new_periodic", dynamic_new_periodic, METH_VARARGS,
+     "dynamic_new_periodic(points, weights, weighted, cell, open, reach, threads, progress)"},
     {"dynamic_insert", dynamic_insert, METH_VARARGS, "dynamic_insert(d, points, weights, threads, progress)"},
     {"dynamic_change", dynamic_change, METH_VARARGS, "dynamic_change(d, indices, points, weights, threads, progress)"},
     {"dynamic_facts", dynamic_facts, METH_O, "dynamic_facts(d)"},

@@ -178,3 +178,61 @@ def test_arrays_of_others_go_in_and_out_by_dlpack():
     if np.lib.NumpyVersion(np.__version__) >= "2.1.0":  # older ones export no arrays that cannot be written
         for array in (tri.points, tri.indices, tri.weights, tri.snapshot().simplices, new):
             assert np.shares_memory(np.from_dlpack(array), array)
+
+
+# --- space that repeats ---
+
+CELL = np.array([[1, 0, 0], [0.5, 0.75, 0], [0.25, -0.5, 1.25]])
+
+
+def is_as_fresh(tri):
+    now = tri.snapshot()
+    fresh = brio.Delaunay(tri.points, tri.weights, cell=CELL, periodic=tri.periodic)
+    return now.checksum == fresh.checksum and now.nsimplex == fresh.nsimplex and now.check()
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+@pytest.mark.parametrize("periodic", ["xyz", "xz"])
+def test_changes_in_space_that_repeats_end_as_a_fresh_build(weighted, periodic):
+    tri = brio.DynamicDelaunay(GENERATOR.random((60, 3)) @ CELL, cell=CELL, periodic=periodic, weighted=weighted)
+    assert isinstance(tri, brio.PeriodicDynamicDelaunay) and tri.weighted == weighted
+    for _ in range(8):
+        tri.insert((2 * GENERATOR.random((5, 3)) - 0.5) @ CELL, GENERATOR.random(5) * 0.02 if weighted else None)
+        tri.remove(GENERATOR.permutation(tri.indices)[:4])
+        some = GENERATOR.permutation(tri.indices)[:6]
+        tri.move(some, GENERATOR.random((6, 3)) @ CELL)
+        tri.move_all(tri.points + 0.01 * GENERATOR.standard_normal((len(tri), 3)))
+        if weighted:
+            tri.reweight(some, GENERATOR.random(6) * 0.02)
+        assert is_as_fresh(tri)
+    assert tri.facts["translates"] > tri.facts["points"] == len(tri)
+
+
+def test_neighbours_in_space_that_repeats_have_shifts():
+    points = GENERATOR.random((400, 3))
+    tri = brio.DynamicDelaunay(points, cell=[1, 1, 1])
+    vor = brio.Voronoi(points, cell=[1, 1, 1])
+    for vertex in (0, 7, 399):
+        index, shifts = tri.neighbors(vertex)
+        span = slice(*vor.neighbor_offsets[vertex:vertex + 2])
+        wanted = np.column_stack([vor.neighbor_points[span], vor.neighbor_shifts[span]])
+        assert set(map(tuple, np.column_stack([index, shifts]).tolist())) >= set(map(tuple, wanted.tolist()))
+    queries = 3 * GENERATOR.random((20, 3)) - 1
+    found, shifts = tri.find_vertices(queries)
+    corners = points[found] + shifts
+    inside = np.linalg.solve((corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1), (queries - corners[:, 0])[:, :, None])[:, :, 0]
+    assert (inside > -1e-9).all() and (inside.sum(axis=1) < 1 + 1e-9).all()
+
+
+def test_what_fails_in_space_that_repeats_changes_nothing():
+    tri = brio.DynamicDelaunay([[0.5, 0.5, 0.5]], cell=[1, 1, 1])
+    before = tri.snapshot().checksum
+    for wrong in ([99], [-1], [0, 0]):
+        with pytest.raises(brio.ArgumentError):
+            tri.remove(wrong)
+    with pytest.raises(brio.ArgumentError):
+        tri.insert([[1e12, 0, 0]])
+    with pytest.raises(brio.ArgumentError):
+        brio.DynamicDelaunay([[0, 0, 0]], cell=[1, 1])
+    assert tri.snapshot().checksum == before and len(tri) == 1
+    assert len(brio.DynamicDelaunay(cell=[1, 1, 1])) == 0

@@ -27,7 +27,7 @@ static void any_changes_end_as_a_fresh_build(void) {
         for (int weighted = 0; weighted < 2; weighted++)
             for (int open = 0; open < 7; open++)
                 for (int cell = 0; cell < WRAPPED_CELLS; cell++) {
-                    if (SHORT_TESTS && (open + 3 * cell + 2 * s + weighted) % (BRIEF_TESTS ? 9 : 7)) continue;
+                    if (SHORT_TESTS && (open + 3 * cell + 2 * s + weighted) % (BRIEF_TESTS ? 17 : 9)) continue;
                     changes(SHAPES[s], weighted, cell, open, 3, SHORT_TESTS ? 16 : 40, SHORT_TESTS ? 2 : 1);
                     changes(SHAPES[s], weighted, cell, open, SHORT_TESTS ? 40 : 100, SHORT_TESTS ? 20 : 60,
                             SHORT_TESTS ? 10 : 7);
@@ -94,7 +94,65 @@ static void translates_that_come_and_go_need_no_room(void) {
     wrapped_free(&w);
 }
 
+/* Two points at one place, of which the first one's translates went and came back: there the second one's were the
+ * vertices, whose classes had no mates. */
+static void points_at_one_place_have_one_vertex(void) {
+    static const double NEAR[6] = {0.01, 0.5, 0.5, 0.01, 0.5, 0.5}, AWAY[3] = {0.5, 0.5, 0.5};
+    wrapped w = wrapped_new(UNIFORM, 0, 0, 0, 400);
+    uint32_t first, gone;
+    wrapped_start(&w);
+    EXPECT(brio_dynamic_periodic_insert(w.d, NEAR, NULL, 2, &first) == BRIO_OK);
+    for (int i = 0; i < 2; i++, w.num_points++) w.alive[w.num_indices++] = 1;
+    memcpy(w.point, (double[8]){0.01, 0.5, 0.5, 0, 0.01, 0.5, 0.5, 0}, 8 * sizeof(double));
+    fill_wrapped(&w, 300);
+    EXPECT(brio_dynamic_periodic_move(w.d, &first, AWAY, NULL, 1) == BRIO_OK);
+    EXPECT(brio_dynamic_periodic_move(w.d, &first, NEAR, NULL, 1) == BRIO_OK);
+    const brio_image *neighbours;
+    size_t count = 0;
+    for (uint32_t i = 0; i < 2; i++) {
+        EXPECT(brio_dynamic_periodic_neighbours(w.d, i, &neighbours, &count) == BRIO_OK && (count > 0) == (i == 0));
+    }
+    EXPECT(is_as_fresh(&w));
+    EXPECT(brio_dynamic_periodic_check(w.ctx, w.d) == BRIO_OK, "%s", brio_message(w.ctx));
+    gone = 0;
+    EXPECT(brio_dynamic_periodic_remove(w.d, &gone, 1) == BRIO_OK);
+    w.alive[0] = 0, w.num_points--;
+    EXPECT(is_as_fresh(&w));
+    wrapped_free(&w);
+}
+
 /* --- failures --- */
+
+/* All points move together, and memory runs out when some translates come and go: their records were written without
+ * a journal. */
+static void failures_after_a_move_of_all_leave_all(void) {
+    enum { POINTS = 1050 };
+    static double p[3 * POINTS];
+    failing_memory memory = {0, 0};
+    brio_allocator allocator = {failing_alloc, failing_realloc, failing_free, &memory};
+    wrapped w = wrapped_new(UNIFORM, 0, 0, 0, POINTS);
+    size_t failed = 0;
+    brio_context_free(w.ctx);
+    EXPECT(brio_context_new(&allocator, &w.ctx) == BRIO_OK);
+    brio_context_set_threads(w.ctx, 1);
+    wrapped_start(&w);
+    fill_wrapped(&w, POINTS);
+    for (size_t i = 0; i < POINTS; i++)
+        for (size_t c = 0; c < 3; c++) p[3 * i + c] = w.point[4 * i + c] + (c == 0 ? 0.01 : 0) + 2e-4 * draw();
+    brio_status status = BRIO_ERR_NO_MEMORY;
+    for (size_t k = 1; status != BRIO_OK; k += BRIEF_TESTS ? 5 : 1) {
+        memory.left = k;
+        status = brio_dynamic_periodic_move(w.d, NULL, p, NULL, POINTS);
+        memory.left = 0;
+        failed += status == BRIO_ERR_NO_MEMORY;
+        if (status == BRIO_OK || (SHORT_TESTS && k % 8)) continue;
+        EXPECT(status == BRIO_ERR_NO_MEMORY && brio_dynamic_periodic_check(w.ctx, w.d) == BRIO_OK, "%s",
+               brio_message(w.ctx));
+    }
+    for (size_t i = 0; i < POINTS; i++) memcpy(w.point + 4 * i, p + 3 * i, 3 * sizeof *p);
+    EXPECT(failed > 4 && is_as_fresh(&w) && are_in_place(&w));
+    wrapped_free(&w);
+}
 
 /* One of each kind of change fails at each request for memory, or is stopped at each look; all stays as it was. */
 static void failures_leave_all(void) {
@@ -114,7 +172,7 @@ static void failures_leave_all(void) {
             brio_status status = BRIO_ERR_NO_MEMORY;
             EXPECT(brio_dynamic_periodic_checksum(w.ctx, w.d, &before) == BRIO_OK);
             draw_wish(&w, kind % 4, many ? 40 : 2, 0.125, &v); /* 40 that come or go: built anew */
-            for (size_t k = 1; status != BRIO_OK; k += SHORT_TESTS ? 5 : 1) {
+            for (size_t k = 1; status != BRIO_OK; k += SHORT_TESTS ? 9 : 1) {
                 memory.left = kind % 3 ? k : 0;
                 looks = kind % 3 ? 0 : k;
                 brio_context_set_progress(w.ctx, looks ? stop_at : NULL, &looks);
@@ -138,17 +196,12 @@ static void failures_leave_all(void) {
 }
 
 static brio_status make_and_ask(brio_context *ctx) {
-    static const double POINTS[] = {0.1, 0.2, 0.3, 0.6, 0.5, 0.9, 0.4, 0.8, 0.1}, AT[3] = {0.5, 0.5, 0.5};
+    static const double POINTS[] = {0.1, 0.2, 0.3, 0.6, 0.5, 0.9}, AT[3] = {0.5, 0.5, 0.5};
     brio_periodic_options o = {.size = sizeof o, .cell = WRAPPED_CELL[0], .halo = 1e-3};
     brio_dynamic_periodic *d = NULL;
-    const brio_image *neighbours;
     brio_image vertices[4];
-    uint64_t checksum;
-    size_t count;
-    brio_status status = brio_dynamic_periodic_new(ctx, POINTS, NULL, 3, &o, &d);
-    if (status == BRIO_OK) status = brio_dynamic_periodic_neighbours(d, 1, &neighbours, &count);
+    brio_status status = brio_dynamic_periodic_new(ctx, POINTS, NULL, 2, &o, &d);
     if (status == BRIO_OK) status = brio_dynamic_periodic_locate(d, AT, vertices);
-    if (status == BRIO_OK) status = brio_dynamic_periodic_checksum(ctx, d, &checksum);
     brio_dynamic_periodic_free(d);
     return status;
 }
@@ -276,15 +329,15 @@ static void few_questions_need_a_snapshot(void) {
     size_t count, sum = 0, before = 0;
     brio_dynamic_periodic_stats s = {.size = sizeof s};
     wrapped_start(&w);
-    fill_wrapped(&w, 1500);
-    for (uint32_t i = 0; i < 1500 && before < 40; i++, before = s.snapshots) {
+    fill_wrapped(&w, 1000);
+    for (uint32_t i = 0; i < 1000 && before < 40; i++, before = s.snapshots) {
         EXPECT(brio_dynamic_periodic_neighbours(w.d, i, &neighbours, &count) == BRIO_OK);
         EXPECT(brio_dynamic_periodic_facts(w.d, &s) == BRIO_OK);
         sum += count;
         if (s.snapshots > before) brio_wrapped_forget(w.d);
     }
     EXPECT(s.snapshots < 15, "%llu snapshots", (unsigned long long)s.snapshots);
-    EXPECT((double)sum / 1500 > 15.2 && (double)sum / 1500 < 15.8, "%g neighbours", (double)sum / 1500);
+    EXPECT((double)sum / 1000 > 15 && (double)sum / 1000 < 16, "%g neighbours", (double)sum / 1000);
     wrapped_free(&w);
 }
 
@@ -292,6 +345,8 @@ SUITE(test_dynamic_periodic) {
     RUN(any_changes_end_as_a_fresh_build);
     RUN(points_drift_round_the_box);
     RUN(translates_that_come_and_go_need_no_room);
+    RUN(points_at_one_place_have_one_vertex);
+    RUN(failures_after_a_move_of_all_leave_all);
     RUN(failures_leave_all);
     RUN(memory_that_runs_out_is_reported);
     RUN(wrong_arguments_are_refused);

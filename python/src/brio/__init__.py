@@ -4,7 +4,7 @@ from . import errors
 from ._alpha import AlphaComplex, AlphaShape, alpha_complex
 from ._curves import Curve, curve, spanning_tree
 from ._delaunay import Delaunay
-from ._dynamic import DynamicDelaunay
+from ._dynamic import DynamicDelaunay, PeriodicDynamicDelaunay
 from ._files import Conversion, build_info, convert, read, write
 from ._halfspaces import HalfspaceIntersection
 from ._hull import ConvexHull
@@ -21,7 +21,7 @@ from .errors import *  # noqa: F403
 
 __all__ = [
     "AlphaComplex", "AlphaShape", "Certificate", "Conversion", "ConvexHull", "Coverage", "Curve", "Delaunay", "Distance",
-    "DynamicDelaunay",
+    "DynamicDelaunay", "PeriodicDynamicDelaunay",
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "Page", "PeriodicAlphaComplex",
     "PeriodicAlphaShape", "PeriodicDelaunay", "PeriodicVoronoi", "Picture",
     "SphericalVoronoi", "Surface",

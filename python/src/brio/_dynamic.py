@@ -9,6 +9,7 @@ from . import _calls, _native
 from ._arrays import Floats, as_array, as_rows, as_weights
 from ._calls import Progress, reporting
 from ._delaunay import Delaunay
+from ._periodic import PeriodicDelaunay, as_cell, as_periodic, of_handle
 from .errors import ArgumentError, NotFiniteError
 
 Indices = NDArray[np.uint32]
@@ -26,6 +27,8 @@ class DynamicDelaunay:
         They get the indices 0 to n - 1.
     weights : array_like, shape (n,), optional
         With weights w, distances are power distances: squared distance minus w.
+    cell, periodic, reach : optional
+        In space that repeats: see ``brio.PeriodicDynamicDelaunay``, which this makes then.
     weighted : bool
         Whether points may have weights; implied by `weights`.
     threads : int
@@ -61,7 +64,10 @@ class DynamicDelaunay:
     (2, 4)
     """
 
-    def __init__(self, points: Any = None, weights: Any = None, *, weighted: bool = False, threads: int = 0,
+    def __new__(cls, points: Any = None, weights: Any = None, *, cell: Any = None, **options: Any) -> Any:
+        return object.__new__(cls if cell is None else PeriodicDynamicDelaunay)
+
+    def __init__(self, points: Any = None, weights: Any = None, *, cell: Any = None, weighted: bool = False, threads: int = 0,
                  progress: bool | Progress | None = None) -> None:
         self.threads = threads
         self.progress = progress
@@ -165,6 +171,91 @@ class DynamicDelaunay:
         same.__dict__ = {"threads": self.threads, "progress": self.progress, "_closed": False, "points": points,
                          "weights": weights, "_handle": handle}
         return same
+
+
+class PeriodicDynamicDelaunay(DynamicDelaunay):
+    """The same of points in space that repeats: ``brio.DynamicDelaunay(points, cell=...)`` makes it.
+
+    After any changes it is ``brio.Delaunay(points, cell=cell)`` of the points that are left. The grid on which positions
+    are exact is chosen with the first points and stays; `points` are the positions on it. Points may be in any cell, and
+    may move over its borders.
+
+    Parameters
+    ----------
+    points, weights, weighted, threads, progress
+        As of ``brio.DynamicDelaunay``.
+    cell : array_like, shape (3, 3) or (3,)
+        The vectors of the cell, a row each, of any shape; or the lengths of a box.
+    periodic : str or three truth values
+        The directions that repeat: "xy" is a slab.
+    reach : float, optional
+        Where not all directions repeat: points may be half of it away from the first ones, in coordinates in which
+        vectors of the cell go anywhere. The grid is as much coarser.
+
+    Attributes
+    ----------
+    indices, points, weights
+        As of ``brio.DynamicDelaunay``.
+    cell : ndarray of float64, shape (3, 3)
+        The vectors as they are used: on the grid.
+    facts : dict
+        Counts: indices given out, points, translates that are kept, and as of ``brio.DynamicDelaunay``; what was moved
+        when points and cell were put on the grid; snapshots that questions needed.
+
+    Examples
+    --------
+    >>> import brio
+    >>> gas = brio.DynamicDelaunay([[0.1, 0.1, 0.1], [0.6, 0.5, 0.4]], cell=[1, 1, 1])
+    >>> gas.move([0], [[-0.1, 0.1, 0.1]])  # over the border
+    >>> gas.snapshot().check()
+    True
+    """
+
+    def __init__(self, points: Any = None, weights: Any = None, *, cell: Any, periodic: Any = True, reach: float = 0,
+                 weighted: bool = False, threads: int = 0, progress: bool | Progress | None = None) -> None:
+        self.threads = threads
+        self.progress = progress
+        self.weighted = bool(weighted) or weights is not None
+        self.periodic = as_periodic(periodic)
+        self._given = as_cell(cell)
+        unused = tuple(int(not repeats) for repeats in self.periodic)
+        rows = as_rows(np.empty((0, 3)) if points is None else points, "points")
+
+        def build(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
+            return _native.dynamic_new_periodic(p, w, int(self.weighted), self._given, unused, float(reach), threads, report)
+
+        self._handle = _calls.of_points(build, rows, as_weights(weights, len(rows)), threads, progress)
+        vectors = np.reshape(self.facts["cell"], (3, 3))
+        self.cell = np.where(np.asarray(self.periodic)[:, None], vectors, self._given)
+
+    def neighbors(self, index: int) -> tuple[Indices, NDArray[np.int32]]:  # type: ignore[override]
+        """Returns the vertices that share an edge with one: ``points[indices] + shifts @ cell``, as two arrays.
+
+        A vertex can have several neighbours that are translates of one point, also of itself.
+        """
+        which = _as_indices([index])
+        rows = np.frombuffer(_native.dynamic_neighbors(self._handle, int(which[0])), np.uint32).reshape(-1, 4)
+        return rows[:, 0], rows[:, 1:].view(np.int32)
+
+    def find_vertices(self, queries: Any) -> tuple[NDArray[np.int64], NDArray[np.int32]]:  # type: ignore[override]
+        """Returns, for each position, the indices and the shifts of the vertices of a simplex that holds it.
+
+        The shapes are (n, 4) and (n, 4, 3); indices are -1 outside of the hull.
+        """
+        rows = as_rows(queries, "queries")
+        out = np.empty((len(rows), 16), np.uint32)
+        _native.dynamic_locate(self._handle, rows, out)
+        images = out.reshape(-1, 4, 4)
+        found = images[:, :, 0].astype(np.int64)
+        found[images[:, :, 0] == np.iinfo(np.uint32).max] = -1
+        return found, np.ascontiguousarray(images[:, :, 1:]).view(np.int32)
+
+    def snapshot(self) -> PeriodicDelaunay:  # type: ignore[override]
+        """Returns the triangulation as it is now: rows of its points are those of `indices`."""
+        points, weights = self.points, self.weights
+        with reporting(self.progress) as report:
+            handle = _native.dynamic_snapshot(self._handle, self.threads, report)
+        return of_handle(handle, points, weights, self._given, self.periodic)
 
 
 def _as_indices(indices: Any) -> Indices:

@@ -110,7 +110,12 @@ class PeriodicDelaunay:
         def build(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
             return _native.periodic(p, w, vectors, unused, threads, report)
 
-        self._handle = _calls.of_points(build, self.points, self.weights, threads, progress)
+        self._show(_calls.of_points(build, self.points, self.weights, threads, progress))
+
+    def _show(self, handle: Any) -> None:
+        """Takes what a handle has."""
+        vectors = self._given
+        self._handle = handle
         self.facts: dict[str, Any] = _native.periodic_facts(self._handle)
         self.cell = np.where(np.asarray(self.periodic)[:, None], np.reshape(self.facts.pop("cell"), (3, 3)), vectors)
         images = self._view(_IMAGES)
@@ -229,6 +234,14 @@ class PeriodicDelaunay:
 
     def __repr__(self) -> str:
         return f"<brio.PeriodicDelaunay of {self.npoints} points: {self.nsimplex} simplices>"
+
+
+def of_handle(handle: Any, points: Floats, weights: Floats | None, cell: Floats, periodic: tuple[bool, bool, bool]) -> PeriodicDelaunay:
+    """A triangulation that is there."""
+    same = object.__new__(PeriodicDelaunay)
+    same.points, same.weights, same.periodic, same._given = points, weights, periodic, np.array(cell)
+    same._show(handle)
+    return same
 
 
 def _made_again(points: Floats, weights: Floats | None, cell: Floats, periodic: tuple[bool, bool, bool]) -> PeriodicDelaunay:
