@@ -231,7 +231,7 @@ def test_errors_can_be_pickled():
 
 def test_progress_is_reported():
     seen = []
-    brio.Delaunay(GENERATOR.random((300_000, 3)), threads=1, progress=lambda stage, part: seen.append((stage, part)))
+    brio.Delaunay(GENERATOR.random((150_000, 3)), threads=1, progress=lambda stage, part: seen.append((stage, part)))
     assert seen and all(isinstance(stage, str) and 0 <= part <= 1 for stage, part in seen)
     assert [part for _, part in seen] == sorted(part for _, part in seen)
 
@@ -262,5 +262,5 @@ def test_a_progress_function_may_build_and_drop_others():
     def nested(stage, part):
         kept[:] = [brio.Delaunay(GENERATOR.random((100, 3)))]
 
-    brio.Delaunay(GENERATOR.random((300_000, 3)), progress=nested).verify()
+    brio.Delaunay(GENERATOR.random((100_000, 3)), progress=nested).verify()
     kept[0].verify()

@@ -104,7 +104,7 @@ print(sum(outcomes.values()), outcomes)
 """
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+@pytest.mark.parametrize("seed", [1, 2, 3, 4] if os.environ.get("BRIO_LONG") else [1, 2])
 def test_hostile_calls(alone, seed):
     calls = 2500 if os.environ.get("BRIO_LONG") else 400
     out = alone(HOSTILE, str(seed), str(calls), timeout=300)
@@ -112,7 +112,7 @@ def test_hostile_calls(alone, seed):
 
 
 # Seconds of changes, for each of the programs below.
-CHANGED_SECONDS = "3" if os.environ.get("BRIO_LONG") else "0.5"
+CHANGED_SECONDS = "3" if os.environ.get("BRIO_LONG") else "0.25"
 
 CHANGED = r"""
 import sys, threading, time
@@ -199,13 +199,13 @@ import resource, numpy as np, brio
 def most():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
-points = np.random.default_rng(1).random((4_000_000, 3))
+points = np.random.default_rng(1).random((1_500_000, 3))
 brio.ConvexHull(points[:1000])
 before = most()
 brio.ConvexHull(points)
 print(most() - before)
 """)
-    assert float(grown) < 4_000_000 * 24 / 2**20 / 2  # MiB: half a copy
+    assert float(grown) < 1_500_000 * 24 / 2**20 / 2  # MiB: half a copy
 
 
 FORK = r"""
@@ -366,7 +366,7 @@ def build(seed):
     try:
         # The library calls back 50 times a second: a call that is too short for that is repeated.
         while not met:
-            brio.Delaunay(np.random.default_rng(seed).random((300_000, 3)), threads=1, progress=progress)
+            brio.Delaunay(np.random.default_rng(seed).random((100_000, 3)), threads=1, progress=progress)
     except BaseException as error:
         errors.append(repr(error))
 
@@ -395,7 +395,7 @@ for d in 2, 3:
     wanted, wrong = brio.Delaunay(p).find_simplex(p), []
     def use():
         try:
-            for _ in range(20):
+            for _ in range(8):
                 if (tri.find_simplex(p) != wanted).any(): wrong.append("simplex")
                 tri.neighbors, tri.transform, tri.vertex_neighbor_vertices, tri.checksum
                 if len(hull.equations) != len(hull.simplices): wrong.append("hull")

@@ -36,7 +36,7 @@ static inline void failing_free(void *block, void *user) {
  * each failure must be BRIO_ERR_NO_MEMORY and leave nothing behind. */
 static inline void expect_clean_failures(brio_status (*work)(brio_context *ctx)) {
     brio_status status = BRIO_ERR_NO_MEMORY;
-    for (size_t k = 1; k < 2000 && status != BRIO_OK; k += BRIEF_TESTS ? 3 : 1) {
+    for (size_t k = 1; k < 2000 && status != BRIO_OK; k += BRIEF_TESTS ? 3 + k / 16 : 1) {
         failing_memory memory = {0, 0};
         brio_allocator allocator = {failing_alloc, failing_realloc, failing_free, &memory};
         brio_context *ctx;

@@ -131,7 +131,7 @@ static void volumes_add_up_to_the_box(void) {
             brio_mesh *m;
             EXPECT(brio_generate(ctx, (brio_kind)kind,
                                  kind == BRIO_KIND_MOMENT ? 200
-                                 : BRIEF_TESTS            ? 800
+                                 : SHORT_TESTS            ? 800
                                                           : 3000,
                                  NULL, &m) == BRIO_OK);
             double box[6], *weights = malloc(m->num_vertices * sizeof *weights);
@@ -320,7 +320,7 @@ static void expect_volumes(brio_context *ctx, const double *points, const double
 }
 
 static void volumes_alone_equal_those_with_faces(void) {
-    enum { N = 3000 };
+    enum { N = BRIEF_TESTS ? 1500 : 3000 };
     brio_context *ctx = new_context();
     double *points = malloc(3 * N * sizeof *points), *weights = malloc(N * sizeof *weights);
     const double box[6] = {-0.5, -0.5, -0.5, 7.5, 7.5, 7.5}, inner[6] = {0.25, 0.25, 0.25, 0.75, 0.75, 0.75};
@@ -348,7 +348,7 @@ static void volumes_alone_equal_those_with_faces(void) {
 }
 
 static void volumes_alone_have_the_same_bits_with_threads(void) {
-    enum { N = 30000 };
+    enum { N = BRIEF_TESTS ? 10000 : 30000 };
     brio_context *ctx = new_context();
     double *points = malloc(3 * N * sizeof *points);
     brio_cells_options o = {0};

@@ -432,7 +432,7 @@ static void cancelled_moves_of_all_leave_all(void) {
         EXPECT(brio_dynamic_new(w.ctx, NULL, NULL, 0, 0, &w.d) == BRIO_OK);
         insert_many(&w, n);
         brio_context_set_progress(w.ctx, stop_at_a_look, &w);
-        for (size_t k = 1; k < 1000000 && status != BRIO_OK; k += 1 + k / (BRIEF_TESTS ? 4 : 60)) {
+        for (size_t k = 1; k < 1000000 && status != BRIO_OK; k += 1 + k / (BRIEF_TESTS ? 4 : SHORT_TESTS ? 12 : 60)) {
             for (size_t i = 0; i < 3 * n; i++) p[i] = w.point[i] + SHARE[s] / cbrt((double)n) * (2 * draw() - 1);
             w.looks = k;
             w.ctx->unlooked = BRIO_LOOK_EVERY;

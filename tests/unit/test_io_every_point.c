@@ -166,6 +166,7 @@ static void write_it(void) {
     for (size_t i = 0; m && i < TARGETS; i++)
         for (way = 0; way < 3; way++) {
             target = targets[i];
+            if (BRIEF_TESTS && (taken + i + (size_t)way) % 2) continue; /* the next sample takes it */
             if (write_mesh(io_ctx) == BRIO_OK) expect_every_point(write_mesh, true);
         }
     brio_mesh_free(m);

@@ -315,7 +315,7 @@ static void fill_anywhere(int value, const char *what) {
     for (int k = 0; k < SAMPLES; k++) {
         size_t size = samples[k].compressed_size;
         uint8_t *bytes = malloc(size);
-        for (size_t n = 0; n + 8 <= size; n++) {
+        for (size_t n = 0; n + 8 <= size; n += BRIEF_TESTS ? 3 : 1) {
             memcpy(bytes, samples[k].compressed, size);
             memset(bytes + n, value, n % 2 ? 8 : 4);
             expect_status("a.laz", bytes, size, what, n);

@@ -61,10 +61,11 @@ static void small_inputs_are_closed_manifold_oriented(void) {
 static void points_without_a_surface_are_closed_manifold_oriented(void) {
     static double p[3 * 20000];
     brio_context *ctx = context_of(1);
-    uniform_points(5, 20000, p);
-    is_certified(ctx, p, 20000, 0);
-    integer_points(6, 20000, 14, p);
-    is_certified(ctx, p, 20000, 1);
+    const size_t n = BRIEF_TESTS ? 8000 : 20000;
+    uniform_points(5, n, p);
+    is_certified(ctx, p, n, 0);
+    integer_points(6, n, BRIEF_TESTS ? 10 : 14, p);
+    is_certified(ctx, p, n, 1);
     brio_context_free(ctx);
 }
 

@@ -182,7 +182,7 @@ static double most_history_tests(const brio_delaunay_stats *s, bool all_conflict
 }
 
 static void history_tests_grow_as_the_logarithm(void) {
-    for (size_t n = 1000; n <= 16000; n *= 4) {
+    for (size_t n = 1000; n <= (BRIEF_TESTS ? 4000 : 16000); n *= 4) {
         double *p = malloc(3 * n * sizeof *p);
         uniform_points(1, n, p);
         for (int all = 0; all < 2; all++) {
@@ -214,7 +214,7 @@ static void history_tests_of_sorted_points_are_many(void) {
 /* The second point of a pair is found from the first by tracing, through one tetrahedron or two, in each of the two
  * tracings; the first is found from the root. So half of the tests are left. Without edges nothing is traced. */
 static void traced_pairs_save_their_history_tests(void) {
-    enum { MANY = 8000, TRACINGS = 2 };
+    enum { MANY = BRIEF_TESTS ? 3000 : 8000, TRACINGS = 2 };
     uint32_t *pairs;
     double *many = paired_points(MANY, &pairs);
     for (int all = 0; all < 2; all++) {

@@ -9,7 +9,13 @@
 
 #define PI 3.141592653589793
 
-enum { UNKNOWN = -1, PLACES_A_FACE = SHORT_TESTS ? 3 : 8, PLACES = SHORT_TESTS ? 5000 : 20000 };
+enum {
+    UNKNOWN = -1,
+    PLACES_A_FACE = SHORT_TESTS ? 3 : 8,
+    PLACES = SHORT_TESTS ? 5000 : 20000,
+    SIDES = SHORT_TESTS ? 12 : 32,
+    TURNS = SHORT_TESTS ? 32 : 48
+};
 
 /* --- solids --- */
 
@@ -225,12 +231,12 @@ static brio_mesh *unit_cube(brio_context *ctx) {
     return cube(ctx, 0, 1);
 }
 
-static brio_mesh *prism_32(brio_context *ctx) {
-    return regular_prism(ctx, 32);
+static brio_mesh *prism_of_many(brio_context *ctx) {
+    return regular_prism(ctx, SIDES);
 }
 
-static brio_mesh *torus_64(brio_context *ctx) {
-    return torus(ctx, 48, 24);
+static brio_mesh *torus_of_many(brio_context *ctx) {
+    return torus(ctx, TURNS, TURNS / 2);
 }
 
 /* Volume of a prism grown by d: base area A, perimeter P, height h, turn of the base 2 pi (convex). */
@@ -245,10 +251,11 @@ static void cube_has_sharp_corners_inside_and_round_ones_outside(void) {
     expect_offset(unit_cube, -0.49, 0.02 * 0.02 * 0.02, 0, "cube");
 }
 
-static void prism_of_32_sides(void) {
-    double area = 16 * sin(2 * PI / 32), perimeter = 64 * sin(PI / 32), shrunk = 1 - 0.1 / cos(PI / 32);
-    expect_offset(prism_32, 0.1, grown(area, perimeter, 2, 0.1), 0, "prism");
-    expect_offset(prism_32, -0.1, area * shrunk * shrunk * 1.8, 0, "prism");
+static void prism_of_many_sides(void) {
+    double turn = PI / SIDES, shrunk = 1 - 0.1 / cos(turn);
+    double area = SIDES / 2 * sin(2 * turn), perimeter = 2 * SIDES * sin(turn);
+    expect_offset(prism_of_many, 0.1, grown(area, perimeter, 2, 0.1), 0, "prism");
+    expect_offset(prism_of_many, -0.1, area * shrunk * shrunk * 1.8, 0, "prism");
 }
 
 /* Outside the concave edge is sharp, inside it is round. */
@@ -264,8 +271,8 @@ static void l_shape_is_sharp_in_its_concave_edge_outside(void) {
 static void sphere_and_torus_of_many_faces(void) {
     expect_offset(sphere, 0.2, 0, 0, "sphere");
     expect_offset(sphere, -0.2, 0, 0, "sphere");
-    expect_offset(torus_64, 0.1, 0, 1, "torus");
-    if (!SHORT_TESTS) expect_offset(torus_64, -0.1, 0, 1, "torus");
+    expect_offset(torus_of_many, 0.1, 0, 1, "torus");
+    if (!SHORT_TESTS) expect_offset(torus_of_many, -0.1, 0, 1, "torus");
 }
 
 /* Machined parts with holes, of sharp edges and long triangles, where their files are there. */
@@ -296,7 +303,7 @@ static void machined_parts(void) {
 
 static void hole_of_a_torus_closes(void) {
     brio_context *ctx = new_context();
-    brio_mesh *mesh = torus(ctx, 48, 24), *out = NULL;
+    brio_mesh *mesh = torus_of_many(ctx), *out = NULL;
     EXPECT(brio_mesh_offset(ctx, mesh, 0.7, NULL, &out, NULL) == BRIO_OK, "%s", brio_message(ctx));
     if (out) expect_sound(ctx, out, 1, 0, "torus by 0.7");
     brio_mesh_free(out);
@@ -410,7 +417,7 @@ static void wrong_distances_and_errors_are_refused(void) {
 }
 
 static void estimate_holds(void) {
-    brio_mesh *(*const make[])(brio_context *) = {unit_cube, l_shape, prism_32, sphere, torus_64};
+    brio_mesh *(*const make[])(brio_context *) = {unit_cube, l_shape, prism_of_many, sphere, torus_of_many};
     for (int i = 0; i < (SHORT_TESTS ? 2 : 5); i++)
         for (double distance = -0.1; distance < 0.2; distance += 0.2) {
             brio_context *ctx = new_context();
@@ -473,7 +480,7 @@ static void every_failed_allocation_is_a_status(void) {
 
 SUITE(test_mesh_offset) {
     RUN(cube_has_sharp_corners_inside_and_round_ones_outside);
-    RUN(prism_of_32_sides);
+    RUN(prism_of_many_sides);
     RUN(l_shape_is_sharp_in_its_concave_edge_outside);
     RUN(sphere_and_torus_of_many_faces);
     if (!SHORT_TESTS) RUN(machined_parts);

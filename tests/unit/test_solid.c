@@ -67,7 +67,7 @@ static brio_certificate certify(const brio_mesh *mesh) {
 /* Near the surface, what is left out of a block changes no value: not by one bit. */
 static void blocks_have_the_values_of_their_tree(void) {
     brio_csg *tree = tree_new();
-    for (uint64_t seed = 0; seed < (SHORT_TESTS ? 30 : 80); seed++) {
+    for (uint64_t seed = 0; seed < (SHORT_TESTS ? 16 : 80); seed++) {
         brio_solid_maker m = maker_of(tree, seed / 2);
         brio_csg_blocks blocks;
         size_t near = 0, wrong = 0, sides = 0;

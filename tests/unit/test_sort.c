@@ -6,7 +6,7 @@
 
 enum { MOST = 140000 };
 
-#ifdef BRIO_SLOW_BUILD
+#ifdef BRIO_SHORT_TESTS
 static const int THREADS[] = {1, 3};
 #else
 static const int THREADS[] = {1, 2, 3, 8};

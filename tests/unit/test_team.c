@@ -195,7 +195,7 @@ static void whole_parts_are_one_call_each(void) {
 
 /* --- hosts --- */
 
-enum { N = 60000 };
+enum { N = SHORT_TESTS ? 25000 : 60000 };
 static double set[3 * N];
 
 static brio_status checksum_of(brio_context *ctx, size_t n, uint64_t *sum) {
@@ -289,7 +289,7 @@ static void refused_address_space_is_fewer_threads_or_a_status(void) {
         return;
     }
     EXPECT(in_child(without_room_for_stacks, NULL) == 0);
-    for (size_t room = 0; room <= (size_t)48 << 20; room += (size_t)1 << 19)
+    for (size_t room = 0; room <= (size_t)48 << 20; room += (size_t)1 << (SHORT_TESTS ? 20 : 19))
         EXPECT(in_child(with_little_address_space, &room) == 0, "%zu bytes", room);
 }
 
