@@ -302,7 +302,7 @@ install_old_root() {
     has apt-get && has dpkg-deb || { echo "setup: no apt-get: no old Linux for $1 to run the targets in" >&2; return 0; }
     echo "setup: fetching an old Linux into out/old-root-$1"
     rm -rf "$old"
-    mkdir -p "$old/packages/lists/partial" "$old/dev" "$old/proc" "$old/tmp"
+    mkdir -p "$old/packages/lists/partial" # no /proc and no /tmp, which qemu would show to programs in place of this machine's
     echo "deb http://deb.debian.org/debian bullseye main" >"$old/packages/debian.list"
     options="-o APT::Architecture=$1 -o APT::Architectures=$1 -o Dir::Etc::SourceList=$old/packages/debian.list -o Dir::Etc::SourceParts=/dev/null"
     options="$options -o Dir::State::Lists=$old/packages/lists -o Dir::State::status=/dev/null -o Dir::Cache=$old/packages"

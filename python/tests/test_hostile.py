@@ -297,7 +297,8 @@ def test_interrupt(alone, work):
 
 def test_ctrl_c():
     program = """
-import numpy as np, brio
+import signal, numpy as np, brio
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which Python does not do where the tests run in the background of a shell
 points = np.random.default_rng(1).random((4_000_000, 3))
 print("ready", flush=True)
 try:

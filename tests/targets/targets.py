@@ -8,7 +8,7 @@ Builds the program and the unit tests for each target of scripts/cross.py. What 
     checksums   OPERATIONS on the points of KINDS, compared with the program of this machine's compiler, bit by bit
 
 and writes OUT/TABLE.tsv: target, built, ran, passed, failed, checksums; the row of a target is there as soon as it was tried. In
-emulation suites run in so much time as is allowed: a suite that needs more is stopped and named in OUT/TARGET/left-out. What failing
+emulation suites and files run in so much time as is allowed: one that needs more is stopped and named in OUT/TARGET/left-out. What failing
 tests print is in OUT/TARGET/failures. Of what cannot run the libraries and symbols that the program asks its system for are checked; so
 are the versions of symbols of glibc. The exit status is 1 where something fails or differs.
 
@@ -135,11 +135,18 @@ def run_units(script, most_seconds, emulated, failures):
     return len(suites) - len(left_out) - len(failed), [suite for suite, _ in failed], left_out
 
 
-def run_contract(root, script, subjects, runner, failures):
-    """Tests of the command line that pass, and the names of those that fail. What these print goes to `failures`."""
-    passed, failed = 0, []
+def run_contract(root, script, subjects, runner, most_seconds, failures):
+    """Tests of the command line that pass, the names of those that fail, and of files that were left out since they need more than
+    most_seconds in emulation. What those that fail print goes to `failures`."""
+    passed, failed, left_out = 0, [], []
+    environment = {**os.environ, 'BRIO': str(script), 'BRIO_EMULATED': runner if runner in EMULATED else ''}
     for subject in subjects:
-        done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env={**os.environ, 'BRIO': str(script), 'BRIO_EMULATED': runner if runner in EMULATED else ''})
+        try:
+            done = run([sys.executable, 'test_%s.py' % subject], cwd=root / 'tests/cli', env=environment,
+                       timeout=most_seconds if runner in EMULATED else 1800)
+        except subprocess.TimeoutExpired as late:
+            (left_out if runner in EMULATED else failed).append('test_%s.py: needs over %d s' % (subject, late.timeout))
+            continue
         text = done.stderr.decode()
         if done.returncode:
             failures.write(done.stdout + done.stderr)
@@ -148,7 +155,7 @@ def run_contract(root, script, subjects, runner, failures):
         failed += ['%s.%s' % (subject, name) for name in sorted(set(wrong))] or ([] if found and done.returncode == 0 else [subject])
         skipped = re.search(r'skipped=(\d+)', text)
         passed += max(int(found.group(1)) - len(set(wrong)) - int(skipped.group(1) if skipped else 0), 0) if found else 0
-    return passed, failed
+    return passed, failed, left_out
 
 
 def closed_streams(root, folder, target, script, points):
@@ -224,13 +231,13 @@ def run_target(root, folder, target, script, native, points, most_seconds):
     runner, contract = RUNS[target.name]
     unit_script, _ = runner_of(root, folder, target, 'unit_tests')
     with open(folder / 'failures', 'wb') as failures:
-        passed, failed = run_contract(root, script, contract, runner, failures)
+        passed, failed, left_out = run_contract(root, script, contract, runner, most_seconds, failures)
         guarded, open_to = closed_streams(root, folder, target, script, points)
         passed, failed = passed + guarded, failed + open_to
         if unit_script:
-            suites, wrong, left_out = run_units(unit_script, most_seconds, runner in EMULATED, failures)
-            passed, failed = passed + suites, failed + wrong
-            (folder / 'left-out').write_text(''.join(line + '\n' for line in left_out))
+            suites, wrong, late = run_units(unit_script, most_seconds, runner in EMULATED, failures)
+            passed, failed, left_out = passed + suites, failed + wrong, left_out + late
+    (folder / 'left-out').write_text(''.join(line + '\n' for line in left_out))
     found = checksums(script, points, folder)
     different = ['%s of %s' % (name, kind) for (kind, name), value in native.items() if found[kind, name] != value]
     (folder / 'checksums.json').write_text(json.dumps({' '.join(k): v for k, v in found.items()}, indent=1))
@@ -291,7 +298,7 @@ def main():
     parser.add_argument('--no-units', action='store_true', help='no unit tests, whose build takes most of the time')
     parser.add_argument('--again', action='store_true', help='targets that have not changed, too')
     parser.add_argument('--native', type=pathlib.Path, help='the program of this machine; built where it is not given')
-    parser.add_argument('--minutes', type=float, default=10, help='for the unit tests of a target in emulation')
+    parser.add_argument('--minutes', type=float, default=10, help='for the unit tests of a target in emulation, and for each file of tests/cli')
     a = parser.parse_args()
     root, out = a.root.resolve(), a.out.resolve()
     wanted = [t for t in cross.TARGETS if not a.only or t.name in a.only.split(',')]

@@ -43,8 +43,8 @@ def thin(points: Any, spacing: float, *, threads: int = 0, progress: bool | Prog
     Examples
     --------
     >>> import brio
-    >>> brio.thin([[0, 0, 0], [0.1, 0, 0], [1, 0, 0]], 0.5).sum()
-    np.int64(2)
+    >>> int(brio.thin([[0, 0, 0], [0.1, 0, 0], [1, 0, 0]], 0.5).sum())
+    2
     """
     rows = _rows(points)
     out = np.zeros(len(rows), np.bool_)
