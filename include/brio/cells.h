@@ -17,6 +17,8 @@ typedef struct brio_cells_options {
     const double *box;    /* x0 y0 z0 x1 y1 z1, low before high: clips the cells */
     const double *planes; /* #planes by 4, n and d: clips the cells to n . x <= d */
     size_t num_planes;    /* box and planes together must bound a polytope with a volume */
+    int no_face_sizes;    /* 1: leaves face_areas and face_normals out */
+    int reserved_int;     /* 0 */
 } brio_cells_options;
 
 /** Cells and their faces, #C cells and #F faces. Cell c has the faces face_offsets[c] to face_offsets[c+1] - 1, and

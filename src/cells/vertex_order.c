@@ -25,10 +25,12 @@ static void copy_points(void *user, size_t from, size_t to, int thread) {
 static brio_status rank_vertices(brio_diagram *d, size_t rows) {
     uint32_t n = 0;
     for (size_t p = 0; p < rows; p++) d->rank[p] = UINT32_MAX;
-    for (size_t t = 0; t < d->num_finite; t++) {
+    for (size_t i = 0; i < d->num_listed; i++) {
+        uint32_t t = brio_listed(d, i);
         BRIO_FORWARD(brio_look(d->ctx, 1));
-        for (int i = 0; i < 4; i++) {
-            uint32_t p = d->t.tet[t].vertex[i];
+        if (t >= d->num_finite) break;
+        for (int k = 0; k < 4; k++) {
+            uint32_t p = d->t.tet[t].vertex[k];
             if (d->rank[p] != UINT32_MAX) continue;
             assert(p < rows && n < rows);
             d->order[n] = p;

@@ -4,6 +4,7 @@
  * from their stars (brio_cells_of_complex). Then neighbours become points and shifts, and each cell is moved to where
  * its point was given: a vertex of cells that move differently becomes several. */
 #include "base/float_state.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/versioned.h"
@@ -19,7 +20,8 @@ typedef struct {
     brio_context *ctx;
     const brio_periodic *t;
     brio_images images;
-    brio_unfolded unfolded;
+    brio_tetrahedron *unfolded;  /* or NULL */
+    uint32_t (*more)[4], *owner; /* for a sweep */
     double box[6];
 } periodic_call;
 
@@ -157,22 +159,50 @@ done:
     return status;
 }
 
+/* Unfolds the tetrahedra. Finds no images that are not known where a sweep was prepared. */
+static brio_status unfold(void *user, const uint8_t *wanted, brio_cell_complex *complex) {
+    periodic_call *c = user;
+    brio_unfolded made = {0};
+    BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, wanted, &c->images, &made));
+    complex->tet = made.tet;
+    complex->num_finite = made.num_finite;
+    complex->count = made.count;
+    return BRIO_OK;
+}
+
+/* Makes what a sweep takes: the further tetrahedra, and whose translates the images are. */
+static brio_status prepare_sweep(periodic_call *c, brio_cell_complex *complex) {
+    brio_images *m = &c->images;
+    BRIO_FORWARD(brio_periodic_further(c->ctx, c->t, m, &c->more, &complex->num_more));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->owner, m->count - m->num_points));
+    for (size_t i = m->num_points; i < m->count; i++) c->owner[i - m->num_points] = m->list[i].point;
+    complex->tet = c->t->tet;
+    complex->num_finite = c->t->stats.tetrahedra;
+    complex->count = c->t->stats.tetrahedra + c->t->stats.hull_facets;
+    complex->more = (const uint32_t(*)[4])c->more;
+    complex->owner = c->owner;
+    complex->whole = unfold;
+    complex->user = c;
+    return BRIO_OK;
+}
+
 static brio_status compute(periodic_call *c, const brio_cells_options *options, brio_cells **out) {
     brio_cells_options o = *options;
     bool flat = c->t->stats.dimension < 3;
     BRIO_FORWARD(brio_images_copy(c->ctx, &c->t->images, &c->t->lattice, &c->images));
-    if (flat)
+    brio_cell_complex complex = {.num_sites = c->images.num_points};
+    if (flat) {
         BRIO_FORWARD(add_all(c));
-    else
-        BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, &c->images, &c->unfolded));
+    } else if (brio_cells_are_swept(&o)) {
+        BRIO_FORWARD(prepare_sweep(c, &complex));
+    } else {
+        BRIO_FORWARD(unfold(c, NULL, &complex));
+        c->unfolded = complex.tet;
+    }
     BRIO_FORWARD(take_box(c, &o));
-    brio_cell_complex complex = {.tet = flat ? NULL : c->unfolded.tet,
-                                 .num_finite = c->unfolded.num_finite,
-                                 .count = c->unfolded.count,
-                                 .points = c->images.x[0],
-                                 .weights = c->images.weight,
-                                 .num_points = c->images.count,
-                                 .num_sites = c->images.num_points};
+    complex.points = c->images.x[0];
+    complex.weights = c->images.weight;
+    complex.num_points = c->images.count;
     BRIO_FORWARD(brio_cells_of_complex(c->ctx, &complex, &o, out));
     if (c->t->lattice.rank == 3) (*out)->region_volume = c->t->lattice.volume;
     BRIO_FORWARD(show_neighbours(c, *out));
@@ -187,11 +217,15 @@ brio_status brio_periodic_cells(brio_context *ctx, const brio_periodic *t, const
     brio_cells_options o = {0};
     brio_status status = BRIO_OK;
     *out = NULL;
+    brio_keep_begin(ctx);
     BRIO_TRY(BRIO_TAKE(ctx, brio_cells_options, options, &o));
     BRIO_TRY(compute(&c, &o, out));
 done:
+    brio_keep_end(ctx);
     brio_images_free(&c.images);
-    brio_release(ctx, c.unfolded.tet);
+    brio_release(ctx, c.unfolded);
+    brio_release(ctx, c.more);
+    brio_release(ctx, c.owner);
     if (status != BRIO_OK) {
         brio_cells_free(*out);
         *out = NULL;

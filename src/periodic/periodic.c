@@ -7,6 +7,7 @@
 #include "periodic/periodic.h"
 #include "base/finite.h"
 #include "base/float_state.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
@@ -257,6 +258,7 @@ brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, cons
     brio_periodic *t = NULL;
     double start = brio_seconds();
     *out = NULL;
+    brio_keep_begin(ctx);
     BRIO_TRY(begin(ctx, points, num_points, options, &o, &t));
     if (weights) BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
     BRIO_TRY(build(t, points, weights, num_points, &o));
@@ -266,6 +268,7 @@ brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, cons
     t = NULL;
 done:
     brio_periodic_free(t);
+    brio_keep_end(ctx);
     return status;
 }
 

@@ -117,7 +117,14 @@ typedef struct brio_unfolded {
     size_t num_finite, count;
 } brio_unfolded;
 
-/** Makes them.   images  gets the images that they name.   out  its array is owned by the caller. */
-brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, brio_images *images, brio_unfolded *out);
+/** Makes the further ones: the finite tetrahedra with a vertex in the domain that do not stand for their class.
+ *  images  gets the images that they name.   more  owned by the caller. */
+brio_status brio_periodic_further(brio_context *ctx, const brio_periodic *t, brio_images *images, uint32_t (**more)[4],
+                                  size_t *num_more);
+
+/** Makes them.   wanted  #points: only those at classes with a point of a 1, and mates among these; NULL: all.
+ *  images  gets the images that they name.   out  its array is owned by the caller. */
+brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, const uint8_t *wanted, brio_images *images,
+                                 brio_unfolded *out);
 
 #endif
