@@ -22,8 +22,10 @@ static void free_tetrahedra(brio_sweep *s) {
     brio_release(s->ctx, s->id);
     brio_release(s->ctx, s->ranked);
     brio_release(s->ctx, s->ranked_square);
+    brio_release(s->ctx, s->rounded);
     brio_release(s->ctx, s->key);
     s->id = NULL;
+    s->rounded = NULL;
     s->ranked = s->ranked_square = s->key = NULL;
 }
 
@@ -69,6 +71,7 @@ static void copy_rows(void *user, size_t from, size_t to, int thread) {
         uint32_t r = s->rank[p];
         if (r == UINT32_MAX) continue;
         memcpy(s->ranked + 3 * (size_t)r, s->task.at + 3 * p, 3 * sizeof *s->ranked);
+        if (s->rounded) s->rounded[r] = (float)s->task.at[3 * p];
         if (s->ranked_square) s->ranked_square[r] = s->task.square[p];
     }
 }
@@ -170,6 +173,7 @@ brio_status brio_sweep_fill(brio_context *ctx, const brio_sweep_task *task, brio
     BRIO_FORWARD(rank_rows(s));
     BRIO_FORWARD(BRIO_ALLOC(ctx, s->ranked, 3 * rows));
     if (task->square) BRIO_FORWARD(BRIO_ALLOC(ctx, s->ranked_square, rows));
+    if (task->neighbours) BRIO_FORWARD(BRIO_ALLOC(ctx, s->rounded, rows));
     BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, rows, ROWS_A_THREAD), rows, copy_rows, s));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, s->left, s->num_ranks));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, s->sum, s->num_ranks));

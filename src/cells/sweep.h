@@ -38,6 +38,7 @@ typedef struct brio_sweep {
     /* for the neighbours, or NULL */
     uint32_t (*id)[4];              /* of each tetrahedron: the ranks of its vertices */
     double *ranked, *ranked_square; /* of each rank: its position, its weight */
+    float *rounded;                 /* of each rank: x of its position, rounded */
     double *key;                    /* of each finite one: x of its centre; NaN where it is not known well */
     double fine;                    /* the error that keys may have */
 } brio_sweep;

@@ -15,9 +15,10 @@
 #include <math.h>
 #include <string.h>
 
-/* TABLE: places in the table. MOST_MET: a star with more vertices is sorted. AHEAD: tetrahedra are fetched this number of
+/* LANE: a multiple of what vector registers compare at once. TABLE: places in the table. MOST_MET: a star with more vertices is sorted. AHEAD: tetrahedra are fetched this number of
  * ranks before they are read. All chosen. */
 enum {
+    LANE = 8,
     TETRAHEDRA_A_THREAD = 1 << 14,
     RANKS_A_THREAD = 1 << 11,
     CHUNK = 1 << 10,
@@ -200,14 +201,16 @@ static size_t sort_met(const brio_sweep *s, uint32_t *met, size_t n) {
     return count;
 }
 
-/* Writes n ranks that differ in x to `sorted`, in the order of x. Returns false if two do not differ. */
+/* Writes n ranks that differ in x, rounded, to `sorted`, in the order of x. Returns false if two do not differ. */
 static bool place_met(const brio_sweep *s, const uint32_t *met, size_t n, uint32_t *sorted) {
-    double x[MOST_MET];
+    float x[MOST_MET];
     uint64_t taken = 0;
-    for (size_t i = 0; i < n; i++) x[i] = s->ranked[3 * (size_t)met[i]];
+    size_t full = (n + LANE - 1) / LANE * LANE;
+    for (size_t i = 0; i < n; i++) x[i] = s->rounded[met[i]];
+    for (size_t i = n; i < full; i++) x[i] = INFINITY;
     for (size_t i = 0; i < n; i++) {
-        int64_t place = 0;
-        for (size_t j = 0; j < n; j++) place += x[j] < x[i];
+        int place = 0;
+        for (size_t j = 0; j < full; j++) place += x[j] < x[i]; /* several at once */
         taken |= UINT64_C(1) << place;
         sorted[place] = met[i];
     }
@@ -231,9 +234,11 @@ static void find_neighbours(const search *h, uint32_t r, uint32_t *table, uint32
 
 static inline void fetch(const search *h, size_t r) {
     const brio_sweep *s = h->s;
+    if (r + 1 < s->num_ranks) __builtin_prefetch(&h->first[s->order[r + 1]]);
     if (r >= s->num_ranks || s->left[r]) return;
+    const char *out = (const char *)(h->out + h->first[s->order[r]]);
+    __builtin_prefetch(out, 1), __builtin_prefetch(out + 64, 1);
     for (uint32_t i = 0; i < s->size[r]; i++) __builtin_prefetch(s->id[h->list[h->begin[r] + i]]);
-    __builtin_prefetch(&h->first[s->order[r]]);
 }
 
 static brio_status find_of_ranks(const search *h, size_t from, size_t to, uint32_t *table, uint32_t **work) {

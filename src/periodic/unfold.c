@@ -101,7 +101,7 @@ static brio_status move_vertices(unfolding *u, const uint32_t *v, const int32_t 
 static inline bool is_wanted(const unfolding *u, size_t c) {
     const uint32_t *v = u->t->tet[c].vertex;
     for (int k = 0; k < 4 && u->wanted; k++)
-        if (v[k] != BRIO_INFINITE && u->wanted[u->t->images.list[v[k]].point]) return true;
+        if (v[k] != BRIO_INFINITE && u->wanted[brio_images_point(&u->t->images, v[k])]) return true;
     return !u->wanted;
 }
 
@@ -170,13 +170,12 @@ static void free_lists(unfolding *u) {
 brio_status brio_periodic_further(brio_context *ctx, const brio_periodic *t, brio_images *images, uint32_t (**more)[4],
                                   size_t *num_more) {
     brio_status status = BRIO_OK;
-    size_t finite = t->stats.tetrahedra;
-    unfolding u = {.ctx = ctx, .t = t, .images = images, .num_finite = finite, .count = 1};
+    unfolding u = {.ctx = ctx, .t = t, .images = images, .num_finite = t->stats.tetrahedra, .count = 1};
     *more = NULL;
     *num_more = 0;
-    for (size_t c = 0; c < finite; c++) {
+    for (size_t i = 0; i < t->num_border; i++) {
         int n;
-        BRIO_TRY(list_more(&u, c, &n));
+        if (t->border[i] < t->stats.tetrahedra) BRIO_TRY(list_more(&u, t->border[i], &n));
         BRIO_TRY(brio_look(ctx, 1));
     }
     BRIO_TRY(BRIO_ALLOC(ctx, *more, u.count));
