@@ -35,13 +35,11 @@ static inline bool is_inside(const brio_sweep *w, const uint32_t *id) {
     return id[0] < n && id[1] < n && id[2] < n && id[3] < n;
 }
 
-/* Writes the sum of the positions of the vertices of a facet: two mates have the same, up to a translation. */
-static void corner_of(const brio_sweep *w, uint32_t t, int i, double *out) {
-    for (int k = 0; k < 3; k++) {
-        out[k] = 0;
-        for (int c = 0; c < 3; c++) out[k] += w->ranked[3 * (size_t)w->id[t][BRIO_FACET[i][c]] + (size_t)k];
-        out[k] /= 3;
-    }
+/* Returns the mean of coordinate k of the vertices of a facet: two mates have the same, up to a translation. */
+static inline double corner_of(const brio_sweep *w, uint32_t t, int i, int k) {
+    double sum = 0;
+    for (int c = 0; c < 3; c++) sum += w->ranked[3 * (size_t)w->id[t][BRIO_FACET[i][c]] + (size_t)k];
+    return sum / 3;
 }
 
 typedef struct {
@@ -60,7 +58,7 @@ static bool may_share(const tie_search *s, uint32_t t, int i, uint32_t u, int j,
     memcpy(vertex[1], w->id[u], sizeof *vertex);
     brio_centres(&(brio_centre_batch){w->ranked, w->ranked_square, (const uint32_t(*)[4])vertex, 2}, centre[0], error);
     if (isnan(centre[0][0]) || isnan(centre[1][0])) return true;
-    if (apart) corner_of(w, t, i, corner[0]), corner_of(w, u, j, corner[1]);
+    for (int k = 0; k < 3 && apart; k++) corner[0][k] = corner_of(w, t, i, k), corner[1][k] = corner_of(w, u, j, k);
     for (int k = 0; k < 3; k++) {
         double rounded = 0x1p-50 * (fabs(centre[0][k]) + fabs(centre[1][k]) + fabs(corner[0][k]) + fabs(corner[1][k]));
         double way = (centre[0][k] - corner[0][k]) - (centre[1][k] - corner[1][k]);
@@ -78,28 +76,43 @@ static bool all_left(const brio_sweep *w, uint32_t t) {
     return true;
 }
 
-static void look_at_some(void *user, size_t from, size_t to, int thread) {
-    const tie_search *s = user;
+/* Looks at the mates of a tetrahedron one by one.   later  whether only at those of greater number. */
+static void look_at(const tie_search *s, uint32_t t, bool later) {
     brio_sweep *w = s->w;
     const double *key = w->key;
+    for (int i = 0; i < 4; i++) {
+        uint32_t mate = w->task.tet[t].mate[i], u = mate >> 2;
+        if ((later && u < t) || u >= w->task.num_finite) continue;
+        bool apart = s->inside && !(s->inside[t] && s->inside[u]);
+        double way = key[t] - key[u];
+        if (apart) way -= corner_of(w, t, i, 0) - corner_of(w, u, (int)(mate & 3), 0);
+        if (fabs(way) > s->least || (all_left(w, t) && all_left(w, u))) continue;
+        if (!may_share(s, t, i, u, (int)(mate & 3), apart)) continue;
+        brio_sweep_leave(w, w->id[t], 4);
+        brio_sweep_leave(w, w->id[u], 4);
+    }
+}
+
+static void look_at_some(void *user, size_t from, size_t to, int thread) {
+    const tie_search *s = user;
+    const brio_tetrahedron *tet = s->w->task.tet;
+    const double *key = s->w->key;
+    size_t finite = s->w->task.num_finite;
     (void)thread;
-    for (size_t t = from; t < to; t++)
-        for (int i = 0; i < 4; i++) {
-            uint32_t mate = w->task.tet[t].mate[i], u = mate >> 2;
-            if (u < t || u >= w->task.num_finite) continue;
-            bool apart = s->inside && !(s->inside[t] && s->inside[u]);
-            double way = key[t] - key[u];
-            if (apart) {
-                double a[3], b[3];
-                corner_of(w, (uint32_t)t, i, a), corner_of(w, u, (int)(mate & 3), b);
-                way = (key[t] - a[0]) - (key[u] - b[0]);
-            }
-            if (fabs(way) > s->least) continue; /* settles nearly all */
-            if (all_left(w, (uint32_t)t) && all_left(w, u)) continue;
-            if (!may_share(s, (uint32_t)t, i, u, (int)(mate & 3), apart)) continue;
-            brio_sweep_leave(w, w->id[t], 4);
-            brio_sweep_leave(w, w->id[u], 4);
+    for (size_t t = from; t < to; t++) {
+        double x = key[t], least = s->least;
+        const uint32_t *mate = tet[t].mate;
+        if (s->inside && !s->inside[t]) {
+            look_at(s, (uint32_t)t, false); /* also for its mates, which are not compared as they lie */
+            continue;
         }
+        bool close = false;
+        for (int i = 0; i < 4; i++) {
+            size_t u = mate[i] >> 2;
+            if (u > t && u < finite) close |= !(fabs(x - key[u]) > least);
+        }
+        if (close) look_at(s, (uint32_t)t, true); /* few */
+    }
 }
 
 static void find_inside(void *user, size_t from, size_t to, int thread) {

@@ -7,6 +7,7 @@
 #include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "base/versioned.h"
 #include "cells/diagram.h"
 #include "periodic/periodic.h"
@@ -14,7 +15,7 @@
 #include <string.h>
 
 /* BOX_REACH: how many cells wide a box is along coordinates that repeat; no cell reaches as far. */
-enum { BOX_REACH = 8 };
+enum { BOX_REACH = 8, CELLS_A_THREAD = 1 << 12 };
 
 typedef struct {
     brio_context *ctx;
@@ -79,17 +80,24 @@ static inline double move_of(const brio_periodic *t, uint32_t point, int k) {
     return sum;
 }
 
-static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
-    const brio_periodic *t = c->t;
+typedef struct {
+    const periodic_call *c;
+    brio_cells *cells;
+    uint8_t *border; /* of each point: whether a neighbour may be a translate */
+} showing;
+
+static void show_some(void *user, size_t from, size_t to, int thread) {
+    const showing *h = user;
+    const brio_periodic *t = h->c->t;
     const brio_lattice *l = &t->lattice;
-    size_t faces = cells->face_offsets ? (size_t)cells->face_offsets[cells->num_cells] : 0;
-    if (!cells->face_offsets) return BRIO_OK;
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, cells->face_shifts, 3 * faces + 1));
-    for (size_t n = 0; n < cells->num_cells; n++)
+    brio_cells *cells = h->cells;
+    (void)thread;
+    for (size_t n = from; n < to; n++)
         for (uint64_t f = cells->face_offsets[n]; f < cells->face_offsets[n + 1]; f++) {
+            if (t->stays && h->border && !h->border[cells->site[n]]) break; /* nearly all */
             if (cells->face_neighbours[f] < 0) continue;
-            if (t->stays && (size_t)cells->face_neighbours[f] < c->images.num_points) continue;
-            const brio_image *image = &c->images.list[cells->face_neighbours[f]];
+            if (t->stays && (size_t)cells->face_neighbours[f] < h->c->images.num_points) continue;
+            const brio_image *image = &h->c->images.list[cells->face_neighbours[f]];
             cells->face_neighbours[f] = image->point;
             for (int j = 0; j < l->rank; j++) {
                 int64_t shift = (int64_t)t->home[image->point][j] - t->home[cells->site[n]][j];
@@ -97,7 +105,27 @@ static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
                 cells->face_shifts[3 * f + (size_t)l->axis[j]] = (int32_t)shift;
             }
         }
-    return BRIO_OK;
+}
+
+/* Makes points and shifts of the images that are neighbours. Points of dimension 2 or less have no tetrahedra that say
+ * where the border is. */
+static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
+    const brio_periodic *t = c->t;
+    brio_status status = BRIO_OK;
+    showing h = {.c = c, .cells = cells};
+    size_t faces = cells->face_offsets ? (size_t)cells->face_offsets[cells->num_cells] : 0;
+    if (!cells->face_offsets) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, cells->face_shifts, 3 * faces + 1));
+    if (t->stats.dimension == 3) BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, h.border, c->images.num_points + 1));
+    for (size_t i = 0; i < t->num_border && h.border; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t v = t->tet[t->border[i]].vertex[k];
+            if (v != BRIO_INFINITE) h.border[brio_images_point(&c->images, v)] = 1;
+        }
+    BRIO_TRY(brio_for(c->ctx, brio_threads(c->ctx, cells->num_cells, CELLS_A_THREAD), cells->num_cells, show_some, &h));
+done:
+    brio_release(c->ctx, h.border);
+    return status;
 }
 
 static void move_centroids(const periodic_call *c, brio_cells *cells) {
