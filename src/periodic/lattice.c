@@ -267,12 +267,13 @@ static double volume_of(const double (*v)[3], int rank) {
 
 /* --- points --- */
 
-/* Subtracts the origin and `n` of the given vectors from a point. */
+/* Subtracts the origin and `n` of the given vectors from a point. Most points need none of them. */
 static void subtract_cells(const brio_lattice *l, const double *point, const double *n, double *x) {
     for (int k = 0; k < 3; k++) {
         double high = point[k], low = 0;
         add_product(&high, &low, -1, l->origin[k]);
-        for (int j = 0; j < l->rank; j++) add_product(&high, &low, -n[j], l->given[j][k]);
+        for (int j = 0; j < l->rank; j++)
+            if (n[j] != 0) add_product(&high, &low, -n[j], l->given[j][k]);
         x[k] = high + low;
     }
 }
@@ -286,8 +287,9 @@ static bool bring_near(const brio_lattice *l, const double *point, double *x, do
         n[j] = floor(brio_dot(l->given_dual[j], x));
         if (!(fabs(n[j]) <= MOST_CHANGE)) return false;
     }
-    subtract_cells(l, point, n, x);
+    if (n[0] != 0 || n[1] != 0 || n[2] != 0) subtract_cells(l, point, n, x);
     for (int i = 0; i < l->rank; i++) m[i] = floor(brio_dot(l->near_dual[i], x));
+    if (m[0] == 0 && m[1] == 0 && m[2] == 0) return true;
     for (int j = 0; j < l->rank; j++)
         for (int i = 0; i < l->rank; i++) n[j] += m[i] * (double)l->change[i][j];
     subtract_cells(l, point, n, x);
@@ -324,12 +326,14 @@ bool brio_lattice_home(const brio_lattice *l, const double *point, brio_home *ho
     home->moved = 0;
     for (int k = 0; k < 3; k++) {
         home->x[k] = l->unit[k] > 0 ? rint(home->x[k] / l->unit[k]) * l->unit[k] : near[k];
-        home->moved = fmax(home->moved, fabs(home->x[k] - near[k]));
+        double moved = fabs(home->x[k] - near[k]);
+        home->moved = moved > home->moved ? moved : home->moved;
     }
     for (int k = 0; k < 3; k++) home->x[k] -= l->corner[k]; /* exact */
     double shift[3] = {-n[0], -n[1], -n[2]};
     for (int i = 0; i < l->rank; i++) {
         double m = cells_off(l, i, home->x);
+        if (m == 0) continue;
         for (int k = 0; k < 3; k++) home->x[k] -= m * l->basis[i][k];
         for (int j = 0; j < l->rank; j++) shift[j] -= m * (double)l->change[i][j];
     }
