@@ -4,8 +4,8 @@
  * I1  Row t of `centre` is the centre of tetrahedron t and its place, a brio_place. It is NaN for infinite tetrahedra
  *     and for centres that doubles cannot hold, and then the place is BRIO_PLACE_FAR.
  * I2  Where `same` is not NULL, same[t] is the least of the listed tetrahedra that share the centre of t and are joined
- *     with t across facets. Rows of such tetrahedra are equal up to rounding. For infinite tetrahedra the outward normal of
- *     the hull facet takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
+ *     with t across facets. Rows of such tetrahedra are equal up to rounding. For infinite tetrahedra the outward
+ *     normal of the hull facet takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
  * I3  The tetrahedra of a vertex ascend.
  * I4  Row r of `ranked` is the point order[r], and rank[order[r]] = r. The order follows the array of tetrahedra: what
  *     is near in space is near in memory.
@@ -84,7 +84,7 @@ typedef struct brio_diagram {
 brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region);
 void brio_diagram_free(brio_diagram *d);
 
-/* The steps of brio_diagram_fill, in their order: diagram.c, vertex_order.c, centres.c, ties.c, centres.c, stars.c. */
+/* The steps of brio_diagram_fill, in their order: diagram.c, centres.c, ties.c, centres.c, stars.c. */
 
 /** Lists tetrahedra: I5. */
 brio_status brio_diagram_list(brio_diagram *d);

@@ -6,15 +6,15 @@
  * Errors, with u = 2^-53, M the greatest squared edge, W = 1 + the greatest |w_i - w_j| / |ij|^2 (1 without weights), R
  * the distance of the centre from vertex 0, and R' = sqrt(2 R^2 + 2 M). Differences, squares and products have relative
  * errors of a few u. So
- * - the centre is off by at most d = 70 u Q W R', where Q = |01| |02| |03| / det: determinant and numerators carry 10 and
- *   20 u of their permanents, which Hadamard's inequality bounds;
- * - an area vector n = a x b is off by v = 4 u |a| |b|, a height over a facet by d + R' v / |n|, and 1 / |n|^2 by 2 v / |n|
- *   of it; ki . kj by 4 u |ki| |kj|;
- * - so the terms of a facet are off by at most (4 u R' C + G (d + 3 R' v / |n|)) / (24 |n|), where G is the sum of |ij|^2
- *   |ki . kj| over its edges, and C that of |ij|^2 |ki| |kj|, the product of the edges and their sum. With weights G has
- *   4 W |ij|^2 D, and 8 W^2 times the squared sum of squares bounds C.
- * Squares of sums are at most as many times the sum of squares. The bound is twice that of the four facets, which covers
- * the rounding of the sum and of the bound. */
+ * - the centre is off by at most d = 70 u Q W R', where Q = |01| |02| |03| / det: determinant and numerators carry 10
+ *   and 20 u of their permanents, which Hadamard's inequality bounds;
+ * - an area vector n = a x b is off by v = 4 u |a| |b|, a height over a facet by d + R' v / |n|, and 1 / |n|^2 by
+ *   2 v / |n| of it; ki . kj by 4 u |ki| |kj|;
+ * - so the terms of a facet are off by at most (4 u R' C + G (d + 3 R' v / |n|)) / (24 |n|). Here G is the sum of
+ *   |ij|^2 |ki . kj| over its edges, and C that of |ij|^2 |ki| |kj|: the product of the edges times their sum. With
+ *   weights G is the sum of 4 W |ij|^2 D, and 8 W^2 times the squared sum of squares bounds C.
+ * Squares of sums are at most as many times the sum of squares. The bound is twice that of the four facets, which
+ * covers the rounding of the sum and of the bound. */
 #include "cells/shares.h"
 #include <assert.h>
 #include <math.h>

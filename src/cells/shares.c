@@ -1,5 +1,5 @@
-/* Shares of tetrahedra, in as much precision as each centre needs: share_lanes.h works in doubles, and centres that need
- * more come from brio_centres. */
+/* Shares of tetrahedra, in as much precision as each centre needs: share_lanes.h works in doubles, and centres that
+ * need more come from brio_centres. */
 #include "cells/shares.h"
 #include "base/instruction_set.h"
 #include <math.h>

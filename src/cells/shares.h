@@ -2,19 +2,24 @@
  *
  * The edge ij of the facet ijk borders the part of the cell of i that is nearest to the edge, the facet and the
  * tetrahedron: the orthoscheme from i over the centres of the edge, of the facet and of the tetrahedron. Its volume is
- * signed. Over all edges and facets these volumes add up to what the cell of i has of the tetrahedron, and over all four
- * vertices to the tetrahedron. In a facet with the area vector n / 2, seen from a centre at the height h = o . n over it,
- *     volume = s |ij|^2 D h / (6 |n|^2),
- * where s is the share of the edge that is i's, and D = ((|ik|^2 + w_i - w_k) / 2 - s ij . ik). Without weights s is 1/2
+ * signed. Over all edges and facets these volumes add up to what the cell of i has of the tetrahedron, and over all
+ * four vertices to the tetrahedron. Let n / 2 be the area vector of a facet, and o . n / |n| the height of the centre
+ * over it. Then
+ *     volume = s |ij|^2 D (o . n) / (6 |n|^2),
+ * where s is the share of the edge that is i's, and D = (|ik|^2 + w_i - w_k) / 2 - s ij . ik. Without weights s is 1/2
  * and D is (ki . kj) / 2.
  *
- * Based on: Meyer, Desbrun, Schroeder, Barr. Discrete differential-geometry operators for triangulated 2-manifolds. 2003
- *           (the same in triangles: cotangents); Aurenhammer. Power diagrams. SIAM J. Computing 1987. */
+ * I1  Whatever the error of the centre, the four shares add up to the tetrahedron: errors move volume between cells.
+ *
+ * Based on: Meyer, Desbrun, Schroeder, Barr. Discrete differential-geometry operators for triangulated 2-manifolds.
+ *           2003 (the same in triangles, with cotangents).
+ *           Aurenhammer. Power diagrams: properties, algorithms and applications. SIAM J. Computing 1987. */
 #ifndef BRIO_CELLS_SHARES_H
 #define BRIO_CELLS_SHARES_H
 
 #include "predicates/circumcentre.h"
 
+/** Tetrahedra, and where their shares go. */
 typedef struct brio_share_batch {
     const double *points, *weights; /* #P by 3; #P, or NULL */
     const uint32_t (*vertex)[4];    /* #count by 4: indices of points */
@@ -25,7 +30,11 @@ typedef struct brio_share_batch {
     double *bound;                  /* #count: bounds the error of each share; NaN or infinite where nothing is known */
 } brio_share_batch;
 
-/** Computes centres, shares, and what bounds their errors. The bits do not depend on the instruction set. */
+/** Computes centres, shares, and what bounds their errors. The bits do not depend on the instruction set, but on the
+ *  order of the four vertices.
+ *  Lengths and weights are scaled so that doubles hold sixth powers of the edges: tetrahedra with an edge beyond 2^-100
+ *  or 2^100 get infinite bounds.
+ *  Cost: about 20 ns for a tetrahedron, more where its centre needs pairs of doubles. */
 void brio_shares(const brio_share_batch *b);
 
 /** Functions in the lanes of vector registers, for the tetrahedra whose bits are set in `some`. */

@@ -1,7 +1,7 @@
 /* The neighbours of the cells of a sweep.
  *
- * Mates that share their centre are looked for by x of the centres; where it does not tell two apart, by the error bounds
- * of the centres. The cells about such mates are left. All other neighbours share a face.
+ * Mates that share their centre are looked for by x of the centres; where it does not tell two apart, by the error
+ * bounds of the centres. The cells about such mates are left. All other neighbours share a face.
  *
  * The tetrahedra of each rank are listed. Their vertices go through a table that remembers one of those that have the
  * same last bits, so that nearly all that were met before are dropped without a branch. What is left is put in order by
@@ -15,16 +15,16 @@
 #include <math.h>
 #include <string.h>
 
-/* LANE: a multiple of what vector registers compare at once. TABLE: places in the table. MOST_MET: a star with more vertices is sorted. AHEAD: tetrahedra are fetched this number of
- * ranks before they are read. All chosen. */
+/* LANE: a multiple of what vector registers compare at once. TABLE: places in the table. MOST_MET: a star with more
+ * vertices is sorted. AHEAD: tetrahedra are fetched this number of ranks before they are read. All chosen. */
 enum {
     LANE = 8,
-    TETRAHEDRA_A_THREAD = 1 << 14,
-    RANKS_A_THREAD = 1 << 11,
-    CHUNK = 1 << 10,
     TABLE = 1 << 11,
     MOST_MET = 64,
-    AHEAD = 2
+    AHEAD = 2,
+    TETRAHEDRA_A_THREAD = 1 << 14,
+    RANKS_A_THREAD = 1 << 11,
+    CHUNK = 1 << 10
 };
 
 /* --- ties --- */

@@ -13,7 +13,8 @@
 #include <assert.h>
 #include <string.h>
 
-/* INSIDE, BORDER: that a tetrahedron stands for its class, with all vertices in the domain or not; until it has a number. */
+/* INSIDE, BORDER: that a tetrahedron stands for its class, with all vertices in the domain or not. Until it has a
+ * number. */
 enum { INSIDE = 0, BORDER = 1, NO_CLASS = UINT32_MAX, TETRAHEDRA_A_THREAD = 1 << 14 };
 
 /* Facets without a mate that one thread found. */

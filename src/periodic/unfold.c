@@ -1,8 +1,8 @@
 /* All tetrahedra with a vertex in the domain, from one of each class.
  *
- * Cells and stars of the points, or of some of them, are made of them. A class has as many of them as its vertices have different shifts:
- * each moved back by one. The first is the class itself, whose least vertex is in the domain; the others are
- * appended. */
+ * Cells and stars of the points, or of some of them, are made of them. A class has as many of them as its vertices have
+ * different shifts: each moved back by one. The first is the class itself, whose least vertex is in the domain; the
+ * others are appended. */
 #include "base/memory.h"
 #include "periodic/periodic.h"
 #include <assert.h>
