@@ -70,11 +70,13 @@ typedef struct brio_cells {
  *  out  owned by the caller, freed with brio_cells_free; NULL on error.
  *  The result has the same bits for every number of threads. The numbers of a cell and of its faces, and the order of
  *  its faces (by the neighbours' positions), have the same bits in whatever order the points are given; volumes
- *  without areas, centroids and faces differ in their last bits then, and so do vertices that more than four points
- *  make.
+ *  without areas, centroids and sizes of faces differ in their last bits then, and so do vertices that more than four
+ *  points make.
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
- *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces: then volumes
- *  take one pass over the facets, about as long as brio_delaunay.
+ *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces, or with faces
+ *  but without their sizes: then one sweep over the tetrahedra gives the volumes, and one over the stars the neighbours,
+ *  in less time than brio_delaunay takes. Cells for which the bound of the sweep's error is more than 2^-36 of the
+ *  volume, clipped ones and those with ties are computed as the others.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat, unbounded, or too
  *  small or, 2^600 times, too large beside the points), BRIO_ERR_NO_ANSWER (see Accuracy), and as brio_delaunay.
  *  Based on: [Aurenhammer 1987], [Choi 2003] sections 2.1 and 2.2. */
