@@ -74,7 +74,7 @@ typedef struct brio_cells {
  *  points make.
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
  *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces, or with faces
- *  but without their sizes: then one sweep over the tetrahedra gives the volumes, and one over the stars the neighbours,
+ *  but without their sizes: then a sweep over the tetrahedra gives the volumes, and one over the stars the neighbours,
  *  in less time than brio_delaunay takes. Cells for which the bound of the sweep's error is more than 2^-36 of the
  *  volume, clipped ones and those with ties are computed as the others.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat, unbounded, or too
