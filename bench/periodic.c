@@ -29,7 +29,8 @@ int main(int argc, char **argv) {
     brio_periodic *p = NULL;
     brio_cells *cells = NULL;
     brio_periodic_options o = {.size = sizeof o, .cell = cell};
-    brio_cells_options how = {.size = sizeof how, .no_areas = 1, .no_centroids = 1, .box = open ? box : NULL};
+    brio_cells_options how = {
+        .size = sizeof how, .no_areas = 1, .no_centroids = 1, .no_face_sizes = 1, .box = open ? box : NULL};
     double wall[3] = {seconds(CLOCK_MONOTONIC)}, cpu[3] = {seconds(CLOCK_PROCESS_CPUTIME_ID)};
     check(ctx,
           open ? brio_delaunay(ctx, points, NULL, n, NULL, &t) : brio_delaunay_periodic(ctx, points, NULL, n, &o, &p));

@@ -90,14 +90,14 @@ static PyObject *periodic_check(PyObject *module, PyObject *object) {
     Py_RETURN_NONE;
 }
 
-/* periodic_cells(t, box, vertices, threads, progress): a dict of arrays. */
+/* periodic_cells(t, box, vertices, quick, threads, progress): a dict of arrays. */
 static PyObject *periodic_cells(PyObject *module, PyObject *args) {
     PyObject *object, *box, *progress, *owner = NULL, *result = NULL;
-    int threads, vertices;
+    int threads, vertices, quick;
     input b = {.held = 0};
     brio_cells *made = NULL;
     call c;
-    if (!PyArg_ParseTuple(args, "OOiiO", &object, &box, &vertices, &threads, &progress)) return NULL;
+    if (!PyArg_ParseTuple(args, "OOiiiO", &object, &box, &vertices, &quick, &threads, &progress)) return NULL;
     const brio_periodic *t = periodic_of(module, object);
     if (!t) return NULL;
     if (box != Py_None && (input_open(&b, box, "box", 'd', 0) || input_has_rows(&b, "box", 6))) {
@@ -106,6 +106,7 @@ static PyObject *periodic_cells(PyObject *module, PyObject *args) {
     }
     if (!call_begin(&c, state_of(module), threads, progress)) {
         brio_cells_options o = {.size = sizeof o, .vertices = vertices, .box = b.data};
+        o.no_areas = o.no_centroids = o.no_face_sizes = quick;
         brio_status status;
         CALL(c, status, brio_periodic_cells(c.ctx, t, &o, &made));
         owner = call_end_with(&c, status, KIND_CELLS, made, cells_release, NULL);
@@ -256,7 +257,8 @@ PyMethodDef periodic_methods[] = {
     {"periodic_view", periodic_view, METH_VARARGS, "periodic_view(t, part): a view."},
     {"periodic_checksum", periodic_checksum, METH_O, "A hash that depends on no origin and no order."},
     {"periodic_check", periodic_check, METH_O, "Checks it exactly."},
-    {"periodic_cells", periodic_cells, METH_VARARGS, "periodic_cells(t, box, vertices, threads, progress): a dict."},
+    {"periodic_cells", periodic_cells, METH_VARARGS,
+     "periodic_cells(t, box, vertices, quick, threads, progress): a dict."},
     {"periodic_alpha", periodic_alpha, METH_VARARGS, "periodic_alpha(t, threads, progress): a dict, and the complex."},
     {"periodic_alpha_by_points", periodic_alpha_by_points, METH_O, "The complex whose simplices name points."},
     {"periodic_alpha_auto", periodic_alpha_auto, METH_O, "The least alpha of one solid with all vertices."},

@@ -3,6 +3,7 @@
 import itertools
 import os
 import pickle
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -77,6 +78,105 @@ def test_faces_come_in_pairs():
         assert there[j, i, -a, -b, -c] == pytest.approx(area, rel=1e-9, abs=1e-14)
     way = vor.points[vor.neighbor_points] + vor.neighbor_shifts @ vor.cell - vor.points[owner]
     assert np.allclose(way / np.linalg.norm(way, axis=1)[:, None], vor.face_normals)
+
+
+def solve(rows, right):
+    """Solves three equations in fractions."""
+    rows = [[*row, value] for row, value in zip(rows, right, strict=True)]
+    for i in range(3):
+        pivot = next(k for k in range(i, 3) if rows[k][i] != 0)
+        rows[i], rows[pivot] = rows[pivot], rows[i]
+        rows[i] = [x / rows[i][i] for x in rows[i]]
+        for k in range(3):
+            if k != i:
+                rows[k] = [x - rows[k][i] * y for x, y in zip(rows[k], rows[i], strict=True)]
+    return [row[3] for row in rows]
+
+
+def volume_in_fractions(tri, weights, point):
+    """The volume of a point's cell: the cones over its faces, of which each is a fan of the centres round an edge."""
+    where = [[Fraction(x) for x in row] for row in tri.image_positions.tolist()]
+    cell = [[Fraction(x) for x in row] for row in tri.cell.tolist()]
+    minus = lambda a, b: [x - y for x, y in zip(a, b, strict=True)]  # noqa: E731
+    dot = lambda a, b: sum(x * y for x, y in zip(a, b, strict=True))  # noqa: E731
+    faces = {}
+    for simplex in tri.simplices.tolist():
+        for apex in range(4):
+            if tri.image_points[simplex[apex]] != point:
+                continue
+            at = where[simplex[apex]]
+            ways = [minus(where[v], at) for k, v in enumerate(simplex) if k != apex]
+            lifts = [(dot(w, w) + weights[point] - weights[tri.image_points[v]]) / 2
+                     for w, v in zip(ways, [v for k, v in enumerate(simplex) if k != apex], strict=True)]
+            centre = solve(ways, lifts)
+            for k in range(3):  # the edge of the face with neighbour k that leaves this centre: names of centres are positions
+                faces.setdefault(tuple(ways[k]), set()).add((tuple(centre), lifts[k]))
+    total = Fraction(0)
+    for normal, corners in faces.items():
+        height = next(iter(corners))[1]
+        corners = [c for c, _ in corners]
+        total += height * area_over_normal(normal, corners) / 3
+    assert len(cell) == 3
+    return total
+
+
+def area_over_normal(normal, corners):
+    """The area of a convex polygon that is upright to a vector, divided by its length: of its image along one axis."""
+    axis = max(range(3), key=lambda k: abs(normal[k]))
+    flat = sorted({tuple(c[k] for k in range(3) if k != axis) for c in corners})
+    turn = lambda o, a, b: (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])  # noqa: E731
+    rings = []
+    for points in (flat, flat[::-1]):
+        chain = []
+        for q in points:
+            while len(chain) > 1 and turn(chain[-2], chain[-1], q) <= 0:
+                chain.pop()
+            chain.append(q)
+        rings += chain[:-1]
+    twice = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(rings, rings[1:] + rings[:1], strict=True))
+    return abs(twice / 2 / normal[axis])
+
+
+@pytest.mark.parametrize("kind", ["uniform", "slivers", "sphere", "needles", "thin", "weighted", "lattice"])
+def test_volumes_are_those_of_fractions(kind):
+    rng = np.random.default_rng(33)
+    cell = np.diag([16, 0.25, 1]) if kind == "thin" else np.array([[1, 0, 0], [0.25, 1, 0], [0, -0.375, 1]])
+    shares, weights = rng.random((24, 3)), np.zeros(24)
+    if kind == "slivers":
+        shares = np.round(shares * 3) / 4 + 2.0**-20 * rng.random((24, 3))
+    if kind == "lattice":
+        shares = np.array(list(itertools.product((0, 0.25, 0.5), (0, 0.5), (0, 0.25, 0.5, 0.75))))
+    if kind == "sphere":
+        shares = 0.5 + 0.375 * (shares - 0.5) / np.linalg.norm(shares - 0.5, axis=1)[:, None]
+    if kind == "needles":
+        shares[1::2] = shares[::2] + 2.0**-24 * rng.random((12, 3))
+    if kind == "weighted":
+        weights = np.round(rng.random(24) * 2**12) / 2**14
+    points = np.round(np.mod(shares, 1) * 2**36) / 2**36 @ cell
+    points = np.round(points * 2**34) / 2**34
+    vor = brio.Voronoi(points, weights, cell=cell)
+    exact = [Fraction(w) for w in weights.tolist()]
+    total = 0
+    for point in range(0, 24, 1 if kind == "weighted" else 3):
+        volume = float(volume_in_fractions(vor.delaunay, exact, point))
+        total += volume > 0
+        assert vor.volumes[point] == pytest.approx(volume, rel=1e-12, abs=1e-15), point
+    assert total >= 8
+    assert vor.volumes.sum() == pytest.approx(abs(np.linalg.det(cell)), rel=1e-12)
+
+
+def test_volumes_and_neighbours_are_those_of_whole_cells():
+    for count, weight in ((1, 0), (5, 0.1), (300, 0.01), (4000, 0.001)):
+        points, weights = RNG.random((count, 3)) @ SKEW, RNG.random(count) * weight
+        vor = brio.Voronoi(points, weights, cell=SKEW)
+        offsets, neighbours = vor.neighbor_offsets, vor.neighbor_points
+        areas = np.bincount(np.repeat(np.arange(count), np.diff(offsets)), vor.face_areas, count)
+        assert vor.face_areas.shape == neighbours.shape and vor.face_normals.shape == (*neighbours.shape, 3)
+        assert np.allclose(areas, vor.areas, rtol=1e-12)
+        assert np.isnan(vor.centroids[:, 0]).sum() == (vor.volumes == 0).sum()
+        pairs = np.stack([np.repeat(np.arange(count), np.diff(offsets)), neighbours], 1)
+        assert sorted(map(tuple, pairs.tolist())) == sorted(map(tuple, pairs[:, ::-1].tolist()))
+        assert not vor.areas.flags.writeable and not vor.face_areas.flags.writeable
 
 
 def test_cells_hold_their_vertices_where_points_are_given():

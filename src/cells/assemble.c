@@ -18,6 +18,11 @@ typedef struct {
     size_t num_voronoi;     /* vertices at centres */
 } assembly;
 
+/* Returns whether the faces of a cell come from the sweep. */
+static inline bool is_swept(const brio_cell_job *job, size_t c) {
+    return job->sweep && !job->sweep->left[job->sweep->rank[job->out->site[c]]];
+}
+
 static brio_status offset_cells(assembly *a) {
     const brio_cell_job *job = a->job;
     brio_cells *out = job->out;
@@ -28,14 +33,30 @@ static brio_status offset_cells(assembly *a) {
     BRIO_FORWARD(BRIO_ALLOC(ctx, a->first_vertex, n + 1));
     out->face_offsets[0] = a->first_corner[0] = a->first_vertex[0] = 0;
     for (size_t c = 0; c < n; c++) {
-        out->face_offsets[c + 1] = out->face_offsets[c] + job->place[c].num_faces;
-        a->first_corner[c + 1] = a->first_corner[c] + job->place[c].num_corners;
-        a->first_vertex[c + 1] = a->first_vertex[c] + job->place[c].num_vertices;
+        brio_cell_place *place = &job->place[c];
+        if (is_swept(job, c))
+            *place = (brio_cell_place){.num_faces = brio_sweep_degree(job->sweep, job->sweep->rank[out->site[c]])};
+        out->face_offsets[c + 1] = out->face_offsets[c] + place->num_faces;
+        a->first_corner[c + 1] = a->first_corner[c] + place->num_corners;
+        a->first_vertex[c + 1] = a->first_vertex[c] + place->num_vertices;
     }
     return BRIO_OK;
 }
 
 /* --- faces --- */
+
+/* Lets the sweep write the neighbours of its cells. */
+static brio_status copy_neighbours(const brio_cell_job *job) {
+    brio_cells *out = job->out;
+    brio_status status = BRIO_OK;
+    uint64_t *first = NULL;
+    BRIO_TRY(BRIO_ALLOC(job->d->ctx, first, job->d->num_sites));
+    for (size_t c = 0; c < out->num_cells; c++) first[out->site[c]] = out->face_offsets[c];
+    BRIO_TRY(brio_sweep_neighbours(job->sweep, first, out->face_neighbours));
+done:
+    brio_release(job->d->ctx, first);
+    return status;
+}
 
 static void copy_faces(void *user, size_t from, size_t to, int thread) {
     const assembly *a = user;
@@ -43,6 +64,7 @@ static void copy_faces(void *user, size_t from, size_t to, int thread) {
     (void)thread;
     for (size_t c = from; c < to; c++) {
         const brio_cell_place *place = &a->job->place[c];
+        if (is_swept(a->job, c)) continue;
         assert(0 <= place->thread && place->thread < a->job->threads &&
                place->face + place->num_faces <= a->job->recorder[place->thread].num_faces);
         const brio_cell_recorder *r = &a->job->recorder[place->thread];
@@ -51,8 +73,8 @@ static void copy_faces(void *user, size_t from, size_t to, int thread) {
             const brio_cell_face *face = &r->face[place->face + i];
             size_t f = (size_t)out->face_offsets[c] + i;
             out->face_neighbours[f] = face->neighbour;
-            out->face_areas[f] = face->area;
-            memcpy(out->face_normals + 3 * f, face->normal, sizeof face->normal);
+            if (out->face_areas) out->face_areas[f] = face->area;
+            if (out->face_normals) memcpy(out->face_normals + 3 * f, face->normal, sizeof face->normal);
             if (!out->corner_offsets) continue;
             out->corner_offsets[f] = corner;
             corner += face->corners;
@@ -66,12 +88,16 @@ static brio_status make_faces(assembly *a) {
     brio_context *ctx = a->job->d->ctx;
     size_t cells = out->num_cells, faces = (size_t)out->face_offsets[cells];
     BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_neighbours, faces));
-    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_areas, faces));
-    BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_normals, 3 * faces));
+    if (a->job->sizes) {
+        BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_areas, faces));
+        BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_normals, 3 * faces));
+    }
     if (a->job->vertices) {
         BRIO_FORWARD(BRIO_ALLOC(ctx, out->corner_offsets, faces + 1));
         out->corner_offsets[faces] = a->first_corner[cells];
     }
+    if (a->job->sweep) BRIO_FORWARD(copy_neighbours(a->job));
+    if (a->job->sweep && !a->job->sweep->num_left) return BRIO_OK;
     return brio_for(ctx, brio_threads(ctx, cells, CELLS_A_THREAD), cells, copy_faces, a);
 }
 

@@ -6,6 +6,7 @@
 #define BRIO_CELLS_CELL_RECORD_H
 
 #include "cells/star_cell.h"
+#include "cells/sweep.h"
 #include <math.h>
 
 /** A face, in the caller's lengths. */
@@ -46,7 +47,9 @@ typedef struct brio_cell_job {
     const brio_diagram *d;
     const brio_region *region;
     brio_cells *out;
+    const brio_sweep *sweep;                /* the cells that are not left come from it; NULL: none do */
     bool areas, centroids, faces, vertices; /* what is asked for; vertices implies faces */
+    bool sizes;                             /* of faces: areas and normals */
     uint32_t *cell_of;                      /* #P: the cell of each vertex */
     brio_cell_place *place;                 /* of each cell; NULL without faces */
     brio_cell_recorder *recorder;           /* one a thread */

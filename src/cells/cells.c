@@ -2,9 +2,9 @@
  *
  * The diagram is computed once: the centres of the tetrahedra, exact ties among them, the tetrahedra of each vertex.
  * Then threads compute the cells, each from the star of its site, along the array of tetrahedra. A cell is computed the
- * same way whichever thread takes it. Cells that reach outside the region are clipped. Where nothing but volumes is
- * asked for, one pass over the tetrahedra gives those of the other cells (volumes.c), and only clipped cells need their
- * stars.
+ * same way whichever thread takes it. Cells that reach outside the region are clipped. Where nothing but volumes and
+ * neighbours is asked for, a sweep over the tetrahedra gives those of most cells (sweep.c), and the diagram is computed
+ * for the others alone.
  *
  * Based on: Aurenhammer. Power diagrams: properties, algorithms and applications. SIAM J. Computing 1987.
  *           Choi. Practical Delaunay triangulation algorithms ... 2003, sections 2.1 and 2.2. */
@@ -146,6 +146,9 @@ typedef struct {
     brio_completed_points all;       /* of flat points */
     double *scaled, *scaled_weights; /* or NULL */
     brio_cell_frame frame;
+    brio_cell_complex whole; /* for the cells that the sweep leaves, of a space that repeats */
+    brio_sweep sweep;
+    uint8_t *wanted; /* of each point: whether the sweep leaves its cell */
     brio_diagram diagram;
     brio_region region;
 } cell_call;
@@ -319,6 +322,7 @@ static brio_status scale_points(cell_call *c) {
 
 /* Refuses boxes and planes that are no numbers, and planes without a normal. */
 static brio_status check_region(brio_context *ctx, const brio_cells_options *o) {
+    BRIO_EXPECT(ctx, !o->reserved_int, BRIO_ERR_ARGUMENT, "brio_cells_options.reserved_int is not 0");
     BRIO_EXPECT(ctx, o->planes || !o->num_planes, BRIO_ERR_ARGUMENT, "%zu planes, but no array of them", o->num_planes);
     for (size_t i = 0; i < 6 && o->box; i++)
         BRIO_EXPECT(ctx, isfinite(o->box[i]), BRIO_ERR_ARGUMENT, "number %zu of the box is not finite", i);
@@ -356,9 +360,10 @@ done:
 static brio_status make_cells(brio_cell_job *job) {
     const brio_diagram *d = job->d;
     brio_cells *out = job->out;
+    const uint32_t *rank = job->sweep ? job->sweep->rank : d->rank;
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, job->cell_of, d->num_points));
     for (size_t p = 0; p < d->num_sites; p++)
-        if (d->rank[p] != UINT32_MAX) job->cell_of[p] = (uint32_t)out->num_cells++;
+        if (rank[p] != UINT32_MAX) job->cell_of[p] = (uint32_t)out->num_cells++;
     size_t n = out->num_cells;
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->site, n));
     BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->volume, n));
@@ -367,7 +372,7 @@ static brio_status make_cells(brio_cell_job *job) {
     if (job->centroids) BRIO_FORWARD(BRIO_ALLOC(d->ctx, out->centroid, 3 * n));
     if (job->faces) BRIO_FORWARD(BRIO_ALLOC(d->ctx, job->place, n));
     for (size_t p = 0; p < d->num_sites; p++)
-        if (d->rank[p] != UINT32_MAX) out->site[job->cell_of[p]] = (uint32_t)p;
+        if (rank[p] != UINT32_MAX) out->site[job->cell_of[p]] = (uint32_t)p;
     return BRIO_OK;
 }
 
@@ -381,7 +386,7 @@ static void record_some(void *user, size_t from, size_t to, int thread) {
     brio_cell_recorder *r = &s->job->recorder[thread];
     for (size_t i = from; i < to && r->status == BRIO_OK; i++) {
         uint32_t site = s->job->d->order[s->first + i];
-        if (s->job->d->marked && !s->job->d->marked[s->first + i]) continue; /* its volume is known */
+        if (s->job->d->wanted && !s->job->d->wanted[site]) continue; /* the sweep has it */
         if (site < s->job->d->num_sites) r->status = brio_cell_record(s->job, r, site);
     }
 }
@@ -401,21 +406,17 @@ done:
     return status;
 }
 
-/* Computes the volumes of the cells that neither are clipped nor unbounded. */
-static brio_status compute_volumes(brio_cell_job *job) {
-    const brio_diagram *d = job->d;
-    brio_cells *out = job->out;
-    brio_status status = BRIO_OK;
-    double *volume = NULL, inverse = 1 / d->scale;
-    BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, volume, d->num_vertices));
-    BRIO_TRY(brio_diagram_add_volumes(d, volume));
-    for (size_t c = 0; c < out->num_cells; c++) {
-        out->volume[c] = brio_cells_held(volume[d->rank[out->site[c]]] * inverse * inverse * inverse);
-        out->bounded[c] = 1;
+static void take_some(void *user, size_t from, size_t to, int thread) {
+    const brio_cell_job *job = user;
+    const brio_sweep *s = job->sweep;
+    double inverse = 1 / job->d->scale;
+    (void)thread;
+    for (size_t c = from; c < to; c++) {
+        uint32_t r = s->rank[job->out->site[c]];
+        if (s->left[r]) continue;
+        job->out->volume[c] = brio_cells_held(s->sum[r][0] * inverse * inverse * inverse);
+        job->out->bounded[c] = 1;
     }
-done:
-    brio_release(d->ctx, volume);
-    return status;
 }
 
 /* Adds up the volumes of the bounded cells, in the order of their sites, with the rounding errors [Neumaier 1974]. */
@@ -433,9 +434,9 @@ static double sum_of_volumes(const brio_cells *cells) {
 static brio_status compute(brio_cell_job *job) {
     const brio_diagram *d = job->d;
     brio_status status = BRIO_OK;
-    job->threads = brio_threads(d->ctx, d->num_vertices, CELLS_A_THREAD);
+    job->threads = brio_threads(d->ctx, job->sweep ? job->sweep->num_ranks : d->num_vertices, CELLS_A_THREAD);
     BRIO_TRY(make_cells(job));
-    if (d->volumes_only) BRIO_TRY(compute_volumes(job));
+    if (job->sweep) BRIO_TRY(brio_for(d->ctx, job->threads, job->out->num_cells, take_some, job));
     BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, job->recorder, (size_t)job->threads));
     for (int i = 0; i < job->threads; i++) {
         job->recorder[i].ctx = job->recorder[i].shape.ctx = d->ctx;
@@ -467,6 +468,9 @@ static brio_status check_filled(brio_context *ctx, const brio_cells *cells) {
 /* --- the call --- */
 
 static void end_call(cell_call *c) {
+    brio_sweep_free(&c->sweep);
+    brio_release(c->ctx, c->wanted);
+    brio_release(c->ctx, c->whole.tet);
     brio_diagram_free(&c->diagram);
     brio_region_free(&c->region);
     brio_triangulation_free(c->own);
@@ -478,11 +482,43 @@ static void end_call(cell_call *c) {
     brio_release(c->ctx, c->scaled_weights);
 }
 
+bool brio_cells_are_swept(const brio_cells_options *o) {
+    return o->no_areas && o->no_centroids && !o->vertices && (o->no_faces || o->no_face_sizes);
+}
+
+/* Sweeps the tetrahedra, and makes the diagram that of the cells that are left. */
+static brio_status sweep(cell_call *c) {
+    brio_diagram *d = &c->diagram;
+    const brio_cell_complex *complex = c->complex;
+    brio_sweep_task task = {.tet = d->t.tet,
+                            .num_finite = d->num_finite,
+                            .count = d->t.count,
+                            .at = d->at,
+                            .square = d->square,
+                            .num_rows = d->num_points,
+                            .num_sites = d->num_sites,
+                            .region = &c->region,
+                            .neighbours = !c->options.no_faces};
+    if (complex) task.more = complex->more, task.num_more = complex->num_more, task.owner = complex->owner;
+    BRIO_FORWARD(brio_sweep_fill(c->ctx, &task, &c->sweep));
+    if (!c->sweep.num_left) return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->wanted, d->num_points));
+    for (size_t r = 0; r < c->sweep.num_ranks; r++) c->wanted[c->sweep.order[r]] = c->sweep.left[r];
+    d->wanted = c->wanted;
+    if (!complex || !complex->whole) return BRIO_OK;
+    BRIO_FORWARD(complex->whole(complex->user, c->wanted, &c->whole));
+    d->t.tet = c->whole.tet;
+    d->t.count = c->whole.count;
+    d->num_finite = c->whole.num_finite;
+    return BRIO_OK;
+}
+
 static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *out) {
     const brio_cells_options *o = &c->options;
     brio_cell_job job = {.d = &c->diagram, .region = &c->region, .out = out};
     job.areas = !o->no_areas, job.centroids = !o->no_centroids, job.vertices = o->vertices;
     job.faces = !o->no_faces || o->vertices;
+    job.sizes = job.faces && (!o->no_face_sizes || o->vertices);
     c->diagram.ctx = c->ctx;
     c->diagram.num_points = c->num_points;
     c->diagram.num_sites = c->complex ? c->complex->num_sites : c->num_points;
@@ -492,8 +528,11 @@ static brio_status run(cell_call *c, const brio_triangulation *t, brio_cells *ou
     BRIO_FORWARD(make_region(c));
     out->region_volume = c->region.num_planes ? c->region.volume : INFINITY;
     for (int k = 0; k < 3; k++) out->region_volume /= c->diagram.scale;
-    c->diagram.volumes_only = !job.areas && !job.centroids && !job.faces && !c->diagram.flat && !c->complex;
-    BRIO_FORWARD(brio_diagram_fill(&c->diagram, &c->region));
+    if (brio_cells_are_swept(o) && !c->diagram.flat) {
+        BRIO_FORWARD(sweep(c));
+        job.sweep = &c->sweep;
+    }
+    if (!job.sweep || c->sweep.num_left) BRIO_FORWARD(brio_diagram_fill(&c->diagram, &c->region));
     BRIO_FORWARD(compute(&job));
     if (!c->complex) BRIO_FORWARD(check_filled(c->ctx, out)); /* else the region is wider than the sites */
     return brio_progress(c->ctx, "cells", 1);

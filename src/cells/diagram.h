@@ -3,14 +3,14 @@
  *
  * I1  Row t of `centre` is the centre of tetrahedron t and its place, a brio_place. It is NaN for infinite tetrahedra
  *     and for centres that doubles cannot hold, and then the place is BRIO_PLACE_FAR.
- * I2  Where `same` is not NULL, same[t] is the least of the tetrahedra that share the centre of t and are joined with t
- *     across facets. Rows of such tetrahedra are equal up to rounding. For infinite tetrahedra the outward normal of
- *     the hull facet takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
+ * I2  Where `same` is not NULL, same[t] is the least of the listed tetrahedra that share the centre of t and are joined
+ *     with t across facets. Rows of such tetrahedra are equal up to rounding. For infinite tetrahedra the outward
+ *     normal of the hull facet takes the place of the centre. Where `same` is NULL, no two tetrahedra share a centre.
  * I3  The tetrahedra of a vertex ascend.
  * I4  Row r of `ranked` is the point order[r], and rank[order[r]] = r. The order follows the array of tetrahedra: what
  *     is near in space is near in memory.
- * I5  With `volumes_only` a vertex is marked if one of its tetrahedra is infinite or has its centre outside the region.
- *     Then ties, places and stars are only found for the listed tetrahedra, those with a marked vertex. */
+ * I5  All of this is found for the listed tetrahedra, those with a vertex that is wanted, and for their vertices. Stars
+ *     of vertices that are not wanted may lack tetrahedra. */
 #ifndef BRIO_CELLS_DIAGRAM_H
 #define BRIO_CELLS_DIAGRAM_H
 
@@ -50,6 +50,9 @@ typedef enum brio_place {
     BRIO_PLACE_FAR = 2,     /* so far outside that rounding would show, or at infinity */
 } brio_place;
 
+/** Returns where a finite centre is, NaN included. */
+brio_place brio_place_of(const brio_region *region, const double *centre);
+
 typedef struct brio_diagram {
     brio_context *ctx;
     /* given; lengths are scaled by a power of two, see scale */
@@ -61,7 +64,7 @@ typedef struct brio_diagram {
     double origin[3];               /* each difference points - origin is exact */
     double scale;                   /* a power of two: at = scale * (points - origin) */
     bool flat;                      /* the points have dimension 2 or less: centres say nothing */
-    bool volumes_only;              /* nothing but volumes is asked for, and the points are not flat */
+    const uint8_t *wanted;          /* of each point whether its cell is to be computed; NULL: all are */
     brio_tetrahedra t;
     size_t num_finite;
     /* made by brio_diagram_fill */
@@ -70,9 +73,7 @@ typedef struct brio_diagram {
     size_t num_vertices;
     uint32_t *order, *rank;         /* #vertices: points; #P: I4, UINT32_MAX for points that are no vertices */
     double *ranked, *ranked_square; /* #vertices by 3; #vertices, NULL without weights: I4 */
-    uint32_t (*id)[4];              /* the ranks of the vertices of each finite tetrahedron; NULL unless volumes_only */
-    uint8_t *marked;                /* of each rank; NULL unless volumes_only: I5 */
-    uint32_t *listed;               /* I5; NULL unless volumes_only: all tetrahedra are listed */
+    uint32_t *listed;               /* I5, finite ones first; NULL: all tetrahedra are listed */
     size_t num_listed;
     uint64_t *begin; /* #P + 4 and one: tetrahedra star[begin[v]] to star[begin[v] + size[v] - 1] */
     uint32_t *size;  /* the number of tetrahedra of each point; 0 for points that are no vertices */
@@ -83,27 +84,31 @@ typedef struct brio_diagram {
 brio_status brio_diagram_fill(brio_diagram *d, const brio_region *region);
 void brio_diagram_free(brio_diagram *d);
 
-/* The steps of brio_diagram_fill, in their order: vertex_order.c, centres.c, ties.c, centres.c, stars.c. */
+/* The steps of brio_diagram_fill, in their order: diagram.c, centres.c, ties.c, centres.c, stars.c. */
 
+/** Lists tetrahedra: I5. */
+brio_status brio_diagram_list(brio_diagram *d);
 /** Orders the vertices: I4. */
 brio_status brio_diagram_order_vertices(brio_diagram *d);
-/** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. Marks vertices and
- *  lists tetrahedra: I5. */
-brio_status brio_diagram_find_centres(brio_diagram *d, const brio_region *region);
+/** Computes the centres. The fourth number of a row is a bound of the error of each coordinate. */
+brio_status brio_diagram_find_centres(brio_diagram *d);
 /** Finds the tetrahedra that share a centre. */
 brio_status brio_diagram_unite_ties(brio_diagram *d);
 /** Replaces the fourth number of each row by its place. */
 brio_status brio_diagram_find_places(brio_diagram *d, const brio_region *region);
 brio_status brio_diagram_gather_stars(brio_diagram *d);
 
-/** Computes the volumes of the cells of all vertices that are not marked, scaled.   volume  #vertices, zero; what is
- *  written for marked vertices says nothing.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
-brio_status brio_diagram_add_volumes(const brio_diagram *d, double *volume);
-
 /** Returns number i of the listed tetrahedra. */
 static inline uint32_t brio_listed(const brio_diagram *d, size_t i) {
     assert(i < d->num_listed);
     return d->listed ? d->listed[i] : (uint32_t)i;
+}
+
+/** Returns whether a tetrahedron is listed. */
+static inline bool brio_is_listed(const brio_diagram *d, uint32_t t) {
+    const uint32_t *v = d->t.tet[t].vertex;
+    if (!d->wanted) return true;
+    return d->wanted[v[0]] || d->wanted[v[1]] || d->wanted[v[2]] || (t < d->num_finite && d->wanted[v[3]]);
 }
 
 /** Returns the tetrahedron that speaks for all that share the centre of t. */
@@ -122,15 +127,26 @@ typedef struct brio_cell_frame {
 } brio_cell_frame;
 
 /** All tetrahedra that have a site for a vertex, finite ones first. Mates across facets that have one are right; the
- *  others are the facet itself. */
+ *  others are the facet itself. For a sweep (sweep.h): one tetrahedron of each class of translates, and `more` of them,
+ *  so that all that have a site for a vertex are there. */
 typedef struct brio_cell_complex {
     brio_tetrahedron
         *tet; /* NULL: points of dimension 2 or less, triangulated here; the sites' neighbours are all there */
     size_t num_finite, count;
+    const uint32_t (*more)[4];
+    size_t num_more;
+    const uint32_t *owner; /* #points - #sites: of which site each other point is a translate; for a sweep */
+    /** Makes the complex of which no sweep is made, for the cells that a sweep leaves: sets tet, num_finite and count.
+     *  Points stay.   wanted  #points: whose cells are wanted.   NULL: this is it. */
+    brio_status (*whole)(void *user, const uint8_t *wanted, struct brio_cell_complex *whole);
+    void *user;
     const double *points, *weights; /* #P by 3; #P, or NULL */
     size_t num_points, num_sites;   /* the first points are the sites */
     const brio_cell_frame *frame;   /* of more points than these, or NULL */
 } brio_cell_complex;
+
+/** Returns whether cells with these options come from a sweep, where points have dimension 3. */
+bool brio_cells_are_swept(const brio_cells_options *options);
 
 /** Computes the cells of the sites, as brio_voronoi_cells does. Neighbours are indices of points.
  *  options  all fields are known.   out  as brio_voronoi_cells; NULL before. */

@@ -55,7 +55,7 @@ static void look_at_some(void *user, size_t from, size_t to, int thread) {
         uint32_t t = brio_listed(d, n);
         for (int i = 0; i < (t < finite ? 4 : 3); i++) {
             uint32_t u = brio_tet_of(tet[t].mate[i]);
-            if (u <= t || (u >= finite) != (t >= finite)) continue;
+            if (u <= t || (u >= finite) != (t >= finite) || !brio_is_listed(d, u)) continue;
             if (t < finite && !may_share(centre[t], centre[u])) continue;
             candidates++;
             if (s->search && shares(s, &filter, t, i)) brio_unite(d->same, t, u, s->threads == 1);

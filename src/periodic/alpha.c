@@ -94,7 +94,7 @@ void brio_periodic_alpha_free(brio_periodic_alpha *a) {
 
 static brio_status find(alpha_call *c, brio_periodic_alpha *out) {
     BRIO_FORWARD(brio_images_copy(c->ctx, &c->t->images, &c->t->lattice, &c->images));
-    BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, &c->images, &c->unfolded));
+    BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, NULL, &c->images, &c->unfolded));
     BRIO_FORWARD(number_images(c));
     const brio_alpha_input in = {.tet = c->unfolded.tet,
                                  .num_finite = c->unfolded.num_finite,

@@ -4,8 +4,10 @@
  * from their stars (brio_cells_of_complex). Then neighbours become points and shifts, and each cell is moved to where
  * its point was given: a vertex of cells that move differently becomes several. */
 #include "base/float_state.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/team.h"
 #include "base/versioned.h"
 #include "cells/diagram.h"
 #include "periodic/periodic.h"
@@ -13,13 +15,14 @@
 #include <string.h>
 
 /* BOX_REACH: how many cells wide a box is along coordinates that repeat; no cell reaches as far. */
-enum { BOX_REACH = 8 };
+enum { BOX_REACH = 8, CELLS_A_THREAD = 1 << 12 };
 
 typedef struct {
     brio_context *ctx;
     const brio_periodic *t;
     brio_images images;
-    brio_unfolded unfolded;
+    brio_tetrahedron *unfolded;  /* or NULL */
+    uint32_t (*more)[4], *owner; /* for a sweep */
     double box[6];
 } periodic_call;
 
@@ -77,17 +80,24 @@ static inline double move_of(const brio_periodic *t, uint32_t point, int k) {
     return sum;
 }
 
-static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
-    const brio_periodic *t = c->t;
+typedef struct {
+    const periodic_call *c;
+    brio_cells *cells;
+    uint8_t *border; /* of each point: whether a neighbour may be a translate */
+} showing;
+
+static void show_some(void *user, size_t from, size_t to, int thread) {
+    const showing *h = user;
+    const brio_periodic *t = h->c->t;
     const brio_lattice *l = &t->lattice;
-    size_t faces = cells->face_offsets ? (size_t)cells->face_offsets[cells->num_cells] : 0;
-    if (!cells->face_offsets) return BRIO_OK;
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, cells->face_shifts, 3 * faces + 1));
-    for (size_t n = 0; n < cells->num_cells; n++)
+    brio_cells *cells = h->cells;
+    (void)thread;
+    for (size_t n = from; n < to; n++)
         for (uint64_t f = cells->face_offsets[n]; f < cells->face_offsets[n + 1]; f++) {
+            if (t->stays && h->border && !h->border[cells->site[n]]) break; /* nearly all */
             if (cells->face_neighbours[f] < 0) continue;
-            if (t->stays && (size_t)cells->face_neighbours[f] < c->images.num_points) continue;
-            const brio_image *image = &c->images.list[cells->face_neighbours[f]];
+            if (t->stays && (size_t)cells->face_neighbours[f] < h->c->images.num_points) continue;
+            const brio_image *image = &h->c->images.list[cells->face_neighbours[f]];
             cells->face_neighbours[f] = image->point;
             for (int j = 0; j < l->rank; j++) {
                 int64_t shift = (int64_t)t->home[image->point][j] - t->home[cells->site[n]][j];
@@ -95,7 +105,27 @@ static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
                 cells->face_shifts[3 * f + (size_t)l->axis[j]] = (int32_t)shift;
             }
         }
-    return BRIO_OK;
+}
+
+/* Makes points and shifts of the images that are neighbours. Points of dimension 2 or less have no tetrahedra that say
+ * where the border is. */
+static brio_status show_neighbours(const periodic_call *c, brio_cells *cells) {
+    const brio_periodic *t = c->t;
+    brio_status status = BRIO_OK;
+    showing h = {.c = c, .cells = cells};
+    size_t faces = cells->face_offsets ? (size_t)cells->face_offsets[cells->num_cells] : 0;
+    if (!cells->face_offsets) return BRIO_OK;
+    BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, cells->face_shifts, 3 * faces + 1));
+    if (t->stats.dimension == 3) BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, h.border, c->images.num_points + 1));
+    for (size_t i = 0; i < t->num_border && h.border; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t v = t->tet[t->border[i]].vertex[k];
+            if (v != BRIO_INFINITE) h.border[brio_images_point(&c->images, v)] = 1;
+        }
+    BRIO_TRY(brio_for(c->ctx, brio_threads(c->ctx, cells->num_cells, CELLS_A_THREAD), cells->num_cells, show_some, &h));
+done:
+    brio_release(c->ctx, h.border);
+    return status;
 }
 
 static void move_centroids(const periodic_call *c, brio_cells *cells) {
@@ -157,22 +187,50 @@ done:
     return status;
 }
 
+/* Unfolds the tetrahedra. Finds no images that are not known where a sweep was prepared. */
+static brio_status unfold(void *user, const uint8_t *wanted, brio_cell_complex *complex) {
+    periodic_call *c = user;
+    brio_unfolded made = {0};
+    BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, wanted, &c->images, &made));
+    complex->tet = made.tet;
+    complex->num_finite = made.num_finite;
+    complex->count = made.count;
+    return BRIO_OK;
+}
+
+/* Makes what a sweep takes: the further tetrahedra, and whose translates the images are. */
+static brio_status prepare_sweep(periodic_call *c, brio_cell_complex *complex) {
+    brio_images *m = &c->images;
+    BRIO_FORWARD(brio_periodic_further(c->ctx, c->t, m, &c->more, &complex->num_more));
+    BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->owner, m->count - m->num_points));
+    for (size_t i = m->num_points; i < m->count; i++) c->owner[i - m->num_points] = m->list[i].point;
+    complex->tet = c->t->tet;
+    complex->num_finite = c->t->stats.tetrahedra;
+    complex->count = c->t->stats.tetrahedra + c->t->stats.hull_facets;
+    complex->more = (const uint32_t(*)[4])c->more;
+    complex->owner = c->owner;
+    complex->whole = unfold;
+    complex->user = c;
+    return BRIO_OK;
+}
+
 static brio_status compute(periodic_call *c, const brio_cells_options *options, brio_cells **out) {
     brio_cells_options o = *options;
     bool flat = c->t->stats.dimension < 3;
     BRIO_FORWARD(brio_images_copy(c->ctx, &c->t->images, &c->t->lattice, &c->images));
-    if (flat)
+    brio_cell_complex complex = {.num_sites = c->images.num_points};
+    if (flat) {
         BRIO_FORWARD(add_all(c));
-    else
-        BRIO_FORWARD(brio_periodic_unfold(c->ctx, c->t, &c->images, &c->unfolded));
+    } else if (brio_cells_are_swept(&o)) {
+        BRIO_FORWARD(prepare_sweep(c, &complex));
+    } else {
+        BRIO_FORWARD(unfold(c, NULL, &complex));
+        c->unfolded = complex.tet;
+    }
     BRIO_FORWARD(take_box(c, &o));
-    brio_cell_complex complex = {.tet = flat ? NULL : c->unfolded.tet,
-                                 .num_finite = c->unfolded.num_finite,
-                                 .count = c->unfolded.count,
-                                 .points = c->images.x[0],
-                                 .weights = c->images.weight,
-                                 .num_points = c->images.count,
-                                 .num_sites = c->images.num_points};
+    complex.points = c->images.x[0];
+    complex.weights = c->images.weight;
+    complex.num_points = c->images.count;
     BRIO_FORWARD(brio_cells_of_complex(c->ctx, &complex, &o, out));
     if (c->t->lattice.rank == 3) (*out)->region_volume = c->t->lattice.volume;
     BRIO_FORWARD(show_neighbours(c, *out));
@@ -187,11 +245,15 @@ brio_status brio_periodic_cells(brio_context *ctx, const brio_periodic *t, const
     brio_cells_options o = {0};
     brio_status status = BRIO_OK;
     *out = NULL;
+    brio_keep_begin(ctx);
     BRIO_TRY(BRIO_TAKE(ctx, brio_cells_options, options, &o));
     BRIO_TRY(compute(&c, &o, out));
 done:
+    brio_keep_end(ctx);
     brio_images_free(&c.images);
-    brio_release(ctx, c.unfolded.tet);
+    brio_release(ctx, c.unfolded);
+    brio_release(ctx, c.more);
+    brio_release(ctx, c.owner);
     if (status != BRIO_OK) {
         brio_cells_free(*out);
         *out = NULL;

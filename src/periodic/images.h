@@ -33,6 +33,11 @@ brio_status brio_images_add(brio_images *images, uint32_t point, const int32_t s
 /** Finds the index of an image, and appends the image where the list does not have it. */
 brio_status brio_images_find(brio_images *images, uint32_t point, const int32_t shift[3], uint32_t *index);
 
+/** Returns the point of which an image is a translate. */
+static inline uint32_t brio_images_point(const brio_images *m, uint32_t image) {
+    return image < m->num_points ? image : m->list[image].point;
+}
+
 /** Returns the lexicographic order of two images: -1, 0 or 1. */
 static inline int brio_images_compare(const brio_images *m, uint32_t a, uint32_t b) {
     for (int k = 0; k < 3; k++)

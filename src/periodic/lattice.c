@@ -267,7 +267,7 @@ static double volume_of(const double (*v)[3], int rank) {
 
 /* --- points --- */
 
-/* Subtracts the origin and `n` of the given vectors from a point. Most points are in the cell: n is 0 then. */
+/* Subtracts the origin and `n` of the given vectors from a point. Most points need none of them. */
 static void subtract_cells(const brio_lattice *l, const double *point, const double *n, double *x) {
     for (int k = 0; k < 3; k++) {
         double high = point[k], low = 0;
@@ -326,12 +326,14 @@ bool brio_lattice_home(const brio_lattice *l, const double *point, brio_home *ho
     home->moved = 0;
     for (int k = 0; k < 3; k++) {
         home->x[k] = l->unit[k] > 0 ? rint(home->x[k] / l->unit[k]) * l->unit[k] : near[k];
-        home->moved = fmax(home->moved, fabs(home->x[k] - near[k]));
+        double moved = fabs(home->x[k] - near[k]);
+        home->moved = moved > home->moved ? moved : home->moved;
     }
     for (int k = 0; k < 3; k++) home->x[k] -= l->corner[k]; /* exact */
     double shift[3] = {-n[0], -n[1], -n[2]};
     for (int i = 0; i < l->rank; i++) {
         double m = cells_off(l, i, home->x);
+        if (m == 0) continue;
         for (int k = 0; k < 3; k++) home->x[k] -= m * l->basis[i][k];
         for (int j = 0; j < l->rank; j++) shift[j] -= m * (double)l->change[i][j];
     }

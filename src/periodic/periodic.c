@@ -7,13 +7,17 @@
 #include "periodic/periodic.h"
 #include "base/finite.h"
 #include "base/float_state.h"
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "base/team.h"
 #include "base/versioned.h"
 #include "periodic/translates.h"
 #include <math.h>
 #include <string.h>
+
+enum { POINTS_A_THREAD = 1 << 14 };
 
 void brio_periodic_free(brio_periodic *t) {
     if (!t) return;
@@ -24,57 +28,90 @@ void brio_periodic_free(brio_periodic *t) {
     brio_release(ctx, t->representative);
     brio_release(ctx, t->home);
     brio_release(ctx, t->tet);
+    brio_release(ctx, t->border);
     brio_release(ctx, t);
 }
 
 /* --- points --- */
 
+/* What one thread found of the points that it put into the domain. */
+typedef struct {
+    bool stays;
+    double moved;
+    size_t far; /* the first point that is too far away */
+} arrival;
+
+typedef struct {
+    brio_periodic *t;
+    const double *points;
+    double (*home)[3];
+    arrival *of; /* each thread */
+} homing;
+
+static void bring_some(void *user, size_t from, size_t to, int thread) {
+    const homing *h = user;
+    arrival *a = &h->of[thread];
+    for (size_t p = from; p < to; p++) {
+        brio_home at = {0};
+        if (!brio_lattice_home(&h->t->lattice, h->points + 3 * p, &at) && p < a->far) a->far = p;
+        memcpy(h->home[p], at.x, sizeof at.x);
+        for (int j = 0; j < 3; j++) h->t->home[p][j] = (int32_t)at.shift[j];
+        a->stays &= !at.shift[0] && !at.shift[1] && !at.shift[2];
+        a->moved = fmax(a->moved, at.moved);
+    }
+}
+
 /* Puts the points into the domain. */
 static brio_status bring_home(brio_periodic *t, const double *points, size_t n, double (**out)[3]) {
-    double(*home)[3] = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_ALLOC(t->ctx, home, n + 1));
+    int threads = brio_threads(t->ctx, n, POINTS_A_THREAD);
+    homing h = {.t = t, .points = points};
+    BRIO_TRY(BRIO_ALLOC(t->ctx, h.home, n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, t->home, n + 1));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, h.of, (size_t)threads));
+    for (int i = 0; i < threads; i++) h.of[i] = (arrival){.stays = true, .far = SIZE_MAX};
+    BRIO_TRY(brio_for(t->ctx, threads, n, bring_some, &h));
     t->stays = true;
-    for (size_t p = 0; p < n; p++) {
-        brio_home h;
-        BRIO_REQUIRE(t->ctx, brio_lattice_home(&t->lattice, points + 3 * p, &h), BRIO_ERR_ARGUMENT,
-                     "point %zu is more than 2^26 cells away from the others", p);
-        memcpy(home[p], h.x, sizeof *home);
-        for (int j = 0; j < 3; j++) t->home[p][j] = (int32_t)h.shift[j];
-        t->stays &= !h.shift[0] && !h.shift[1] && !h.shift[2];
-        t->stats.moved = fmax(t->stats.moved, h.moved);
-        BRIO_TRY(brio_look(t->ctx, 1));
+    for (int i = 0; i < threads; i++) {
+        BRIO_REQUIRE(t->ctx, h.of[i].far == SIZE_MAX, BRIO_ERR_ARGUMENT,
+                     "point %zu is more than 2^26 cells away from the others", h.of[i].far);
+        t->stays &= h.of[i].stays;
+        t->stats.moved = fmax(t->stats.moved, h.of[i].moved);
     }
-    *out = home;
-    home = NULL;
+    *out = h.home;
+    h.home = NULL;
 done:
-    brio_release(t->ctx, home);
+    brio_release(t->ctx, h.home);
+    brio_release(t->ctx, h.of);
     return status;
 }
 
 /* --- images --- */
 
 /* Drops the images that no tetrahedron has. */
-static brio_status drop_images(brio_periodic *t, size_t num_tets) {
+static brio_status drop_images(brio_periodic *t) {
     brio_images *m = &t->images;
-    uint32_t *name = NULL;
-    size_t count = m->num_points;
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, name, m->count + 1));
-    for (size_t i = 0; i < num_tets; i++)
-        for (int k = 0; k < 4; k++)
-            if (t->tet[i].vertex[k] != BRIO_INFINITE) name[t->tet[i].vertex[k]] = 1;
-    for (size_t i = 0; i < m->count; i++) {
-        if (i >= m->num_points && !name[i]) continue;
-        size_t at = i < m->num_points ? i : count++;
-        name[i] = (uint32_t)at;
+    uint32_t *name = NULL; /* of each image behind the points */
+    size_t count = m->num_points, n = m->num_points;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, name, m->count - n + 1));
+    for (size_t i = 0; i < t->num_border; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t v = t->tet[t->border[i]].vertex[k];
+            if (v >= n && v != BRIO_INFINITE) name[v - n] = 1;
+        }
+    for (size_t i = n; i < m->count; i++) {
+        if (!name[i - n]) continue;
+        size_t at = count++;
+        name[i - n] = (uint32_t)at;
         m->list[at] = m->list[i];
         memcpy(m->x[at], m->x[i], sizeof *m->x);
         if (m->weight) m->weight[at] = m->weight[i];
     }
-    for (size_t i = 0; i < num_tets; i++)
-        for (int k = 0; k < 4; k++)
-            if (t->tet[i].vertex[k] != BRIO_INFINITE) t->tet[i].vertex[k] = name[t->tet[i].vertex[k]];
+    for (size_t i = 0; i < t->num_border; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t *v = &t->tet[t->border[i]].vertex[k];
+            if (*v >= n && *v != BRIO_INFINITE) *v = name[*v - n];
+        }
     m->count = count;
     brio_release(t->ctx, m->slot);
     m->slot = NULL;
@@ -101,17 +138,22 @@ static brio_image show(const brio_periodic *t, const brio_image *image, const in
     return brio_periodic_show(t, image, t->home[image->point], wide);
 }
 
-static brio_status show_images(brio_periodic *t) {
+static void show_some(void *user, size_t from, size_t to, int thread) {
     static const int32_t none[3] = {0, 0, 0};
+    brio_periodic *t = user;
     const brio_images *m = &t->images;
-    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->shown, m->count + 1));
-    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->position, m->count + 1));
-    for (size_t i = 0; i < m->count; i++) {
+    (void)thread;
+    for (size_t i = from; i < to; i++) {
         t->shown[i] = show(t, &m->list[i], none);
         for (int k = 0; k < 3; k++) t->position[i][k] = brio_lattice_shown(&t->lattice, m->x[i][k], k);
     }
-    t->stats.images = m->count;
-    return BRIO_OK;
+}
+
+static brio_status show_images(brio_periodic *t) {
+    size_t n = t->stats.images = t->images.count;
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->shown, n + 1));
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, t->position, n + 1));
+    return brio_for(t->ctx, brio_threads(t->ctx, n, POINTS_A_THREAD), n, show_some, t);
 }
 
 /* --- representatives --- */
@@ -197,13 +239,19 @@ brio_status brio_periodic_make(brio_periodic *t, const brio_stars_task *task) {
     brio_context *ctx = t->ctx;
     brio_status status = BRIO_OK;
     brio_stars stars = {0};
+    brio_folded folded = {0};
     BRIO_TRY(brio_stars_new(ctx, task, &stars));
     describe(t, &stars);
-    BRIO_TRY(brio_periodic_fold(ctx, &stars, &t->tet, &t->stats.tetrahedra, &t->stats.hull_facets));
+    BRIO_TRY(brio_periodic_fold(ctx, &stars, &folded));
+    t->tet = folded.tet;
+    t->stats.tetrahedra = folded.num_finite;
+    t->stats.hull_facets = folded.num_infinite;
+    t->border = folded.border;
+    t->num_border = folded.num_border;
     t->images = stars.images;
     BRIO_TRY(represent(t, &stars));
     stars.images = (brio_images){.ctx = ctx};
-    BRIO_TRY(drop_images(t, t->stats.tetrahedra + t->stats.hull_facets));
+    BRIO_TRY(drop_images(t));
     BRIO_TRY(show_images(t));
 done:
     if (stars.images.list == t->images.list) stars.images = (brio_images){.ctx = ctx};
@@ -257,6 +305,7 @@ brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, cons
     brio_periodic *t = NULL;
     double start = brio_seconds();
     *out = NULL;
+    brio_keep_begin(ctx);
     BRIO_TRY(begin(ctx, points, num_points, options, &o, &t));
     if (weights) BRIO_TRY(brio_refuse_not_finite(ctx, points, weights, num_points, NULL));
     BRIO_TRY(build(t, points, weights, num_points, &o));
@@ -266,6 +315,7 @@ brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, cons
     t = NULL;
 done:
     brio_periodic_free(t);
+    brio_keep_end(ctx);
     return status;
 }
 

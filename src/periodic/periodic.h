@@ -85,6 +85,8 @@ struct brio_periodic {
     int32_t (*home)[3];         /* #points: shifts of the caller's vectors from the points to the domain */
     bool stays;                 /* all points are in the domain as they were given: `home` is 0 */
     brio_tetrahedron *tet;      /* I1, I2: finite ones first */
+    uint32_t *border;           /* those with a vertex that is not in the domain */
+    size_t num_border;
 };
 
 /** The default halo, in spacings: in uniform points nearly all balls at points of the domain are within it.
@@ -97,10 +99,18 @@ brio_status brio_periodic_take(brio_context *ctx, const brio_periodic_options *o
 /** Makes all of a triangulation that has its lattice and its points' shifts to the domain. */
 brio_status brio_periodic_make(brio_periodic *t, const brio_stars_task *task);
 
-/** Makes the classes of stars.   tet  owned by the caller.
- *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, or BRIO_ERR_INTERNAL if facets have no mates. */
-brio_status brio_periodic_fold(brio_context *ctx, brio_stars *stars, brio_tetrahedron **tet, size_t *num_finite,
-                               size_t *num_infinite);
+/** Classes of stars. */
+typedef struct brio_folded {
+    brio_tetrahedron *tet; /* finite ones first */
+    size_t num_finite, num_infinite;
+    uint32_t *border; /* those with a vertex that is not in the domain */
+    size_t num_border;
+} brio_folded;
+
+/** Makes the classes of stars.   out  its arrays are owned by the caller.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, BRIO_ERR_TOO_LARGE, or BRIO_ERR_INTERNAL if facets have no
+ *  mates. */
+brio_status brio_periodic_fold(brio_context *ctx, brio_stars *stars, brio_folded *out);
 
 /** Returns the shift by which the mate behind facet i of tetrahedron t has to be moved to meet it there. */
 void brio_periodic_across(const brio_images *images, const brio_tetrahedron *tet, size_t t, int i, int32_t shift[3]);
@@ -117,7 +127,14 @@ typedef struct brio_unfolded {
     size_t num_finite, count;
 } brio_unfolded;
 
-/** Makes them.   images  gets the images that they name.   out  its array is owned by the caller. */
-brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, brio_images *images, brio_unfolded *out);
+/** Makes the further ones: the finite tetrahedra with a vertex in the domain that do not stand for their class.
+ *  images  gets the images that they name.   more  owned by the caller. */
+brio_status brio_periodic_further(brio_context *ctx, const brio_periodic *t, brio_images *images, uint32_t (**more)[4],
+                                  size_t *num_more);
+
+/** Makes them.   wanted  #points: only those at classes with a point of a 1, and mates among these; NULL: all.
+ *  images  gets the images that they name.   out  its array is owned by the caller. */
+brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, const uint8_t *wanted, brio_images *images,
+                                 brio_unfolded *out);
 
 #endif

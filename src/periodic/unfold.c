@@ -1,8 +1,8 @@
 /* All tetrahedra with a vertex in the domain, from one of each class.
  *
- * Cells and stars of the points are made of them. A class has as many of them as its vertices have different shifts:
- * each moved back by one. The first is the class itself, whose least vertex is in the domain; the others are
- * appended. */
+ * Cells and stars of the points, or of some of them, are made of them. A class has as many of them as its vertices have
+ * different shifts: each moved back by one. The first is the class itself, whose least vertex is in the domain; the
+ * others are appended. */
 #include "base/memory.h"
 #include "periodic/periodic.h"
 #include <assert.h>
@@ -12,7 +12,9 @@ typedef struct {
     brio_context *ctx;
     const brio_periodic *t;
     brio_images *images;
+    const uint8_t *wanted; /* of each point whether tetrahedra at it are wanted; NULL: all are */
     size_t num_classes, num_finite;
+    uint32_t *place_of;  /* #classes: where each is among the tetrahedra; UINT32_MAX for those that are not wanted */
     uint32_t *more;      /* #classes: where the further ones of a class begin in the lists below; 0 is none */
     uint32_t *class_of;  /* of each further one, from 1 on */
     int32_t (*shift)[3]; /* and how it was moved */
@@ -25,21 +27,23 @@ static bool same_shift(const int32_t *a, const int32_t *b) {
     return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
 }
 
-/* Lists the further ones of a class. */
-static brio_status list_more(unfolding *u, size_t c) {
+/* Lists the further ones of a class. Sets the number of all of it. */
+static brio_status list_more(unfolding *u, size_t c, int *count) {
     const uint32_t *v = u->t->tet[c].vertex;
     const brio_image *list = u->t->images.list;
+    size_t points = u->t->images.num_points;
     int32_t found[4][3] = {{0}};
     int n = 1;
+    *count = 1;
+    if (v[0] < points && v[1] < points && v[2] < points && (v[3] < points || v[3] == BRIO_INFINITE)) return BRIO_OK;
     for (int k = 0; k < 4; k++) {
-        if (v[k] < u->t->images.num_points || v[k] == BRIO_INFINITE) continue;
+        if (v[k] < points || v[k] == BRIO_INFINITE) continue;
         int at = 0;
         while (at < n && !same_shift(found[at], list[v[k]].shift)) at++;
         if (at < n) continue;
         memcpy(found[n++], list[v[k]].shift, sizeof *found);
     }
-    u->more[c] = n > 1 ? (uint32_t)u->count : 0;
-    u->inside[c] = n == 1;
+    *count = n;
     for (int i = 1; i < n; i++) {
         BRIO_FORWARD(BRIO_RESERVE(u->ctx, u->class_of, u->class_capacity, u->count + 1));
         BRIO_FORWARD(BRIO_RESERVE(u->ctx, u->shift, u->shift_capacity, u->count + 1));
@@ -53,7 +57,7 @@ static brio_status list_more(unfolding *u, size_t c) {
 /* Returns the place of the tetrahedron of a class moved by a shift; UINT32_MAX if it has no vertex in the domain. */
 static uint32_t find(const unfolding *u, uint32_t c, const int32_t *shift) {
     static const int32_t none[3] = {0, 0, 0};
-    if (same_shift(shift, none)) return c < u->num_finite ? c : u->place[0] + (c - (uint32_t)u->num_finite);
+    if (same_shift(shift, none) || u->place_of[c] == UINT32_MAX) return u->place_of[c];
     for (size_t i = u->more[c]; i && i < u->count && u->class_of[i] == c; i++)
         if (same_shift(u->shift[i], shift)) return u->place[i];
     return UINT32_MAX;
@@ -66,12 +70,12 @@ static void link(const unfolding *u, brio_tetrahedron *tet, uint32_t place, uint
     for (int i = 0; i < 4; i++) {
         uint32_t mate = class->mate[i], other = mate >> 2;
         int32_t way[3], own = 0;
+        tet[place].mate[i] = 4 * place + (uint32_t)i;
+        if (u->place_of[other] == UINT32_MAX) continue;
         if (u->inside[c] && u->inside[other]) { /* nearly all: they meet as they are */
-            tet[place].mate[i] =
-                4 * (other < u->num_finite ? other : u->place[0] + (other - (uint32_t)u->num_finite)) + (mate & 3);
+            tet[place].mate[i] = 4 * u->place_of[other] + (mate & 3);
             continue;
         }
-        tet[place].mate[i] = 4 * place + (uint32_t)i;
         for (int k = 0; k < 4; k++) own += k != i && tet[place].vertex[k] < n;
         if (!own) continue;
         brio_periodic_across(&u->t->images, u->t->tet, c, i, way);
@@ -93,17 +97,45 @@ static brio_status move_vertices(unfolding *u, const uint32_t *v, const int32_t 
     return BRIO_OK;
 }
 
+/* Returns whether a class has a point whose tetrahedra are wanted. */
+static inline bool is_wanted(const unfolding *u, size_t c) {
+    const uint32_t *v = u->t->tet[c].vertex;
+    for (int k = 0; k < 4 && u->wanted; k++)
+        if (v[k] != BRIO_INFINITE && u->wanted[brio_images_point(&u->t->images, v[k])]) return true;
+    return !u->wanted;
+}
+
+/* Lists the classes that are wanted, and their further ones. */
+static brio_status list_all(unfolding *u) {
+    for (size_t c = 0; c < u->num_classes; c++) {
+        size_t first = u->count;
+        int n;
+        u->place_of[c] = UINT32_MAX;
+        u->inside[c] = 0;
+        BRIO_FORWARD(brio_look(u->ctx, 1));
+        if (!is_wanted(u, c)) continue;
+        BRIO_FORWARD(list_more(u, c, &n));
+        u->place_of[c] = 0;
+        u->more[c] = n > 1 ? (uint32_t)first : 0;
+        u->inside[c] = n == 1;
+    }
+    return BRIO_OK;
+}
+
 /* Gives each its place: finite classes, further finite ones, infinite classes, further infinite ones. */
-static brio_status place_all(unfolding *u, size_t *finite) {
-    size_t next = u->num_finite;
+static brio_status place_all(unfolding *u, size_t *finite, size_t *all) {
+    size_t next = 0;
+    for (size_t c = 0; c < u->num_finite; c++)
+        if (u->place_of[c] != UINT32_MAX) u->place_of[c] = (uint32_t)next++;
     BRIO_FORWARD(BRIO_ALLOC(u->ctx, u->place, u->count + 1));
     for (size_t i = 1; i < u->count; i++)
         if (u->class_of[i] < u->num_finite) u->place[i] = (uint32_t)next++;
     *finite = next;
-    u->place[0] = (uint32_t)next;
-    next += u->num_classes - u->num_finite;
+    for (size_t c = u->num_finite; c < u->num_classes; c++)
+        if (u->place_of[c] != UINT32_MAX) u->place_of[c] = (uint32_t)next++;
     for (size_t i = 1; i < u->count; i++)
         if (u->class_of[i] >= u->num_finite) u->place[i] = (uint32_t)next++;
+    *all = next;
     BRIO_EXPECT(u->ctx, next < (size_t)1 << 30, BRIO_ERR_TOO_LARGE, "more than 2^30 tetrahedra");
     return BRIO_OK;
 }
@@ -111,10 +143,11 @@ static brio_status place_all(unfolding *u, size_t *finite) {
 static brio_status fill(unfolding *u, brio_tetrahedron *tet) {
     static const int32_t none[3] = {0, 0, 0};
     for (size_t c = 0; c < u->num_classes; c++) {
-        uint32_t place = find(u, (uint32_t)c, none);
+        uint32_t place = u->place_of[c];
+        BRIO_FORWARD(brio_look(u->ctx, 1));
+        if (place == UINT32_MAX) continue;
         memcpy(tet[place].vertex, u->t->tet[c].vertex, sizeof tet->vertex);
         link(u, tet, place, (uint32_t)c, none);
-        BRIO_FORWARD(brio_look(u->ctx, 1));
     }
     for (size_t i = 1; i < u->count; i++) {
         uint32_t place = u->place[i];
@@ -125,23 +158,52 @@ static brio_status fill(unfolding *u, brio_tetrahedron *tet) {
     return BRIO_OK;
 }
 
-brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, brio_images *images, brio_unfolded *out) {
+static void free_lists(unfolding *u) {
+    brio_release(u->ctx, u->place_of);
+    brio_release(u->ctx, u->more);
+    brio_release(u->ctx, u->inside);
+    brio_release(u->ctx, u->class_of);
+    brio_release(u->ctx, u->shift);
+    brio_release(u->ctx, u->place);
+}
+
+brio_status brio_periodic_further(brio_context *ctx, const brio_periodic *t, brio_images *images, uint32_t (**more)[4],
+                                  size_t *num_more) {
     brio_status status = BRIO_OK;
     unfolding u = {.ctx = ctx, .t = t, .images = images, .num_finite = t->stats.tetrahedra, .count = 1};
+    *more = NULL;
+    *num_more = 0;
+    for (size_t i = 0; i < t->num_border; i++) {
+        int n;
+        if (t->border[i] < t->stats.tetrahedra) BRIO_TRY(list_more(&u, t->border[i], &n));
+        BRIO_TRY(brio_look(ctx, 1));
+    }
+    BRIO_TRY(BRIO_ALLOC(ctx, *more, u.count));
+    for (size_t i = 1; i < u.count; i++) {
+        BRIO_TRY(move_vertices(&u, t->tet[u.class_of[i]].vertex, u.shift[i], (*more)[i - 1]));
+        BRIO_TRY(brio_look(ctx, 1));
+    }
+    *num_more = u.count - 1;
+done:
+    free_lists(&u);
+    return status;
+}
+
+brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, const uint8_t *wanted, brio_images *images,
+                                 brio_unfolded *out) {
+    brio_status status = BRIO_OK;
+    unfolding u = {.ctx = ctx, .t = t, .images = images, .wanted = wanted, .count = 1};
+    u.num_finite = t->stats.tetrahedra;
     u.num_classes = t->stats.tetrahedra + t->stats.hull_facets;
     *out = (brio_unfolded){0};
+    BRIO_TRY(BRIO_ALLOC(ctx, u.place_of, u.num_classes + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, u.more, u.num_classes + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, u.inside, u.num_classes + 1));
-    for (size_t c = 0; c < u.num_classes; c++) BRIO_TRY(list_more(&u, c));
-    BRIO_TRY(place_all(&u, &out->num_finite));
-    out->count = u.num_classes + u.count - 1;
+    BRIO_TRY(list_all(&u));
+    BRIO_TRY(place_all(&u, &out->num_finite, &out->count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->tet, out->count + 1));
     BRIO_TRY(fill(&u, out->tet));
 done:
-    brio_release(ctx, u.more);
-    brio_release(ctx, u.inside);
-    brio_release(ctx, u.class_of);
-    brio_release(ctx, u.shift);
-    brio_release(ctx, u.place);
+    free_lists(&u);
     return status;
 }

@@ -2,8 +2,11 @@
  * vertices, threads, scales, memory that runs out. */
 #include "brio/testdata.h"
 #include "cells/polyhedron.h"
+#include "cells/shares.h"
 #include "failing_allocator.h"
+#include "instruction_sets.h"
 #include "points.h"
+#include <float.h>
 
 static const double UNIT_BOX[6] = {0, 0, 0, 1, 1, 1}, WIDE_BOX[6] = {-2, -2, -2, 3, 3, 3};
 
@@ -291,6 +294,161 @@ static void flat_points_have_cells(void) {
     brio_cells *cells = cells_of(ctx, none, NULL, 0, box, 1);
     EXPECT(cells->num_cells == 0 && cells->volume_sum == 0);
     brio_cells_free(cells);
+    brio_context_free(ctx);
+}
+
+/* --- shares of tetrahedra --- */
+
+#if defined(__SIZEOF_FLOAT128__)
+__extension__ typedef __float128 quad; /* 113 bits */
+#elif LDBL_MANT_DIG >= 113
+typedef long double quad;
+#endif
+#if defined(__SIZEOF_FLOAT128__) || LDBL_MANT_DIG >= 113
+/* Computes what each vertex has of a tetrahedron, by the determinants of its orthoschemes. */
+static void shares_in_quads(const double (*p)[3], const double *w, quad *share) {
+    for (int a = 0; a < 4; a++) {
+        share[a] = 0;
+        for (int turn = 0; turn < 6; turn++) {
+            static const int ORDER[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+            quad r[3][3], lift[3], base[3][3] = {{0}}, x[3][3] = {{0}};
+            int rest[3], n = 0;
+            for (int i = 0; i < 4; i++)
+                if (i != a) rest[n++] = i;
+            for (int i = 0; i < 3; i++) {
+                int v = rest[ORDER[turn][i]];
+                lift[i] = w ? (quad)w[a] - w[v] : 0;
+                for (int k = 0; k < 3; k++) r[i][k] = (quad)p[v][k] - p[a][k], lift[i] += r[i][k] * r[i][k];
+            }
+            /* the power centres of 2, 3 and 4 of them: along orthogonal directions */
+            for (int i = 0; i < 3; i++) {
+                quad way = 0, at = lift[i] / 2, square = 0;
+                for (int k = 0; k < 3; k++) base[i][k] = r[i][k];
+                for (int twice = 0; twice < 2; twice++)
+                    for (int j = 0; j < i; j++) {
+                        quad along = 0, length = 0;
+                        for (int k = 0; k < 3; k++) along += base[i][k] * base[j][k], length += base[j][k] * base[j][k];
+                        for (int k = 0; k < 3; k++) base[i][k] -= along / length * base[j][k];
+                    }
+                for (int k = 0; k < 3; k++) square += base[i][k] * base[i][k];
+                for (int k = 0; k < 3 && i; k++) way += x[i - 1][k] * r[i][k];
+                for (int k = 0; k < 3; k++) x[i][k] = (i ? x[i - 1][k] : 0) + (at - way) / square * base[i][k];
+            }
+            quad det = 0;
+            for (int k = 0; k < 3; k++) {
+                int m = (k + 1) % 3, o = (k + 2) % 3;
+                det += x[0][k] * (x[1][m] * x[2][o] - x[1][o] * x[2][m]);
+            }
+            share[a] += ((turn < 3) == (a % 2 == 0) ? det : -det) / 6;
+        }
+    }
+}
+
+/* Four points of one of many shapes, positive. Returns false where they are flat. */
+static int hostile_tetrahedron(brio_rng *rng, double (*p)[3], double *w) {
+    int shape = (int)(brio_rng_next(rng) % 5);
+    double thin = ldexp(1, -(int)(brio_rng_next(rng) % 34));
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 3; k++) p[i][k] = brio_rng_double(rng);
+    for (int k = 0; k < 3; k++) {
+        if (shape == 1) p[1][k] = p[0][k] + thin * (p[1][k] - 0.5);                     /* a short edge */
+        if (shape == 2) p[3][k] = (p[0][k] + p[1][k] + p[2][k]) / 3 + thin * p[3][k];   /* a cap */
+        if (shape == 3) p[3][k] = p[1][k] + p[2][k] - p[0][k] + thin * (p[3][k] - 0.5); /* a sliver */
+        if (shape == 4) p[2][k] = (p[0][k] + p[1][k]) / 2 + thin * (p[2][k] - 0.5);     /* a needle */
+    }
+    for (int i = 0; i < 4; i++) w[i] = thin * brio_rng_double(rng);
+    int side = brio_orient3d(p[0], p[1], p[2], p[3]);
+    for (int k = 0; k < 3 && side < 0; k++) {
+        double x = p[0][k];
+        p[0][k] = p[1][k], p[1][k] = x;
+    }
+    return side != 0;
+}
+
+/* The errors of shares are within their bounds, which are small for tetrahedra of ordinary shape; the shares of a
+ * tetrahedron add up to it; every instruction set computes the same bits. */
+static void shares_are_within_their_bounds(void) {
+    brio_rng rng = brio_rng_new(77);
+    size_t few = 0, fine = 0;
+    for (int trial = 0; trial < 1000; trial++) {
+        double p[4][3], w[4], centre[1][3], error[1], share[1][4], bound[1], first[4];
+        static const uint32_t vertex[1][4] = {{0, 1, 2, 3}};
+        quad exact[4];
+        const double *weights = trial % 2 ? w : NULL;
+        if (!hostile_tetrahedron(&rng, p, w)) continue;
+        shares_in_quads((const double(*)[3])p, weights, exact);
+        for (int set = BRIO_PLAIN; set < BRIO_INSTRUCTION_SETS; set++) {
+            if (!brio_use_instructions((brio_instruction_set)set)) continue;
+            brio_shares(&(brio_share_batch){p[0], weights, vertex, 1, centre, error, share, bound});
+            if (set == BRIO_PLAIN) memcpy(first, share, sizeof first);
+            if (bound[0] < INFINITY)
+                EXPECT(!memcmp(first, share, sizeof first), "%d: other bits in set %d", trial, set);
+        }
+        use_largest_set();
+        double worst = 0;
+        for (int i = 0; i < 4; i++) worst = fmax(worst, fabs(share[0][i] - (double)exact[i]));
+        if (!(bound[0] < INFINITY)) continue;
+        few++;
+        fine += bound[0] < 1e-10;
+        EXPECT(worst <= bound[0], "%d: %g is more than %g", trial, worst, bound[0]);
+    }
+    EXPECT(few > 600 && fine > 150, "%zu bounds, %zu below 1e-10", few, fine);
+}
+#else
+static void shares_are_within_their_bounds(void) {
+    printf("skipped: the compiler has no numbers of 113 bits\n");
+}
+#endif
+
+/* --- volumes and neighbours --- */
+
+/* Volumes and neighbours alone, against cells with everything. */
+static void expect_neighbours(brio_context *ctx, const double *points, const double *weights, size_t n,
+                              const double *box, const char *what) {
+    brio_cells_options o = {.size = sizeof o, .no_areas = 1, .no_centroids = 1, .no_face_sizes = 1, .box = box};
+    brio_cells *whole = cells_of(ctx, points, weights, n, box, 0), *alone;
+    EXPECT(brio_voronoi_cells(ctx, NULL, points, weights, n, &o, &alone) == BRIO_OK, "%s", brio_message(ctx));
+    size_t c = whole->num_cells, faces = (size_t)whole->face_offsets[c];
+    EXPECT(alone->num_cells == c && !alone->face_areas && !alone->face_normals && !alone->area, "%s", what);
+    EXPECT(!memcmp(whole->site, alone->site, c * sizeof *whole->site), "%s", what);
+    EXPECT(!memcmp(whole->bounded, alone->bounded, c), "%s", what);
+    EXPECT(!memcmp(whole->face_offsets, alone->face_offsets, (c + 1) * sizeof *whole->face_offsets), "%s", what);
+    EXPECT(!memcmp(whole->face_neighbours, alone->face_neighbours, faces * sizeof *whole->face_neighbours), "%s", what);
+    for (size_t i = 0; i < c; i++)
+        EXPECT(alone->volume[i] == whole->volume[i] ||
+                   near_to(alone->volume[i] * (double)n, whole->volume[i] * (double)n, 1e-11),
+               "%s, cell %zu of %zu: %.17g %.17g", what, i, c, alone->volume[i], whole->volume[i]);
+    brio_cells_free(whole);
+    brio_cells_free(alone);
+}
+
+static void neighbours_alone_are_those_of_whole_cells(void) {
+    enum { N = 900 };
+    const double box[6] = {-0.5, -0.5, -0.5, 7.5, 7.5, 7.5};
+    brio_context *ctx = new_context();
+    double *points = malloc(3 * N * sizeof *points), *weights = malloc(N * sizeof *weights);
+    for (int threads = 1; threads < 4; threads += 2) {
+        brio_context_set_threads(ctx, threads);
+        uniform_points(31, N, points);
+        uniform_points(32, N / 3, weights);
+        for (size_t i = 0; i < N; i++) weights[i] *= 0.01;
+        expect_neighbours(ctx, points, NULL, N, UNIT_BOX, "uniform");
+        expect_neighbours(ctx, points, NULL, N, NULL, "uniform, no box");
+        expect_neighbours(ctx, points, weights, N, UNIT_BOX, "weighted");
+        sphere_points(33, N / 2, points); /* slivers and ties between uniform ones */
+        expect_neighbours(ctx, points, NULL, N, WIDE_BOX, "sphere");
+        integer_points(34, N, 8, points);
+        expect_neighbours(ctx, points, NULL, N, box, "integers");
+        for (size_t i = 0; i < N / 2; i++) points[3 * i] += 1e-3 * weights[i];
+        expect_neighbours(ctx, points, NULL, N, box, "integers, half of them moved");
+        for (size_t i = 0; i < N; i++) points[3 * i] = floor(points[3 * i]) + 1e-14 * (double)(i % 7);
+        expect_neighbours(ctx, points, NULL, N, box, "nearly integers");
+        for (size_t i = 0; i < N; i++) points[3 * i + 2] = 1;
+        expect_neighbours(ctx, points, NULL, N, box, "flat");
+    }
+    EXPECT(brio_context_memory(ctx) == 0);
+    free(points);
+    free(weights);
     brio_context_free(ctx);
 }
 
@@ -799,6 +957,8 @@ SUITE(test_cells) {
     RUN(faces_are_symmetric_and_have_their_corners);
     RUN(cells_of_the_hull_are_unbounded);
     RUN(flat_points_have_cells);
+    RUN(shares_are_within_their_bounds);
+    RUN(neighbours_alone_are_those_of_whole_cells);
     RUN(volumes_alone_equal_those_with_faces);
     RUN(volumes_alone_have_the_same_bits_with_threads);
     RUN(an_offset_moves_the_cells);

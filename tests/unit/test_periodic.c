@@ -225,6 +225,46 @@ static void any_cell_fills_its_volume(void) {
             }
 }
 
+/* Volumes and neighbours alone, from a sweep, against cells with everything: also where points are hidden, tie, or have
+ * neighbours that are translates of themselves, and where cells are thin. Each face is seen from both of its cells. */
+static void neighbours_alone_are_those_of_whole_cells(void) {
+    brio_rng rng = brio_rng_new(57);
+    brio_cells_options o = {.size = sizeof o, .no_areas = 1, .no_centroids = 1, .no_face_sizes = 1};
+    size_t swept = 0;
+    for (int round = 0; round < 8 * NUM_CELLS; round++) {
+        int i = round % NUM_CELLS, kind = round / NUM_CELLS, n = kind < 6 ? 1 + 9 * kind : 60;
+        crystal c = random_crystal(&rng, CELLS[i], (size_t)n, kind % 2 ? 4 : 1 << 20, kind % 3 == 0);
+        for (int k = 0; k < 3 && kind > 5; k++) c.periodic[k] = k < 8 - kind; /* slabs and wires */
+        brio_periodic *t = build(&c);
+        brio_cells *whole = NULL, *alone = NULL;
+        if (!t) continue;
+        brio_context_set_threads(ctx, 1 + round % 3);
+        EXPECT(brio_periodic_cells(ctx, t, NULL, &whole) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_periodic_cells(ctx, t, &o, &alone) == BRIO_OK, "%s", brio_message(ctx));
+        if (whole && alone) {
+            size_t m = whole->num_cells, faces = (size_t)whole->face_offsets[m];
+            int64_t shifts[3] = {0, 0, 0};
+            EXPECT(alone->num_cells == m && !memcmp(alone->site, whole->site, m * sizeof *whole->site), "%d", round);
+            EXPECT(!memcmp(alone->face_offsets, whole->face_offsets, (m + 1) * sizeof *whole->face_offsets), "%d",
+                   round);
+            EXPECT(!memcmp(alone->face_neighbours, whole->face_neighbours, faces * sizeof(int64_t)), "%d", round);
+            EXPECT(!memcmp(alone->face_shifts, whole->face_shifts, 3 * faces * sizeof(int32_t)), "%d", round);
+            for (size_t f = 0; f < 3 * faces; f++) shifts[f % 3] += alone->face_shifts[f];
+            EXPECT(shifts[0] == 0 && shifts[1] == 0 && shifts[2] == 0, "%d: a face is seen from one side", round);
+            for (size_t k = 0; k < m; k++)
+                EXPECT(alone->volume[k] == whole->volume[k] ||
+                           fabs(alone->volume[k] - whole->volume[k]) <= 1e-11 * whole->volume[k],
+                       "%d, cell %zu: %.17g %.17g", round, k, alone->volume[k], whole->volume[k]);
+            swept += m;
+        }
+        brio_cells_free(whole);
+        brio_cells_free(alone);
+        brio_periodic_free(t);
+    }
+    brio_context_set_threads(ctx, 0);
+    EXPECT(swept > 1000, "%zu cells", swept);
+}
+
 static void faces_of_lattices_are_right(void) {
     static const struct {
         double cell[9];
@@ -598,6 +638,7 @@ static void wrong_options_are_refused(void) {
 
 SUITE(test_periodic) {
     if (brio_context_new(NULL, &ctx) != BRIO_OK) return 1;
+    RUN(neighbours_alone_are_those_of_whole_cells);
     RUN(faces_of_lattices_are_right);
     RUN(is_the_triangulation_of_many_copies);
     RUN(any_cell_fills_its_volume);

@@ -170,6 +170,7 @@ static void results_that_cannot_be_freed_are_refused(void) {
 /* A field that is appended begins at the old size: no struct ends with padding, which would pass for the new field. */
 #define ENDS_WITH(type, last)                                                                                          \
     _Static_assert(offsetof(type, last) + sizeof(((type *)0)->last) == sizeof(type), #type " ends with padding")
+ENDS_WITH(brio_cells_options, reserved_int);
 ENDS_WITH(brio_delaunay_options, reserved_int);
 ENDS_WITH(brio_delaunay_stats, insert_seconds);
 ENDS_WITH(brio_certificate, volume);

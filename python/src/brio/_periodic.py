@@ -267,7 +267,8 @@ class PeriodicVoronoi:
     volumes, areas : ndarrays of float64, shape (n,)
         Of each point's cell, and of its surface; 0 for points without a cell.
     centroids : ndarray of float64, shape (n, 3)
-        NaN for points without a cell.
+        NaN for points without a cell. Volumes and neighbours are there at once. Areas, centroids, and areas and normals of
+        faces are computed together when one of them is first asked for, which takes about three times as long.
     neighbor_offsets, neighbor_points, neighbor_shifts : ndarrays of int64, int64 and int32
         Face k of point i's cell, k from ``neighbor_offsets[i]`` to ``neighbor_offsets[i + 1] - 1``, is shared with the
         cell of ``points[neighbor_points[k]] + neighbor_shifts[k] @ cell``.
@@ -289,23 +290,60 @@ class PeriodicVoronoi:
                  vertices: bool = False, threads: int = 0, progress: bool | Progress | None = None) -> None:
         self.delaunay = PeriodicDelaunay(points, weights, cell=cell, periodic=periodic, radii=radii, threads=threads,
                                          progress=progress)
-        walls = None if box is None else as_box(box, 3)
-        with _calls.reporting(progress) as report:
-            raw = _native.periodic_cells(self.delaunay._handle, walls, int(vertices), threads, report)
-        c: dict[str, Any] = {name: part if isinstance(part, float) or part is None else np.asarray(part)
-                             for name, part in raw.items()}
-        site, count = c["site"].astype(np.int64), self.npoints
-        self.volumes, self.areas, self.centroids = np.zeros(count), np.zeros(count), np.full((count, 3), np.nan)
-        self.volumes[site], self.areas[site], self.centroids[site] = c["volume"], c["area"], c["centroid"]
-        faces = np.zeros(count, np.int64)
-        faces[site] = np.diff(c["face_offsets"]).astype(np.int64)
-        self.neighbor_offsets = np.concatenate([[0], np.cumsum(faces)])
+        self._walls = None if box is None else as_box(box, 3)
+        self._threads = threads
+        c = self._compute(vertices, not vertices, progress)
+        self._site: NDArray[np.uint32] = c["site"]
+        count = self.npoints
+        if len(self._site) == count:
+            self.volumes: Floats = c["volume"]
+            self.neighbor_offsets: Ints = c["face_offsets"].view(np.int64)
+        else:
+            self.volumes = self._of_points(c["volume"], 0.0)
+            faces = np.zeros(count, np.int64)
+            faces[self._site] = np.diff(c["face_offsets"]).astype(np.int64)
+            self.neighbor_offsets = np.concatenate([[0], np.cumsum(faces)])
         self.neighbor_points, self.neighbor_shifts = c["face_neighbours"], c["face_shifts"]
-        self.face_areas, self.face_normals = c["face_areas"], c["face_normals"]
         self.vertices = c["vertices"] if vertices else None
         self.face_vertices = c["face_vertices"] if vertices else None
         self.corner_offsets = c["corner_offsets"] if vertices else None
+        if vertices:
+            self._sizes = c
         freeze_all(self.__dict__)
+
+    def _compute(self, vertices: bool, quick: bool, progress: bool | Progress | None) -> dict[str, Any]:
+        """Computes the cells; `quick`: volumes and neighbours alone."""
+        with _calls.reporting(progress) as report:
+            raw = _native.periodic_cells(self.delaunay._handle, self._walls, int(vertices), int(quick), self._threads, report)
+        return {name: part if isinstance(part, float) or part is None else np.asarray(part) for name, part in raw.items()}
+
+    def _of_points(self, values: NDArray[Any], missing: float) -> Floats:
+        """Makes a row for each point of the rows of cells."""
+        if len(values) == self.npoints:
+            return frozen(values)
+        rows: Floats = np.full((self.npoints, *values.shape[1:]), missing)
+        rows[self._site] = values
+        return frozen(rows)
+
+    @cached_property
+    def _sizes(self) -> dict[str, Any]:
+        return self._compute(False, False, None)
+
+    @cached_property
+    def areas(self) -> Floats:
+        return self._of_points(self._sizes["area"], 0.0)
+
+    @cached_property
+    def centroids(self) -> Floats:
+        return self._of_points(self._sizes["centroid"], np.nan)
+
+    @property
+    def face_areas(self) -> Floats:
+        return frozen(self._sizes["face_areas"])
+
+    @property
+    def face_normals(self) -> Floats:
+        return frozen(self._sizes["face_normals"])
 
     @property
     def points(self) -> Floats:
