@@ -203,6 +203,11 @@ brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, si
     return status;
 }
 
+brio_status brio_scratch_settle(brio_context *ctx, const brio_scratch_file *f, size_t offset, size_t size) {
+    if (brio_start_writing(f->cached, offset, size)) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot write a scratch file: %s", ctx->scratch, strerror(errno));
+}
+
 void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size) {
     brio_advise_cache(f->cached, offset, size, BRIO_CACHE_SOON);
 }

@@ -48,6 +48,9 @@ brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, si
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_scratch_require_whole(brio_context *ctx, const brio_scratch_file *f);
 
+/** Has the disk begin to write bytes. Returns BRIO_OK, or BRIO_ERR_NO_MEMORY where it does not. */
+brio_status brio_scratch_settle(brio_context *ctx, const brio_scratch_file *f, size_t offset, size_t size);
+
 /** Announces that these bytes will be read soon. */
 void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size);
 

@@ -23,7 +23,7 @@
 #include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include "base/memory.h"
 #include "base/sort.h"
-#include "base/team.h"
+#include "base/sweep.h"
 #include "base/vector.h"
 #include "reconstruct/labeled_delaunay/axis_agreement.h"
 #include "reconstruct/labeled_delaunay/hash_order.h"
@@ -132,7 +132,7 @@ static brio_status list_ties(signing *s) {
     brio_status status = BRIO_OK;
     int threads = brio_threads(s->ctx, s->v->t.count, TETS_A_THREAD);
     BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, s->found, (size_t)threads));
-    BRIO_TRY(brio_for(s->ctx, threads, s->v->t.count, tie_part, s));
+    BRIO_TRY(brio_sweep(s->ctx, threads, s->v->t.count, tie_part, s, BRIO_READS(s->v->t.tet)));
     BRIO_TRY(s->listed);
     for (int i = 0; i < threads; i++) s->count += s->found[i].count;
     BRIO_REQUIRE(s->ctx, s->count < NO_TIE, BRIO_ERR_TOO_LARGE, "%zu ties between samples, 2^32 is the limit",

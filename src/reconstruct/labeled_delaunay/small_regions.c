@@ -6,7 +6,7 @@
  * whose evidence is wrong at a few samples of the hull would else get a hole there. */
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "base/memory.h"
-#include "base/team.h"
+#include "base/sweep.h"
 #include "base/union_find.h"
 #include "base/scale.h"
 #include "reconstruct/cocone/triangle.h"
@@ -84,11 +84,11 @@ brio_status brio_drop_small_regions(brio_context *ctx, const brio_tetrahedra *t,
     *changed = 0;
     BRIO_TRY(BRIO_ALLOC(ctx, s.parent, t->count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.boundary, t->count));
-    BRIO_TRY(brio_for(ctx, threads, t->count, make_regions, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, join_regions, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, count_facets, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, keep_infinite, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, drop_regions, &s));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, make_regions, &s, BRIO_WRITES(s.parent)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, join_regions, &s, BRIO_READS(t->tet), BRIO_WRITES(s.parent)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, count_facets, &s, BRIO_READS(t->tet), BRIO_READS(s.parent)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, keep_infinite, &s, BRIO_READS(t->tet)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, drop_regions, &s, BRIO_READS(s.parent)));
     *changed = s.small;
 done:
     brio_release(ctx, s.parent);
