@@ -17,6 +17,11 @@ void brio_expect_rows(const brio_context *ctx, const brio_swept *swept, size_t n
     }
 }
 
+void brio_expect_next(const brio_context *ctx, size_t row, size_t n, const brio_swept *swept, size_t num_swept) {
+    size_t from = row + BRIO_SWEEP_STRETCH, to = from + BRIO_SWEEP_STRETCH;
+    brio_expect_rows(ctx, swept, num_swept, from, to < n ? to : n);
+}
+
 brio_status brio_settle_rows(brio_context *ctx, const brio_swept *swept, size_t num_swept, size_t begin, size_t end) {
     if (!ctx->scratch || begin >= end) return BRIO_OK;
     for (size_t i = 0; i < num_swept; i++)

@@ -15,7 +15,7 @@ typedef struct {
     bool written;     /* whether the loop writes rows */
 } brio_swept;
 
-/* Most rows that are asked for at once. A loop that asks for itself does so where its index is a multiple. Chosen. */
+/* Most rows that are asked for at once: a stretch. Chosen. */
 enum { BRIO_SWEEP_STRETCH = 1 << 13 };
 
 #define BRIO_READS(array)  {(array), sizeof *(array), false}
@@ -26,6 +26,17 @@ void brio_expect_rows(const brio_context *ctx, const brio_swept *swept, size_t n
 
 /** Hands rows [begin, end) of written arrays to the disk. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_settle_rows(brio_context *ctx, const brio_swept *swept, size_t num_swept, size_t begin, size_t end);
+
+/** What brio_along does at the first row of a stretch. */
+void brio_expect_next(const brio_context *ctx, size_t row, size_t n, const brio_swept *swept, size_t num_swept);
+
+/* Announces, at the first row of a stretch, those of the next one: for loops over rows below n that are no brio_for.
+ * brio_along(ctx, i, n, BRIO_READS(a), BRIO_READS(b)) */
+#define brio_along(ctx, row, n, ...)                                                                                   \
+    ((row) % BRIO_SWEEP_STRETCH == 0                                                                                   \
+         ? brio_expect_next(ctx, row, n, (const brio_swept[]){__VA_ARGS__},                                            \
+                            sizeof((const brio_swept[]){__VA_ARGS__}) / sizeof(brio_swept))                            \
+         : (void)0)
 
 /** Does what brio_for does, with arrays that are read in step. */
 brio_status brio_sweep_arrays(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user,

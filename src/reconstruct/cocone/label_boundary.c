@@ -13,18 +13,13 @@ typedef struct {
     size_t count, capacity;
 } part;
 
-static void expect_next(brio_context *ctx, const brio_tet_labels *labels, size_t tet, size_t to) {
-    size_t from = tet + BRIO_SWEEP_STRETCH, end = from + BRIO_SWEEP_STRETCH;
-    brio_expect_rows(ctx, &(brio_swept)BRIO_READS(labels->dual->t.tet), 1, from, end < to ? end : to);
-}
-
 /* Lists the boundary facets of the outer ones among tetrahedra from to to - 1. */
 static brio_status list_part(brio_context *ctx, const brio_tet_labels *labels, size_t from, size_t to, part *p) {
     brio_status status = BRIO_OK;
     const brio_tetrahedron *t = labels->dual->t.tet;
     const uint8_t *label = labels->label;
     for (size_t tet = from; tet < to; tet++) {
-        if (tet % BRIO_SWEEP_STRETCH == 0) expect_next(ctx, labels, tet, to);
+        brio_along(ctx, tet, to, BRIO_READS(t));
         if (label[tet] != BRIO_LABEL_OUTER) continue;
         unsigned inner = 0; /* bit i: the neighbour behind facet i is inner */
         for (int i = 0; i < 4; i++) inner |= (unsigned)(label[brio_tet_of(t[tet].mate[i])] != BRIO_LABEL_OUTER) << i;

@@ -96,10 +96,12 @@ done:
     return status;
 }
 
-size_t brio_count_boundary(const brio_tetrahedra *t, const uint8_t *label) {
+size_t brio_count_boundary(const brio_context *ctx, const brio_tetrahedra *t, const uint8_t *label) {
     size_t count = 0;
-    for (size_t tet = 0; tet < t->count; tet++)
+    for (size_t tet = 0; tet < t->count; tet++) {
+        brio_along(ctx, tet, t->count, BRIO_READS(t->tet));
         for (int i = 0; i < 4; i++) count += label[tet] < label[brio_tet_of(t->tet[tet].mate[i])];
+    }
     return count;
 }
 

@@ -89,6 +89,14 @@ done:
     return status;
 }
 
+/* Announces what is copied soon, at the first one of a stretch. */
+static void expect_listed(const brio_vote_cut *c, size_t i, size_t count) {
+    const brio_swept swept[] = {BRIO_READS(c->g->dual->t.tet), BRIO_READS(c->g->vote), BRIO_READS(c->g->facet)};
+    size_t from = i + BRIO_SWEEP_STRETCH, to = from + BRIO_SWEEP_STRETCH < count ? from + BRIO_SWEEP_STRETCH : count;
+    if (i % BRIO_SWEEP_STRETCH == 0 && from < to)
+        brio_expect_rows(c->g->ctx, swept, 3, c->list[from], (size_t)c->list[to - 1] + 1);
+}
+
 /* Copies the open tetrahedra, and lists their facets to others. */
 static brio_status copy_open(brio_vote_cut *c, size_t count) {
     brio_status status = BRIO_OK;
@@ -101,7 +109,10 @@ static brio_status copy_open(brio_vote_cut *c, size_t count) {
     c->t = &c->copied;
     c->vote = (const float(*)[4])c->own_vote;
     for (size_t i = 0; i < count; i++) number[c->list[i]] = (uint32_t)i;
-    for (size_t i = 0; i < count; i++) BRIO_TRY(copy_tet(c, &room, (uint32_t)i, number));
+    for (size_t i = 0; i < count; i++) {
+        expect_listed(c, i, count);
+        BRIO_TRY(copy_tet(c, &room, (uint32_t)i, number));
+    }
 done:
     brio_release(c->g->ctx, number);
     return status;

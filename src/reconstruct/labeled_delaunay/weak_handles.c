@@ -12,13 +12,19 @@
  * The energy alone cannot do this, because it knows nothing of topology: it is a sum over tetrahedra and facets.
  *
  * The patches of a cut are listed before any is flipped, and go in the order of their hashes (hash_order.h). So what
- * becomes of one depends on those beside it, and on no number of a tetrahedron. */
+ * becomes of one depends on those beside it, and on no number of a tetrahedron.
+ *
+ * That order goes here and there, and where arrays are in scratch files each place is a page to wait for. Nearly all
+ * patches only deform the boundary. So this is found out when they are listed, along the tetrahedra, and it stands until
+ * a flip that stays has a sample of the patch (forget_patches): the order of hashes meets no other patch's pages. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "base/memory.h"
 #include "base/sort.h"
+#include "base/sweep.h"
 #include "reconstruct/labeled_delaunay/hash_order.h"
 #include "reconstruct/labeled_delaunay/simple_flips.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
+#include <assert.h>
 #include <stdlib.h>
 
 /* BIASES: cuts for each label. MOST_PATCH: tetrahedra of a patch. NEARBY: while no more tetrahedra were looked at,
@@ -96,7 +102,9 @@ static uint64_t sort_by_hash(const search *s, uint32_t *tet, size_t count) {
     return sum;
 }
 
-/* Lists the patch of a tetrahedron, and marks it as done. Leaves it out if it is too large. */
+/* Lists the patch of a tetrahedron, and marks it as done. Leaves it out if it is too large. Looks at once whether it
+ * deforms the boundary only, which nearly all do: patches are listed in the order of the tetrahedra, so what one reads
+ * is near what the last one read. */
 static brio_status list_patch(search *s, uint32_t seed, uint8_t label) {
     brio_status status = BRIO_OK;
     size_t begin = s->size;
@@ -120,8 +128,10 @@ static brio_status list_patch(search *s, uint32_t seed, uint8_t label) {
     hash = sort_by_hash(s, s->tet + begin, s->size - begin);
     BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->first, s->first_room, s->num_patches + 2));
     BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->hash, s->hash_room, s->num_patches + 1));
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->deforms, s->deforms_room, s->num_patches + 1));
     s->hash[s->num_patches] = hash;
     s->first[s->num_patches] = begin;
+    s->deforms[s->num_patches] = brio_flips_deform(s->m, s->tet + begin, s->size - begin);
     s->first[++s->num_patches] = s->size;
 done:
     return status;
@@ -131,8 +141,10 @@ done:
 static brio_status list_patches(search *s, uint8_t label) {
     brio_status status = BRIO_OK;
     s->size = s->num_patches = s->num_owners = 0;
-    for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
+    for (uint32_t tet = 0; tet < s->f->num_finite; tet++) {
+        brio_along(s->f->ctx, tet, s->f->num_finite, BRIO_READS(s->t->tet));
         if (leans(s, tet, label)) BRIO_TRY(list_patch(s, tet, label));
+    }
 done:
     return status;
 }
@@ -226,17 +238,6 @@ static size_t keep_label(const search *s, uint32_t *patch, size_t count, uint8_t
     return kept;
 }
 
-/* Looks which patches deform the boundary only, in the order in which they are listed: that of the tetrahedra, so that
- * patches beside each other are looked at together. */
-static brio_status look_at_patches(search *s) {
-    brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->deforms, s->deforms_room, s->num_patches));
-    for (size_t i = 0; i < s->num_patches; i++)
-        s->deforms[i] = brio_flips_deform(s->m, s->tet + s->first[i], s->first[i + 1] - s->first[i]);
-done:
-    return status;
-}
-
 /* Lists which patch each tetrahedron of the patches is in, by tetrahedra. */
 static brio_status list_owners(search *s) {
     brio_status status = BRIO_OK;
@@ -282,6 +283,7 @@ static brio_status try_patch(search *s, size_t i, uint8_t label) {
     brio_status status = BRIO_OK;
     size_t from = s->f->size, count;
     uint32_t *patch = s->tet + s->first[i];
+    assert(!s->deforms[i] || brio_flips_deform(s->m, patch, s->first[i + 1] - s->first[i]));
     if (s->deforms[i]) return BRIO_OK;
     count = keep_label(s, patch, s->first[i + 1] - s->first[i], label);
     if (count == 0 || brio_flips_deform(s->m, patch, count)) return BRIO_OK;
@@ -299,7 +301,6 @@ static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     BRIO_TRY(brio_progress(ctx, "handles", 1));
     BRIO_TRY(brio_vote_cut_find(&s->cut, label == BRIO_LABEL_INNER ? bias : -bias, s->f->label, s->leaning));
     BRIO_TRY(list_patches(s, label));
-    BRIO_TRY(look_at_patches(s));
     BRIO_TRY(BRIO_ALLOC(ctx, order, s->num_patches));
     for (size_t i = 0; i < s->num_patches; i++) order[i] = (uint32_t)i;
     BRIO_TRY(brio_radix_sort(ctx, s->hash, order, s->num_patches, 64));

@@ -8,6 +8,9 @@
  * the borders are active. In the end one thread merges what is left. A closed arc holds the complement of its residual
  * capacity, a negative number. So a part reads nothing that another part writes.
  *
+ * Where the arrays are in scratch files, parts merge block by block, each as large as fits in a part of the memory. So
+ * what is merged was read a moment ago, and all is read once for all levels within the blocks, not once a level.
+ *
  * Based on: Liu, Sun. Parallel graph-cuts by adaptive bottom-up merging. CVPR 2010.
  * Differs from the paper: which parts merge does not depend on their sizes or borders. */
 #include "reconstruct/labels/tetrahedra_flow.h"
@@ -41,7 +44,12 @@ static uint32_t tet_at(const brio_tet_flow *f, size_t i) {
 brio_status brio_tet_flow_new(brio_context *ctx, const brio_tetrahedra *t, const uint32_t *open, size_t num_open,
                               brio_tet_flow *out) {
     brio_status status = BRIO_OK;
-    *out = (brio_tet_flow){.ctx = ctx, .t = t, .open = open, .num_open = num_open, .part_size = PART_SIZE};
+    *out = (brio_tet_flow){.ctx = ctx,
+                           .t = t,
+                           .open = open,
+                           .num_open = num_open,
+                           .part_size = PART_SIZE,
+                           .most_together = ctx->scratch ? brio_memory_limit(ctx) / SHARE / NODE_BYTES : num_open};
     BRIO_TRY(BRIO_ALLOC(ctx, out->node, t->count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->residual, t->count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->terminal, t->count));
@@ -154,12 +162,11 @@ static brio_status push_parts(brio_tet_flow *f, size_t first, size_t end, size_t
     return status == BRIO_OK ? p.settled : status;
 }
 
-/* Returns how many nodes are merged before others are begun: all of them, or as many as fit in a part of the memory. */
+/* Returns how many nodes are merged before others are begun: a multiple of a part, or all. */
 static size_t block_size(const brio_tet_flow *f) {
     size_t size = f->part_size;
-    size_t most = brio_memory_limit(f->ctx) / SHARE / NODE_BYTES;
-    if (!f->ctx->scratch) return f->num_open;
-    while (size < f->num_open && size * MERGED <= most) size *= MERGED;
+    if (f->most_together >= f->num_open) return f->num_open;
+    while (size < f->num_open && size <= f->most_together / MERGED) size *= MERGED;
     return size < f->num_open ? size : f->num_open;
 }
 
@@ -168,7 +175,8 @@ static brio_status push_block(brio_tet_flow *f, size_t first, size_t end, size_t
     brio_status status = BRIO_OK;
     *size = f->part_size;
     BRIO_TRY(push_parts(f, first, end, *size, false));
-    while (*size <= (end - first) / 2 && (f->ctx->scratch || brio_threads(f->ctx, end - first, *size) > 1))
+    while (*size <= (end - first) / 2 &&
+           (f->most_together < f->num_open || brio_threads(f->ctx, end - first, *size) > 1))
         BRIO_TRY(push_parts(f, first, end, *size *= MERGED, true));
 done:
     return status;
