@@ -9,6 +9,7 @@
 #include "base/scratch_file.h"
 #include "platform/disk.h"
 #include "platform/file.h"
+#include "platform/folder.h"
 #include <assert.h>
 #include <errno.h>
 #include <stdint.h>
@@ -91,6 +92,10 @@ brio_status brio_scratch_try(brio_context *ctx, const char *folder) {
                          strerror(errno));
     brio_close(file);
     return BRIO_OK;
+}
+
+bool brio_scratch_room(const brio_context *ctx, uint64_t *bytes) {
+    return ctx->scratch && brio_free_bytes(ctx->scratch, bytes);
 }
 
 brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {

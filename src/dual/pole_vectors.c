@@ -14,7 +14,7 @@
  *           Amenta, Choi, Dey, Leekha. A simple algorithm for homeomorphic surface reconstruction. SoCG 2000. */
 #include "dual/pole_vectors.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "dual/farthest.h"
 #include "dual/position_order.h"
 #include "predicates/circumcentre.h"

@@ -4,7 +4,7 @@
  * Every thread reads all tetrahedra, and has its own samples: most of the work is done at the samples. */
 #include "dual/spacing.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include <assert.h>
 #include <math.h>
@@ -77,7 +77,7 @@ brio_status brio_sample_spacing(brio_context *ctx, const brio_triangulation *t, 
     for (size_t first = 0; first < count; first += SLICE) {
         m.tet = tet + first;
         m.num_tets = count - first < SLICE ? count - first : SLICE;
-        brio_expect_rows(ctx, &(brio_swept)BRIO_READS(tet), 1, first + m.num_tets,
+        brio_expect_rows(ctx, BRIO_ARRAYS(BRIO_READS(tet)), first + m.num_tets,
                          count - first < 2 * SLICE ? count : first + 2 * SLICE);
         BRIO_TRY(brio_for_parts(ctx, threads, num_samples, offer_slice, &m));
     }

@@ -1,6 +1,6 @@
 /* Scratch files: the same triangulation, array for array, as in memory. */
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "harness.h"
 #include "points.h"
 #ifdef __linux__

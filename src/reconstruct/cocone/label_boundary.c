@@ -2,7 +2,7 @@
  * the parts are joined in order. */
 #include "reconstruct/cocone/label_boundary.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include <string.h>
 
 /* Both chosen. */

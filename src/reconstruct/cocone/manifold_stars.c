@@ -12,7 +12,7 @@
  * I1  A fixed tetrahedron is outer. */
 #include "base/memory.h"
 #include "base/sort.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "reconstruct/cocone/label_boundary.h"
 #include "reconstruct/cocone/manifold_extraction.h"
 #include "mesh/edge_rings.h"

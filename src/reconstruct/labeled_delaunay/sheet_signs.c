@@ -23,7 +23,7 @@
 #include "reconstruct/labeled_delaunay/sheet_signs.h"
 #include "base/memory.h"
 #include "base/sort.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include "reconstruct/labeled_delaunay/axis_agreement.h"
 #include "reconstruct/labeled_delaunay/hash_order.h"

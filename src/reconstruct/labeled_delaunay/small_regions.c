@@ -6,7 +6,7 @@
  * whose evidence is wrong at a few samples of the hull would else get a hole there. */
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "base/union_find.h"
 #include "base/scale.h"
 #include "reconstruct/cocone/triangle.h"

@@ -20,7 +20,7 @@
  *                         strays are strays. */
 #include "reconstruct/labeled_delaunay/stray_samples.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include <math.h>
 #include <string.h>
@@ -80,10 +80,10 @@ static bool has_changed(const search *s, const uint32_t *v) {
 
 /* Announces the tetrahedra that a sweep passes over next, from the n-th one on. */
 static void expect_next(const search *s, size_t n) {
-    const brio_swept tets = BRIO_READS(s->tet);
     size_t end = n + BRIO_SWEEP_STRETCH < s->num_tets ? n + BRIO_SWEEP_STRETCH : s->num_tets;
     if (n >= end) return;
-    brio_expect_rows(s->ctx, &tets, 1, s->back ? s->num_tets - end : n, s->back ? s->num_tets - n : end);
+    brio_expect_rows(s->ctx, BRIO_ARRAYS(BRIO_READS(s->tet)), s->back ? s->num_tets - end : n,
+                     s->back ? s->num_tets - n : end);
 }
 
 /* Passes over the edges of the tetrahedra at which something changed, at first of all, each edge as often as it has

@@ -7,7 +7,7 @@
  * Based on: Labatut, Pons, Keriven. Robust and efficient surface reconstruction from range data. CGF 2009. */
 #include "reconstruct/labeled_delaunay/vote_cut.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include <string.h>
 
 enum { TETS_A_THREAD = 1 << 12, CAPACITY = 1 << 20 };
@@ -91,10 +91,11 @@ done:
 
 /* Announces what is copied soon, at the first one of a stretch. */
 static void expect_listed(const brio_vote_cut *c, size_t i, size_t count) {
-    const brio_swept swept[] = {BRIO_READS(c->g->dual->t.tet), BRIO_READS(c->g->vote), BRIO_READS(c->g->facet)};
     size_t from = i + BRIO_SWEEP_STRETCH, to = from + BRIO_SWEEP_STRETCH < count ? from + BRIO_SWEEP_STRETCH : count;
     if (i % BRIO_SWEEP_STRETCH == 0 && from < to)
-        brio_expect_rows(c->g->ctx, swept, 3, c->list[from], (size_t)c->list[to - 1] + 1);
+        brio_expect_rows(c->g->ctx,
+                         BRIO_ARRAYS(BRIO_READS(c->g->dual->t.tet), BRIO_READS(c->g->vote), BRIO_READS(c->g->facet)),
+                         c->list[from], (size_t)c->list[to - 1] + 1);
 }
 
 /* Copies the open tetrahedra, and lists their facets to others. */
@@ -140,8 +141,8 @@ static void close_hull(brio_vote_cut *c) {
 brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, brio_vote_cut *out) {
     brio_status status = BRIO_OK;
     size_t count;
-    *out = (brio_vote_cut){
-        .g = g, .open = open, .t = &g->dual->t, .vote = (const float(*)[4])g->vote, .flow.ctx = g->ctx};
+    *out =
+        (brio_vote_cut){.g = g, .open = open, .t = &g->dual->t, .vote = (const float(*)[4])g->vote, .flow.ctx = g->ctx};
     BRIO_TRY(list_open(out, &count));
     BRIO_TRY(open ? copy_open(out, count) : list_hull(out));
     BRIO_TRY(BRIO_ALLOC(g->ctx, out->wanted, count));
@@ -173,8 +174,7 @@ static void sum_votes(void *user, size_t begin, size_t end, int thread) {
         int32_t outer = t->bias + whole(brio_hull_vote(c->g, tet_at(c, i)));
         for (int k = 0; k < 4; k++) {
             int32_t vote = whole(c->vote[i][k]);
-            if (vertex[k] != c->g->dual->t.infinite)
-                outer += sample[vertex[k]] == BRIO_LABEL_OUTER ? vote : -vote;
+            if (vertex[k] != c->g->dual->t.infinite) outer += sample[vertex[k]] == BRIO_LABEL_OUTER ? vote : -vote;
         }
         c->flow.terminal[i] += outer - c->wanted[i];
         c->wanted[i] = outer;

@@ -15,13 +15,13 @@ typedef struct {
  *  some are open, these are copied: so a cut reads nothing of the others. */
 typedef struct {
     const brio_vote_graph *g;
-    const uint8_t *open;       /* #T, or NULL */
-    uint32_t *list;            /* the open tetrahedra, or NULL: then node i is tetrahedron i */
-    const brio_tetrahedra *t;  /* of the nodes: those of the graph, or `copied` */
-    brio_tetrahedra copied;    /* vertices as in the graph; mates are nodes, a facet to what is no node is its own */
-    const float (*vote)[4];    /* of the nodes: those of the graph, or `own_vote` */
+    const uint8_t *open;      /* #T, or NULL */
+    uint32_t *list;           /* the open tetrahedra, or NULL: then node i is tetrahedron i */
+    const brio_tetrahedra *t; /* of the nodes: those of the graph, or `copied` */
+    brio_tetrahedra copied;   /* vertices as in the graph; mates are nodes, a facet to what is no node is its own */
+    const float (*vote)[4];   /* of the nodes: those of the graph, or `own_vote` */
     float (*own_vote)[4];
-    brio_cut_border *border;   /* by nodes */
+    brio_cut_border *border; /* by nodes */
     size_t num_border;
     brio_tet_flow flow;
     int32_t *wanted; /* #nodes: the weight of what wants an open tetrahedron outer, less of what wants it inner, in the

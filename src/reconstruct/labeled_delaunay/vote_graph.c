@@ -17,7 +17,6 @@
 #include "reconstruct/labeled_delaunay/vote_graph.h"
 #include "base/memory.h"
 #include "base/places.h"
-#include "base/sweep.h"
 #include "base/team.h"
 #include "base/vector.h"
 #include "reconstruct/cocone/triangle.h"
@@ -175,7 +174,7 @@ static brio_status for_slices(lister *l, int threads, brio_part_fn step) {
     size_t count = l->b->dual->t.count;
     for (l->first = 0; l->first < count; l->first = l->end) {
         l->end = count - l->first < SLICE ? count : l->first + SLICE;
-        brio_expect_rows(l->b->g->ctx, &(brio_swept)BRIO_READS(l->b->dual->t.tet), 1, l->end,
+        brio_expect_rows(l->b->g->ctx, BRIO_ARRAYS(BRIO_READS(l->b->dual->t.tet)), l->end,
                          count - l->end < SLICE ? count : l->end + SLICE);
         BRIO_TRY(brio_for_parts(l->b->g->ctx, threads, l->b->dual->num_points, step, l));
     }
@@ -208,8 +207,8 @@ brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, cons
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
     *out = (brio_vote_graph){.ctx = ctx, .dual = dual, .num_free = own ? size : dual->num_finite, .own = own};
     BRIO_TRY(BRIO_ALLOC(ctx, out->vote, size));
-    BRIO_TRY(brio_sweep(ctx, threads, size, find_cosines, &b, BRIO_READS(dual->t.tet), BRIO_READS((double(*)[4])dual->centre),
-                        BRIO_WRITES(out->vote)));
+    BRIO_TRY(brio_sweep(ctx, threads, size, find_cosines, &b, BRIO_READS(dual->t.tet),
+                        BRIO_READS((double(*)[4])dual->centre), BRIO_WRITES(out->vote)));
     brio_pole_vectors_drop(ctx, dual);
     BRIO_TRY(BRIO_ALLOC(ctx, out->facet, size));
     BRIO_TRY(BRIO_ALLOC(ctx, out->first, dual->num_points + 1));
@@ -239,10 +238,9 @@ static size_t middle_of_star(const brio_vote_graph *g, size_t p) {
 void brio_expect_stars(const brio_vote_graph *g, size_t sample, bool votes) {
     size_t n = g->dual->num_points, from = sample + STARS, to = from + STARS < n ? from + STARS : n;
     if (!g->ctx->scratch || sample % STARS != 0 || from >= n) return;
-    const brio_swept stars = BRIO_READS(g->star);
-    const brio_swept tets[] = {BRIO_READS(g->dual->t.tet), BRIO_READS(g->vote)};
-    brio_expect_rows(g->ctx, &stars, 1, g->first[from], g->first[to]);
-    brio_expect_rows(g->ctx, tets, votes ? 2 : 1, middle_of_star(g, from), middle_of_star(g, to));
+    brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->star)), g->first[from], g->first[to]);
+    brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->dual->t.tet), {votes ? g->vote : NULL, sizeof *g->vote, false}),
+                     middle_of_star(g, from), middle_of_star(g, to));
 }
 
 /* --- sums --- */

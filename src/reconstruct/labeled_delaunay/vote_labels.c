@@ -29,7 +29,7 @@ typedef struct {
     size_t num_tets, num_finite, num_samples;
     uint8_t *label, *fixed;
     int64_t *outer, *all; /* #P each: sums of votes */
-    size_t turned; /* samples that changed their label in the last turn */
+    size_t turned;        /* samples that changed their label in the last turn */
 } voting;
 
 /* --- one turn --- */

@@ -2,7 +2,7 @@
  * leaves to the triangulation. */
 #include "reconstruct/labeled_delaunay/vote_region.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 
 /* EDGES: of a finite tetrahedron. NODES_A_THREAD: chosen. SOON: a piece of brio_for. */
 enum { EDGES = 8, NODES_A_THREAD = 1 << 12, SOON = 1 << 11 };
@@ -97,10 +97,10 @@ static void list_nodes(const copier *c) {
 static void expect_listed(const copier *c, size_t from) {
     const brio_vote_graph *g = c->g;
     const brio_vote_region *r = c->out;
-    const brio_swept swept[] = {BRIO_READS(g->dual->t.tet), BRIO_READS(g->vote), BRIO_READS(g->facet)};
     size_t to = from + SOON < r->num_nodes ? from + SOON : r->num_nodes, count = g->dual->t.count;
     if (from < to && r->node[to - 1] < count)
-        brio_expect_rows(g->ctx, swept, 3, r->node[from], (size_t)r->node[to - 1] + 1);
+        brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->dual->t.tet), BRIO_READS(g->vote), BRIO_READS(g->facet)),
+                         r->node[from], (size_t)r->node[to - 1] + 1);
 }
 
 static void copy_nodes(void *user, size_t begin, size_t end, int thread) {

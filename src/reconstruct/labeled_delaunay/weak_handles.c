@@ -15,12 +15,13 @@
  * becomes of one depends on those beside it, and on no number of a tetrahedron.
  *
  * That order goes here and there, and where arrays are in scratch files each place is a page to wait for. Nearly all
- * patches only deform the boundary. So this is found out when they are listed, along the tetrahedra, and it stands until
- * a flip that stays has a sample of the patch (forget_patches): the order of hashes meets no other patch's pages. */
+ * patches only deform the boundary. So this is found out when they are listed, along the tetrahedra, and it stands
+ * until a flip that stays has a sample of the patch (forget_patches): the order of hashes meets no other patch's
+ * pages. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "base/memory.h"
 #include "base/sort.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include "reconstruct/labeled_delaunay/hash_order.h"
 #include "reconstruct/labeled_delaunay/simple_flips.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
@@ -263,8 +264,8 @@ static void forget_patch(search *s, uint32_t tet) {
     if (low < s->num_owners && s->owner[low] >> 32 == tet) s->deforms[(uint32_t)s->owner[low]] = 0;
 }
 
-/* Forgets what is known of the patches at the samples of flips [from, size). Whether a patch deforms the boundary only is
- * read from the stars of its samples. What is flipped in such a star has the sample, too. */
+/* Forgets what is known of the patches at the samples of flips [from, size). Whether a patch deforms the boundary only
+ * is read from the stars of its samples. What is flipped in such a star has the sample, too. */
 static brio_status forget_patches(search *s, size_t from) {
     brio_status status = BRIO_OK;
     const brio_vote_graph *g = s->f->g;

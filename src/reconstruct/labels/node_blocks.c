@@ -362,8 +362,8 @@ static brio_status list_rounds(const finder *f, const uint32_t *round) {
     for (size_t i = b->num_blocks; i-- > 0;)
         if (f->trouble[i]) b->block[--b->first_round[round[i]]] = (uint32_t)i;
     for (size_t r = 0; r < b->num_rounds; r++)
-        BRIO_TRY(brio_sort_many_indices(b->ctx, b->block + b->first_round[r],
-                                        b->first_round[r + 1] - b->first_round[r], compare_places, b->begin));
+        BRIO_TRY(brio_sort_many_indices(b->ctx, b->block + b->first_round[r], b->first_round[r + 1] - b->first_round[r],
+                                        compare_places, b->begin));
 done:
     return status;
 }

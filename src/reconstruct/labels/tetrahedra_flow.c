@@ -15,7 +15,7 @@
  * Differs from the paper: which parts merge does not depend on their sizes or borders. */
 #include "reconstruct/labels/tetrahedra_flow.h"
 #include "base/memory.h"
-#include "base/sweep.h"
+#include "base/team.h"
 #include <string.h>
 
 /* PART_SIZE: chosen, the arrays of a part fit into a cache of 2 MB. MERGED: parts that become one; chosen. */
@@ -77,9 +77,11 @@ static void toggle(int32_t *residual) {
 /* Announces what the nodes from `from` to `to` - 1 are known by. */
 static void expect_nodes(const brio_tet_flow *f, size_t from, size_t to, bool all) {
     if (from >= to) return;
-    const brio_swept swept[] = {BRIO_READS(f->residual), BRIO_READS(f->side), BRIO_READS(f->t->tet),
-                                BRIO_READS(f->node), BRIO_READS(f->terminal)};
-    brio_expect_rows(f->ctx, swept, all ? 5 : 2, tet_at(f, from), (size_t)tet_at(f, to - 1) + 1);
+    if (all)
+        brio_expect_rows(f->ctx, BRIO_ARRAYS(BRIO_READS(f->t->tet), BRIO_READS(f->node), BRIO_READS(f->terminal)),
+                         tet_at(f, from), (size_t)tet_at(f, to - 1) + 1);
+    brio_expect_rows(f->ctx, BRIO_ARRAYS(BRIO_READS(f->residual), BRIO_READS(f->side)), tet_at(f, from),
+                     (size_t)tet_at(f, to - 1) + 1);
 }
 
 /* Closes the arcs that leave the part. */
@@ -128,8 +130,9 @@ static void keep_later(uint32_t *latest, uint32_t time) {
 
 /* Has the disk begin to write what a part has changed. */
 static brio_status settle_nodes(const brio_tet_flow *f) {
-    const brio_swept swept[] = {BRIO_WRITES(f->residual), BRIO_WRITES(f->node), BRIO_WRITES(f->terminal)};
-    return brio_settle_rows(f->ctx, swept, 3, tet_at(f, f->from), (size_t)tet_at(f, f->to - 1) + 1);
+    return brio_settle_rows(f->ctx,
+                            BRIO_ARRAYS(BRIO_WRITES(f->residual), BRIO_WRITES(f->node), BRIO_WRITES(f->terminal)),
+                            tet_at(f, f->from), (size_t)tet_at(f, f->to - 1) + 1);
 }
 
 /* Pushes the nodes of a part as far as that goes within. */

@@ -2,9 +2,9 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/scratch_file.h"
 #include "base/versioned.h"
 #include "order/canonical_points.h"
-#include "platform/folder.h"
 #include "reconstruct/surface/method.h"
 #include <math.h>
 #include <stdio.h>
@@ -77,7 +77,7 @@ static brio_status settle(brio_context *ctx, const brio_surface_options *options
 static brio_status require_disk(brio_context *ctx, size_t num_points, const brio_surface_options *o) {
     uint64_t room;
     double need = SURE * brio_method_bytes(brio_method_row_of(o->method), (double)num_points, o);
-    if (!ctx->scratch || !brio_free_bytes(ctx->scratch, &room)) return BRIO_OK;
+    if (!brio_scratch_room(ctx, &room)) return BRIO_OK;
     BRIO_EXPECT(ctx, need <= (double)room, BRIO_ERR_NO_MEMORY,
                 "%s: %zu points need about %.0f MB of scratch files, and this disk has room for %.0f MB", ctx->scratch,
                 num_points, need / SURE / 1e6, (double)room / 1e6);
