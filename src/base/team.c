@@ -310,18 +310,21 @@ brio_status brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chu
 /* --- loops along arrays --- */
 
 /* Rows that are asked for at once, a stretch: STRETCH_BYTES of the widest array, as far as the bounds allow. AHEAD: so
- * many stretches before they are reached. LEAST: bytes of less are left to page faults. Chosen, but LEAST_STRETCH is
- * that of a piece of brio_for. */
+ * many stretches before they are reached. LEAST: bytes of less, and more than one in SHARE bytes of the memory, are
+ * left to page faults: pages that are being read cannot be given to others. Chosen, but LEAST_STRETCH is that of a
+ * piece of brio_for. */
 enum { STRETCH_BYTES = 1 << 18, LEAST_STRETCH = 1 << 11, MOST_STRETCH = BRIO_SWEEP_STRETCH };
-enum { AHEAD = 2, LEAST = 1 << 14 };
+enum { AHEAD = 2, LEAST = 1 << 14, SHARE = 64 };
 
 void brio_expect_rows(const brio_context *ctx, const brio_swept *swept, size_t begin, size_t end) {
+    size_t most = brio_memory_limit(ctx) / SHARE;
     if (!ctx->scratch || begin >= end) return;
     for (size_t i = 0; swept[i].size > 0; i++) {
         if (!swept[i].rows) continue;
         uintptr_t from = (uintptr_t)swept[i].rows + begin * swept[i].size;
         size_t bytes = (end - begin) * swept[i].size, before = from % 4096;
-        if (bytes >= LEAST) brio_pages_advise((void *)(from - before), bytes + before, BRIO_PAGES_SOON);
+        if (bytes >= LEAST && bytes <= most)
+            brio_pages_advise((void *)(from - before), bytes + before, BRIO_PAGES_SOON);
     }
 }
 
@@ -331,10 +334,13 @@ void brio_expect_next(const brio_context *ctx, size_t row, size_t n, const brio_
 }
 
 brio_status brio_settle_rows(brio_context *ctx, const brio_swept *swept, size_t begin, size_t end) {
+    size_t most = brio_memory_limit(ctx) / SHARE;
     if (!ctx->scratch || begin >= end) return BRIO_OK;
-    for (size_t i = 0; swept[i].size > 0; i++)
-        if (swept[i].rows && swept[i].written && (end - begin) * swept[i].size >= LEAST)
-            BRIO_FORWARD(brio_block_settle(ctx, swept[i].rows, begin * swept[i].size, (end - begin) * swept[i].size));
+    for (size_t i = 0; swept[i].size > 0; i++) {
+        size_t bytes = (end - begin) * swept[i].size;
+        if (swept[i].rows && swept[i].written && bytes >= LEAST && bytes <= most)
+            BRIO_FORWARD(brio_block_settle(ctx, swept[i].rows, begin * swept[i].size, bytes));
+    }
     return BRIO_OK;
 }
 

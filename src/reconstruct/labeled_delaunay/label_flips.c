@@ -5,10 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int64_t whole(float weight) {
-    return brio_vote_of(weight);
-}
-
 brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_label_flips *out) {
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
@@ -22,7 +18,7 @@ brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_
     BRIO_TRY(BRIO_ALLOC(ctx, out->outer, out->num_samples));
     BRIO_TRY(BRIO_ALLOC(ctx, out->place, out->num_tets));
     memset(out->place, 255, out->num_tets * sizeof *out->place);
-    BRIO_TRY(brio_sum_votes(g, whole, label, out->outer, NULL));
+    BRIO_TRY(brio_sum_votes(g, BRIO_FLIP_VOTES, label, out->outer, NULL));
 done:
     return status;
 }

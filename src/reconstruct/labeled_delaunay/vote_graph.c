@@ -247,7 +247,7 @@ void brio_expect_stars(const brio_vote_graph *g, size_t sample, bool votes) {
 
 typedef struct {
     const brio_vote_graph *g;
-    int64_t (*whole)(float);
+    brio_vote_unit unit;
     const uint8_t *label;
     int64_t *outer, *all;
     bool alone; /* one thread does all */
@@ -257,37 +257,49 @@ static void begin_sums(void *user, size_t begin, size_t end, int thread) {
     const adder *a = user;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        a->outer[p] = a->whole(brio_own_vote(a->g, p));
+        a->outer[p] = brio_in_vote_units(a->unit, brio_own_vote(a->g, p));
         if (a->all) a->all[p] = llabs(a->outer[p]);
     }
 }
 
-static void add(const adder *a, int64_t *sum, int64_t more) {
-    if (a->alone)
+static inline void add(int64_t *sum, int64_t more, bool alone) {
+    if (alone)
         *sum += more;
     else
         __atomic_fetch_add(sum, more, __ATOMIC_RELAXED);
 }
 
-static void add_votes(void *user, size_t begin, size_t end, int thread) {
-    const adder *a = user;
+static inline void add_votes_of(const adder *a, size_t begin, size_t end, bool alone, bool both) {
     const brio_pole_vectors *v = a->g->dual;
-    (void)thread;
-    for (size_t tet = begin; tet < end; tet++)
-        for (int i = 0; i < num_samples(v, tet); i++) {
-            int64_t weight = a->whole(a->g->vote[tet][i]);
-            uint32_t p = v->t.tet[tet].vertex[i];
-            if (weight == 0) continue;
-            add(a, &a->outer[p], a->label[tet] == BRIO_LABEL_OUTER ? weight : -weight);
-            if (a->all) add(a, &a->all[p], llabs(weight));
+    const brio_vote_unit unit = a->unit;
+    for (size_t tet = begin; tet < end; tet++) {
+        const uint32_t *vertex = v->t.tet[tet].vertex;
+        const float *vote = a->g->vote[tet];
+        bool outer = a->label[tet] == BRIO_LABEL_OUTER;
+        for (int i = 0, n = num_samples(v, tet); i < n; i++) {
+            int64_t weight = brio_in_vote_units(unit, vote[i]);
+            add(&a->outer[vertex[i]], outer ? weight : -weight, alone);
+            if (both) add(&a->all[vertex[i]], llabs(weight), alone);
         }
+    }
 }
 
-brio_status brio_sum_votes(const brio_vote_graph *g, int64_t (*whole)(float), const uint8_t *label, int64_t *outer,
+static void add_votes(void *user, size_t begin, size_t end, int thread) {
+    const adder *a = user;
+    (void)thread;
+    if (a->all)
+        add_votes_of(a, begin, end, a->alone, true);
+    else if (a->alone)
+        add_votes_of(a, begin, end, true, false);
+    else
+        add_votes_of(a, begin, end, false, false);
+}
+
+brio_status brio_sum_votes(const brio_vote_graph *g, brio_vote_unit unit, const uint8_t *label, int64_t *outer,
                            int64_t *all) {
     size_t n = g->dual->num_points, size = g->dual->t.count;
     int threads = brio_threads(g->ctx, size, TETS_A_THREAD);
-    adder a = {g, whole, label, outer, all, threads == 1};
+    adder a = {g, unit, label, outer, all, threads == 1};
     BRIO_FORWARD(brio_for(g->ctx, brio_threads(g->ctx, n, SAMPLES_A_THREAD), n, begin_sums, &a));
     return brio_sweep(g->ctx, threads, size, add_votes, &a, BRIO_READS(g->dual->t.tet), BRIO_READS(g->vote));
 }

@@ -34,10 +34,8 @@ typedef struct {
 
 /* --- one turn --- */
 
-/* Returns a weight in whole numbers: a star has less than 2^30 tetrahedra, so the sum of its votes has room. */
-static int64_t whole(float weight) {
-    return (int64_t)(0x1p32 * (double)weight);
-}
+/* Votes in whole numbers: a star has less than 2^30 tetrahedra, so the sum of its votes has room. */
+static const brio_vote_unit WHOLE = {1, 0x1p32};
 
 static void turn_part(void *user, size_t begin, size_t end, int thread) {
     voting *v = user;
@@ -61,7 +59,7 @@ static brio_status take_turns(voting *v) {
         BRIO_TRY(brio_progress(v->ctx, "label", 0.6 * turn / TURNS));
         BRIO_TRY(brio_vote_cut_find(&cut, 0, v->label, v->label));
         v->turned = 0;
-        BRIO_TRY(brio_sum_votes(v->g, whole, v->label, v->outer, NULL));
+        BRIO_TRY(brio_sum_votes(v->g, WHOLE, v->label, v->outer, NULL));
         BRIO_TRY(brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v));
         if (v->turned <= v->num_samples / FEW) break;
     }
@@ -139,7 +137,7 @@ brio_status brio_settle_labels(const brio_vote_graph *g, uint8_t *label, size_t 
     BRIO_TRY(BRIO_ALLOC(v.ctx, v.outer, v.num_samples));
     BRIO_TRY(BRIO_ALLOC(v.ctx, v.all, v.num_samples));
     memset(v.fixed, 1, v.num_tets + v.num_samples);
-    BRIO_TRY(brio_sum_votes(g, whole, label, v.outer, v.all));
+    BRIO_TRY(brio_sum_votes(g, WHOLE, label, v.outer, v.all));
     BRIO_TRY(brio_for(v.ctx, brio_threads(v.ctx, v.num_samples, NODES_A_THREAD), v.num_samples, free_contested, &v));
     brio_release(v.ctx, v.outer);
     brio_release(v.ctx, v.all);

@@ -63,10 +63,6 @@ typedef struct {
 
 /* --- patches --- */
 
-static int64_t whole(float weight) {
-    return brio_vote_of(weight);
-}
-
 /* Opens the tetrahedra of samples in doubt: those whose violated votes are over DOUBT of all their votes. */
 static brio_status open_doubtful(search *s) {
     brio_status status = BRIO_OK;
@@ -74,7 +70,7 @@ static brio_status open_doubtful(search *s) {
     int64_t *outer = NULL, *all = NULL;
     BRIO_TRY(BRIO_ALLOC(s->f->ctx, outer, s->f->num_samples));
     BRIO_TRY(BRIO_ALLOC(s->f->ctx, all, s->f->num_samples));
-    BRIO_TRY(brio_sum_votes(g, whole, s->f->label, outer, all));
+    BRIO_TRY(brio_sum_votes(g, BRIO_FLIP_VOTES, s->f->label, outer, all));
     for (size_t p = 0; p < s->f->num_samples; p++) {
         if ((double)(all[p] - llabs(outer[p])) <= 2 * DOUBT * (double)all[p]) continue;
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++) s->open[brio_star_tet(g->star[i])] = 1;
