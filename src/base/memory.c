@@ -223,6 +223,11 @@ void brio_block_expect(const void *block, size_t offset, size_t size) {
     if (h->kind == KIND_FILE) brio_scratch_expect(&h->file, FRONT + offset, size);
 }
 
+brio_status brio_block_settle(brio_context *ctx, const void *block, size_t offset, size_t size) {
+    const block_header *h = header_of(block);
+    return h->kind == KIND_FILE ? brio_scratch_settle(ctx, &h->file, FRONT + offset, size) : BRIO_OK;
+}
+
 brio_status brio_block_read(brio_context *ctx, const void *block, size_t offset, void *to, size_t size) {
     const block_header *h = header_of(block);
     if (h->kind == KIND_LOST) return lost(ctx);

@@ -41,6 +41,10 @@ void brio_block_direct(void *block, bool direct);
 /** Announces that these bytes will be read soon. */
 void brio_block_expect(const void *block, size_t offset, size_t size);
 
+/** Has the disk begin to write these bytes, so that their pages can be used for others soon. No effect on blocks in
+ *  memory. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_block_settle(brio_context *ctx, const void *block, size_t offset, size_t size);
+
 /* Resizes the block of the pointer that `pointer_to_block` points to, of any type. This function and the next two leave
  * the pointer as it was on failure, except brio_in_memory, which sets it to NULL. */
 static inline brio_status brio_resize_to(brio_context *ctx, void *pointer_to_block, size_t count, size_t size) {

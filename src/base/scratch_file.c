@@ -9,6 +9,7 @@
 #include "base/scratch_file.h"
 #include "platform/disk.h"
 #include "platform/file.h"
+#include "platform/folder.h"
 #include <assert.h>
 #include <errno.h>
 #include <stdint.h>
@@ -91,6 +92,10 @@ brio_status brio_scratch_try(brio_context *ctx, const char *folder) {
                          strerror(errno));
     brio_close(file);
     return BRIO_OK;
+}
+
+bool brio_scratch_room(const brio_context *ctx, uint64_t *bytes) {
+    return ctx->scratch && brio_free_bytes(ctx->scratch, bytes);
 }
 
 brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {
@@ -201,6 +206,11 @@ brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, si
     if (status == BRIO_OK) status = brio_scratch_require_whole(ctx, f);
     if (status == BRIO_OK && !direct) status = write_behind(ctx, f->cached, offset, offset + size);
     return status;
+}
+
+brio_status brio_scratch_settle(brio_context *ctx, const brio_scratch_file *f, size_t offset, size_t size) {
+    if (brio_start_writing(f->cached, offset, size)) return BRIO_OK;
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot write a scratch file: %s", ctx->scratch, strerror(errno));
 }
 
 void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size) {

@@ -16,6 +16,10 @@ typedef struct {
  *  Returns BRIO_OK, or BRIO_ERR_OPEN if the folder takes no files. */
 brio_status brio_scratch_try(brio_context *ctx, const char *folder);
 
+/** Finds how many bytes the context's scratch folder has room for. Returns false if that is not known, or there is no
+ *  such folder. */
+bool brio_scratch_room(const brio_context *ctx, uint64_t *bytes);
+
 /** Makes a file of `size` bytes in the context's scratch folder. Its space is allocated on disk, so that a full disk
  *  fails here.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
@@ -47,6 +51,9 @@ brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, si
 /** Fails if somebody else has cut a file, even if it has grown again.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
 brio_status brio_scratch_require_whole(brio_context *ctx, const brio_scratch_file *f);
+
+/** Has the disk begin to write bytes. Returns BRIO_OK, or BRIO_ERR_NO_MEMORY where it does not. */
+brio_status brio_scratch_settle(brio_context *ctx, const brio_scratch_file *f, size_t offset, size_t size);
 
 /** Announces that these bytes will be read soon. */
 void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size);

@@ -10,8 +10,10 @@
  * ones. */
 #include "base/team.h"
 #include "base/float_state.h"
+#include "base/memory.h"
 #include "base/sanitizers.h"
 #include "base/stress.h"
+#include "platform/pages.h"
 #include <assert.h>
 #include <string.h>
 
@@ -303,4 +305,73 @@ brio_status brio_for_parts(brio_context *ctx, int threads, size_t n, brio_part_f
 brio_status brio_for_chunks(brio_context *ctx, int threads, size_t n, size_t chunk, brio_part_fn body, void *user) {
     assert(chunk > 0 || n == 0);
     return run_loop(ctx, threads, do_chunks, &(loop){.body = body, .user = user, .n = n, .chunk = chunk});
+}
+
+/* --- loops along arrays --- */
+
+/* Rows that are asked for at once, a stretch: STRETCH_BYTES of the widest array, as far as the bounds allow. AHEAD: so
+ * many stretches before they are reached. LEAST: bytes of less, and more than one in SHARE bytes of the memory, are
+ * left to page faults: pages that are being read cannot be given to others. Chosen, but LEAST_STRETCH is that of a
+ * piece of brio_for. */
+enum { STRETCH_BYTES = 1 << 18, LEAST_STRETCH = 1 << 11, MOST_STRETCH = BRIO_SWEEP_STRETCH };
+enum { AHEAD = 2, LEAST = 1 << 14, SHARE = 64 };
+
+void brio_expect_rows(const brio_context *ctx, const brio_swept *swept, size_t begin, size_t end) {
+    size_t most = brio_memory_limit(ctx) / SHARE;
+    if (!ctx->scratch || begin >= end) return;
+    for (size_t i = 0; swept[i].size > 0; i++) {
+        if (!swept[i].rows) continue;
+        uintptr_t from = (uintptr_t)swept[i].rows + begin * swept[i].size;
+        size_t bytes = (end - begin) * swept[i].size, before = from % 4096;
+        if (bytes >= LEAST && bytes <= most)
+            brio_pages_advise((void *)(from - before), bytes + before, BRIO_PAGES_SOON);
+    }
+}
+
+void brio_expect_next(const brio_context *ctx, size_t row, size_t n, const brio_swept *swept) {
+    size_t from = row + AHEAD * BRIO_SWEEP_STRETCH, to = from + BRIO_SWEEP_STRETCH;
+    brio_expect_rows(ctx, swept, from, to < n ? to : n);
+}
+
+brio_status brio_settle_rows(brio_context *ctx, const brio_swept *swept, size_t begin, size_t end) {
+    size_t most = brio_memory_limit(ctx) / SHARE;
+    if (!ctx->scratch || begin >= end) return BRIO_OK;
+    for (size_t i = 0; swept[i].size > 0; i++) {
+        size_t bytes = (end - begin) * swept[i].size;
+        if (swept[i].rows && swept[i].written && bytes >= LEAST && bytes <= most)
+            BRIO_FORWARD(brio_block_settle(ctx, swept[i].rows, begin * swept[i].size, bytes));
+    }
+    return BRIO_OK;
+}
+
+typedef struct {
+    brio_context *ctx;
+    brio_part_fn body;
+    void *user;
+    const brio_swept *swept;
+    size_t n, stretch;
+    brio_status status;
+} sweep;
+
+/* Works on a piece. Pieces ascend, and are shorter than a stretch. */
+static void sweep_piece(void *user, size_t begin, size_t end, int member) {
+    sweep *s = user;
+    size_t next = (begin + s->stretch - 1) / s->stretch * s->stretch; /* the stretch that begins here, if any does */
+    if (next < end) {
+        size_t from = next + AHEAD * s->stretch, to = from + s->stretch;
+        brio_expect_rows(s->ctx, s->swept, from, to < s->n ? to : s->n);
+        if (next >= s->stretch) brio_report(&s->status, brio_settle_rows(s->ctx, s->swept, next - s->stretch, next));
+    }
+    s->body(s->user, begin, end, member);
+}
+
+brio_status brio_sweep_arrays(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user,
+                              const brio_swept *swept) {
+    sweep s = {ctx, body, user, swept, n, MOST_STRETCH, BRIO_OK};
+    if (!ctx->scratch) return brio_for(ctx, threads, n, body, user);
+    for (size_t i = 0; swept[i].size > 0; i++)
+        while (s.stretch > LEAST_STRETCH && s.stretch * swept[i].size > STRETCH_BYTES) s.stretch /= 2;
+    brio_expect_rows(ctx, swept, 0, n < AHEAD * s.stretch ? n : AHEAD * s.stretch);
+    BRIO_FORWARD(brio_for(ctx, threads, n, sweep_piece, &s));
+    return s.status;
 }

@@ -77,4 +77,49 @@ static inline size_t brio_part(size_t size, int i, int n) {
     return size / (size_t)n * (size_t)i + size % (size_t)n * (size_t)i / (size_t)n;
 }
 
+/* --- loops along arrays that may be in scratch files ---
+ *
+ * A page fault on a scratch file reads one page and waits for the disk (memory.h). A loop that goes along an array
+ * needs no faults: what comes next is asked for in stretches while it works, and what it has written is handed to the
+ * disk, so that its pages are free when others need them. In memory such a loop is brio_for. */
+
+/** An array of which a loop reads or writes row i when its index is i. */
+typedef struct {
+    const void *rows; /* a block of base/memory.h; NULL: none */
+    size_t size;      /* bytes of a row; 0 ends a list of arrays */
+    bool written;     /* whether the loop writes rows */
+} brio_swept;
+
+/* Most rows that are asked for at once: a stretch. Chosen. */
+enum { BRIO_SWEEP_STRETCH = 1 << 13 };
+
+#define BRIO_READS(array)                                                                                              \
+    { (array), sizeof *(array), false }
+#define BRIO_WRITES(array)                                                                                             \
+    { (array), sizeof *(array), true }
+
+/** Announces rows [begin, end) of a list of arrays. */
+void brio_expect_rows(const brio_context *ctx, const brio_swept *swept, size_t begin, size_t end);
+
+/** Hands rows [begin, end) of written arrays to the disk. Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */
+brio_status brio_settle_rows(brio_context *ctx, const brio_swept *swept, size_t begin, size_t end);
+
+/** Announces, at the first row of a stretch, a stretch that comes soon; n is the number of all rows. */
+void brio_expect_next(const brio_context *ctx, size_t row, size_t n, const brio_swept *swept);
+
+/* BRIO_ARRAYS(BRIO_READS(a), BRIO_WRITES(b)): a list of arrays. */
+#define BRIO_ARRAYS(...) ((const brio_swept[]){__VA_ARGS__, {NULL, 0, false}})
+
+/* brio_along(ctx, i, n, BRIO_READS(a), BRIO_READS(b)) announces rows for a loop over i below n that is no brio_for. */
+#define brio_along(ctx, row, n, ...)                                                                                   \
+    ((row) % BRIO_SWEEP_STRETCH == 0 ? brio_expect_next(ctx, row, n, BRIO_ARRAYS(__VA_ARGS__)) : (void)0)
+
+/** Does what brio_for does, for a body that goes along arrays with its index. */
+brio_status brio_sweep_arrays(brio_context *ctx, int threads, size_t n, brio_part_fn body, void *user,
+                              const brio_swept *swept) __attribute__((warn_unused_result));
+
+/* brio_sweep(ctx, threads, n, body, user, BRIO_READS(a), BRIO_WRITES(b)) */
+#define brio_sweep(ctx, threads, n, body, user, ...)                                                                   \
+    brio_sweep_arrays(ctx, threads, n, body, user, BRIO_ARRAYS(__VA_ARGS__))
+
 #endif

@@ -300,10 +300,15 @@ static brio_status search_poles(brio_context *ctx, brio_pole_vectors *v) {
         for (size_t p = 0; p < v->num_points; p++) s.farther[side][p] = BRIO_NO_FARTHEST;
     }
     find_hull_vectors(&s);
-    BRIO_TRY(brio_for(ctx, s.threads, batches, find_poles, &s));
+    BRIO_TRY(brio_sweep(ctx, s.threads, batches, find_poles, &s,
+                        {v->t.tet, BRIO_CENTRE_BATCH * sizeof *v->t.tet, false},
+                        {v->centre, BRIO_CENTRE_BATCH * 4 * sizeof *v->centre, true}));
     BRIO_TRY(brio_progress(ctx, "poles", 0.5));
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, v->num_points, SAMPLES_A_THREAD), v->num_points, find_planes, &s));
-    BRIO_TRY(brio_for(ctx, s.threads, v->t.count, find_sides, &s));
+    BRIO_TRY(brio_sweep(ctx, brio_threads(ctx, v->num_points, SAMPLES_A_THREAD), v->num_points, find_planes, &s,
+                        BRIO_READS(s.farther[0]), {v->points, 3 * sizeof *v->points, false},
+                        {v->plane, 4 * sizeof *v->plane, true}));
+    BRIO_TRY(brio_sweep(ctx, s.threads, v->t.count, find_sides, &s, BRIO_READS(v->t.tet),
+                        {v->centre, 4 * sizeof *v->centre, false}, BRIO_WRITES(v->sides)));
     for (size_t i = 0; i < 2 * v->num_points; i++) v->pole[i] = brio_farthest_tet(s.farther[i % 2][i / 2]);
 done:
     for (int side = 0; side < 2; side++) brio_release(ctx, s.farther[side]);

@@ -10,7 +10,7 @@
 #include <math.h>
 
 /* NEAREST: derived, the mean degree of a triangulated surface. SAMPLES_A_THREAD, SLICE: chosen. */
-enum { NEAREST = 6, SAMPLES_A_THREAD = 1 << 12, SLICE = 1 << 20 };
+enum { NEAREST = 6, SAMPLES_A_THREAD = 1 << 12, SLICE = 1 << 17 };
 
 typedef struct {
     float square[NEAREST]; /* ascending */
@@ -77,6 +77,8 @@ brio_status brio_sample_spacing(brio_context *ctx, const brio_triangulation *t, 
     for (size_t first = 0; first < count; first += SLICE) {
         m.tet = tet + first;
         m.num_tets = count - first < SLICE ? count - first : SLICE;
+        brio_expect_rows(ctx, BRIO_ARRAYS(BRIO_READS(tet)), first + m.num_tets,
+                         count - first < 2 * SLICE ? count : first + 2 * SLICE);
         BRIO_TRY(brio_for_parts(ctx, threads, num_samples, offer_slice, &m));
     }
     BRIO_TRY(brio_for(ctx, threads, num_samples, measure_part, &m));

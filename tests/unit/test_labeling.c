@@ -226,6 +226,7 @@ static void check_tetrahedra(brio_context *ctx, uint64_t trial) {
     brio_tet_flow tets;
     EXPECT(brio_tet_flow_new(ctx, &t, trial % 2 ? NULL : g->open, g->num_open, &tets) == BRIO_OK);
     if (trial % 5) tets.part_size = 1 + trial % 40;
+    if (trial % 4) tets.most_together = 1 + trial % 300;
     brio_context_set_threads(ctx, 1 + (int)(trial % 3));
     for (size_t i = 0; i < g->num_open; i++) tets.terminal[g->open[i]] = 0;
     join_tetrahedra(g, &rng, &tets);

@@ -8,11 +8,13 @@
 #include "base/scratch_file.h"
 #include "harness.h"
 #include "io/output.h"
+#include "points.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 static int calls, failing_call;
@@ -24,10 +26,15 @@ int sync_file_range(int file, off_t offset, off_t size, unsigned flags) {
     return -1;
 }
 
-static brio_context *new_context(void) {
-    brio_context *ctx = NULL;
-    EXPECT(brio_context_new(NULL, &ctx) == BRIO_OK);
-    return ctx;
+/* The system's, except that the disk may be full. */
+static bool full;
+
+int statvfs(const char *restrict path, struct statvfs *restrict out) {
+    int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    int failed = folder < 0 ? -1 : fstatvfs(folder, out);
+    if (folder >= 0) close(folder);
+    if (full && !failed) out->f_bavail = 1;
+    return failed;
 }
 
 /* --- outputs --- */
@@ -161,7 +168,25 @@ static void a_scratch_file_without_room_for_its_mapping_stays_whole(void) {
     brio_context_free(ctx);
 }
 
+static void a_surface_for_which_the_disk_has_no_room_is_refused(void) {
+    enum { N = 500 };
+    double p[3 * N];
+    brio_context *ctx = new_context();
+    brio_surface_options o = {.size = sizeof o};
+    brio_mesh *mesh = NULL;
+    sphere_points(1, N, p);
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    full = true;
+    EXPECT(brio_surface(ctx, p, N, &o, &mesh, NULL) == BRIO_ERR_NO_MEMORY);
+    EXPECT(strstr(brio_message(ctx), ".: 500 points need about "), "%s", brio_message(ctx));
+    full = false;
+    EXPECT(brio_surface(ctx, p, N, &o, &mesh, NULL) == BRIO_OK);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
 SUITE(test_lost_pages) {
+    RUN(a_surface_for_which_the_disk_has_no_room_is_refused);
     RUN(pages_that_the_disk_loses_before_the_flush_fail_the_output);
     RUN(pages_that_the_disk_loses_fail_the_write_of_a_scratch_file);
     RUN(a_scratch_file_that_was_cut_is_an_error_and_no_zeros);

@@ -1,6 +1,11 @@
 /* Scratch files: the same triangulation, array for array, as in memory. */
+#include "base/memory.h"
+#include "base/team.h"
 #include "harness.h"
 #include "points.h"
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
 
 typedef struct {
     const double *points, *weights;
@@ -82,7 +87,71 @@ static void vertex_of_very_many_tetrahedra_gives_the_same_arrays(void) {
     free(p);
 }
 
+/* --- loops along arrays --- */
+
+enum { ROWS = 1 << 19 };
+
+typedef struct {
+    uint64_t (*from)[2], (*to)[2];
+    uint8_t *times; /* ROWS: how often the loop came by */
+} copying;
+
+static void copy_rows(void *user, size_t begin, size_t end, int thread) {
+    const copying *c = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        c->to[i][0] = c->from[i][0], c->to[i][1] = c->from[i][1];
+        c->times[i]++;
+    }
+}
+
+static long faults(void) {
+#ifdef __linux__
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? usage.ru_majflt : 0;
+#else
+    return 0;
+#endif
+}
+
+/* Copies rows in scratch files to new ones. Returns how many page faults had to fetch a page. */
+static long copy_all(brio_context *ctx, bool sweeps) {
+    copying c = {.times = calloc(ROWS, 1)};
+    size_t wrong = 0;
+    EXPECT(BRIO_ALLOC(ctx, c.from, ROWS) == BRIO_OK && BRIO_ALLOC(ctx, c.to, ROWS) == BRIO_OK);
+    for (size_t i = 0; i < ROWS; i++) c.from[i][0] = 3 * i, c.from[i][1] = ~i;
+    int threads = brio_threads(ctx, ROWS, 1);
+    long before = faults();
+    if (sweeps)
+        EXPECT(brio_sweep(ctx, threads, ROWS, copy_rows, &c, BRIO_READS(c.from), BRIO_WRITES(c.to)) == BRIO_OK);
+    else
+        EXPECT(brio_for(ctx, threads, ROWS, copy_rows, &c) == BRIO_OK);
+    long taken = faults() - before;
+    for (size_t i = 0; i < ROWS; i++) wrong += c.times[i] != 1 || c.to[i][0] != 3 * i || c.to[i][1] != ~i;
+    EXPECT(wrong == 0, "%zu rows", wrong);
+    brio_release(ctx, c.from);
+    brio_release(ctx, c.to);
+    free(c.times);
+    return taken;
+}
+
+/* A loop that says which arrays it goes along finds its pages there: at most one page in eight is fetched by a fault. */
+static void a_sweep_waits_for_few_pages(void) {
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    for (int threads = 1; threads <= 3; threads++) {
+        brio_context_set_threads(ctx, threads);
+        EXPECT(brio_context_set_scratch(ctx, NULL) == BRIO_OK);
+        copy_all(ctx, true);
+        EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+        long without = copy_all(ctx, false), with = copy_all(ctx, true);
+        EXPECT(with <= without / 8, "%ld of %ld", with, without);
+    }
+    brio_context_free(ctx);
+}
+
 SUITE(test_scratch) {
+    RUN(a_sweep_waits_for_few_pages);
     RUN(uniform_points_give_the_same_arrays);
     RUN(weighted_lattice_with_duplicates_gives_the_same_arrays);
     RUN(little_memory_gives_the_same_arrays);

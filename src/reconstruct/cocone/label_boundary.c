@@ -19,6 +19,7 @@ static brio_status list_part(brio_context *ctx, const brio_tet_labels *labels, s
     const brio_tetrahedron *t = labels->dual->t.tet;
     const uint8_t *label = labels->label;
     for (size_t tet = from; tet < to; tet++) {
+        brio_along(ctx, tet, to, BRIO_READS(t));
         if (label[tet] != BRIO_LABEL_OUTER) continue;
         unsigned inner = 0; /* bit i: the neighbour behind facet i is inner */
         for (int i = 0; i < 4; i++) inner |= (unsigned)(label[brio_tet_of(t[tet].mate[i])] != BRIO_LABEL_OUTER) << i;

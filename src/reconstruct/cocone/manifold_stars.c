@@ -268,8 +268,10 @@ static brio_status prepare(repair *r) {
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, r->fixed, r->t->count));
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->piece_of, r->t->count));
     BRIO_TRY(brio_star_new(r->ctx, r->t->count, &r->star));
-    for (size_t tet = 0; tet < v->num_finite; tet++)
+    for (size_t tet = 0; tet < v->num_finite; tet++) {
+        brio_along(r->ctx, tet, v->num_finite, BRIO_READS(r->t->tet));
         for (int i = 0; i < 4; i++) r->tet_of_vertex[r->t->tet[tet].vertex[i]] = (uint32_t)tet;
+    }
     for (size_t tet = v->num_finite; tet < r->t->count; tet++) r->fixed[tet] = r->labels->watertight;
 done:
     return status;

@@ -2,25 +2,8 @@
  * at its samples: a sample with the votes a for outer and b for inner costs min(a, b). */
 #include "reconstruct/labeled_delaunay/label_flips.h"
 #include "base/memory.h"
-#include "base/team.h"
 #include <stdlib.h>
 #include <string.h>
-
-enum { SAMPLES_A_THREAD = 1 << 12 };
-
-static void sum_votes(void *user, size_t begin, size_t end, int thread) {
-    brio_label_flips *f = user;
-    (void)thread;
-    for (size_t p = begin; p < end; p++) {
-        int64_t outer = brio_vote_of(brio_own_vote(f->g, p));
-        for (size_t i = f->g->first[p]; i < f->g->first[p + 1]; i++) {
-            uint32_t entry = f->g->star[i];
-            int64_t weight = brio_vote_of(brio_star_vote(f->g, entry));
-            outer += f->label[brio_star_tet(entry)] == BRIO_LABEL_OUTER ? weight : -weight;
-        }
-        f->outer[p] = outer;
-    }
-}
 
 brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_label_flips *out) {
     brio_status status = BRIO_OK;
@@ -35,7 +18,7 @@ brio_status brio_label_flips_new(const brio_vote_graph *g, uint8_t *label, brio_
     BRIO_TRY(BRIO_ALLOC(ctx, out->outer, out->num_samples));
     BRIO_TRY(BRIO_ALLOC(ctx, out->place, out->num_tets));
     memset(out->place, 255, out->num_tets * sizeof *out->place);
-    BRIO_TRY(brio_for(ctx, brio_threads(ctx, out->num_samples, SAMPLES_A_THREAD), out->num_samples, sum_votes, out));
+    BRIO_TRY(brio_sum_votes(g, BRIO_FLIP_VOTES, label, out->outer, NULL));
 done:
     return status;
 }

@@ -8,9 +8,11 @@
  *  trace, and sums do not depend on their order. */
 #define BRIO_FLIP_UNIT ((int64_t)1 << 16)
 
+static const brio_vote_unit BRIO_FLIP_VOTES = {BRIO_VOTE_UNIT, (double)BRIO_FLIP_UNIT};
+
 /** Returns a weight in that unit. */
 static inline int64_t brio_vote_of(float weight) {
-    return (int64_t)((double)weight / BRIO_VOTE_UNIT * (double)BRIO_FLIP_UNIT);
+    return brio_in_vote_units(BRIO_FLIP_VOTES, weight);
 }
 
 /** In brio_label_flips.place: the tetrahedron is not in the star at hand. */

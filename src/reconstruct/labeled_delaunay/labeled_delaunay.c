@@ -52,7 +52,7 @@ enum { MANY = 200000, FEW = 8 };
 
 /* Drops specks and bubbles: regions whose surface is smaller than SPECK says, and under a hundredth of all. */
 static brio_status drop_specks(brio_reconstruction *r) {
-    size_t all = brio_count_boundary(&r->dual.t, r->label), least = 0, dropped = 0;
+    size_t all = brio_count_boundary(r->ctx, &r->dual.t, r->label), least = 0, dropped = 0;
     for (size_t n = all; n > 1; n /= 2) least += SPECK;
     brio_status status =
         brio_drop_small_regions(r->ctx, &r->dual.t, least < all / 100 ? least : all / 100, r->label, &dropped);

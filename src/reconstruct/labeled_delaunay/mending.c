@@ -99,6 +99,7 @@ static void look_part(void *user, size_t begin, size_t end, int thread) {
     brio_star_parts s;
     flips.place = l->place + (size_t)thread * flips.num_tets;
     for (size_t p = begin; p < end; p++) {
+        brio_expect_stars(flips.g, p, false);
         tally now = count(&own, (uint32_t)p, &s);
         l->m->surplus[p] = (uint8_t)now.surplus;
         l->m->fans[p] = (uint8_t)now.fans;

@@ -132,7 +132,7 @@ static brio_status list_ties(signing *s) {
     brio_status status = BRIO_OK;
     int threads = brio_threads(s->ctx, s->v->t.count, TETS_A_THREAD);
     BRIO_TRY(BRIO_ALLOC_ZERO(s->ctx, s->found, (size_t)threads));
-    BRIO_TRY(brio_for(s->ctx, threads, s->v->t.count, tie_part, s));
+    BRIO_TRY(brio_sweep(s->ctx, threads, s->v->t.count, tie_part, s, BRIO_READS(s->v->t.tet)));
     BRIO_TRY(s->listed);
     for (int i = 0; i < threads; i++) s->count += s->found[i].count;
     BRIO_REQUIRE(s->ctx, s->count < NO_TIE, BRIO_ERR_TOO_LARGE, "%zu ties between samples, 2^32 is the limit",
@@ -164,6 +164,7 @@ static uint32_t find_root(const signing *s, uint32_t p) {
 static void lift_ties(signing *s) {
     size_t count = 0;
     for (size_t i = 0; i < s->count; i++) {
+        brio_along(s->ctx, i, s->count, BRIO_READS(s->ties));
         uint32_t a = find_root(s, s->ties[i].a), b = find_root(s, s->ties[i].b);
         int32_t weight = (a ^ b) & 1 ? -s->ties[i].weight : s->ties[i].weight;
         if (a >> 1 == b >> 1) continue;
@@ -189,6 +190,7 @@ static brio_status add_ties(signing *s) {
     BRIO_TRY(BRIO_ALLOC(s->ctx, order, s->count));
     BRIO_TRY(BRIO_ALLOC(s->ctx, sums, s->count));
     for (size_t i = 0; i < s->count; i++) {
+        brio_along(s->ctx, i, s->count, BRIO_READS(s->ties), BRIO_READS(key), BRIO_READS(order));
         key[i] = (uint64_t)s->ties[i].a << bits | s->ties[i].b;
         order[i] = (uint32_t)i;
     }
@@ -200,7 +202,10 @@ static brio_status add_ties(signing *s) {
         sums[count] = s->ties[order[first]];
         sums[count].weight = bounded(sum);
     }
-    for (size_t i = 0; i < count; i++) s->ties[i] = sums[i];
+    for (size_t i = 0; i < count; i++) {
+        brio_along(s->ctx, i, count, BRIO_READS(s->ties), BRIO_READS(sums));
+        s->ties[i] = sums[i];
+    }
     s->count = count;
 done:
     brio_release(s->ctx, key);
@@ -277,8 +282,10 @@ static brio_status join_pieces(const signing *s, double limit, size_t *joined) {
     size_t count;
     *joined = 0;
     for (size_t p = 0; p < s->v->num_points; p++) s->best[p] = NO_TIE;
-    for (uint32_t i = 0; i < s->count; i++)
+    for (uint32_t i = 0; i < s->count; i++) {
+        brio_along(s->ctx, i, s->count, BRIO_READS(s->ties));
         if (is_worth(s, i)) offer(s, s->ties[i].a, i), offer(s, s->ties[i].b, i);
+    }
     BRIO_TRY(BRIO_ALLOC(s->ctx, root, s->v->num_points));
     BRIO_TRY(list_best(s, limit, root, &count));
     for (size_t i = 0; i < count; i++) *joined += join(s, s->ties[s->best[root[i]]]);

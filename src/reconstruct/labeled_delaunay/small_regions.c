@@ -84,11 +84,11 @@ brio_status brio_drop_small_regions(brio_context *ctx, const brio_tetrahedra *t,
     *changed = 0;
     BRIO_TRY(BRIO_ALLOC(ctx, s.parent, t->count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.boundary, t->count));
-    BRIO_TRY(brio_for(ctx, threads, t->count, make_regions, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, join_regions, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, count_facets, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, keep_infinite, &s));
-    BRIO_TRY(brio_for(ctx, threads, t->count, drop_regions, &s));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, make_regions, &s, BRIO_WRITES(s.parent)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, join_regions, &s, BRIO_READS(t->tet), BRIO_WRITES(s.parent)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, count_facets, &s, BRIO_READS(t->tet), BRIO_READS(s.parent)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, keep_infinite, &s, BRIO_READS(t->tet)));
+    BRIO_TRY(brio_sweep(ctx, threads, t->count, drop_regions, &s, BRIO_READS(s.parent)));
     *changed = s.small;
 done:
     brio_release(ctx, s.parent);
@@ -96,10 +96,12 @@ done:
     return status;
 }
 
-size_t brio_count_boundary(const brio_tetrahedra *t, const uint8_t *label) {
+size_t brio_count_boundary(const brio_context *ctx, const brio_tetrahedra *t, const uint8_t *label) {
     size_t count = 0;
-    for (size_t tet = 0; tet < t->count; tet++)
+    for (size_t tet = 0; tet < t->count; tet++) {
+        brio_along(ctx, tet, t->count, BRIO_READS(t->tet));
         for (int i = 0; i < 4; i++) count += label[tet] < label[brio_tet_of(t->tet[tet].mate[i])];
+    }
     return count;
 }
 

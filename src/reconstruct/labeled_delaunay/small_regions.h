@@ -14,7 +14,7 @@ brio_status brio_drop_small_regions(brio_context *ctx, const brio_tetrahedra *t,
                                     size_t *changed);
 
 /** Returns how many facets part two labels. */
-size_t brio_count_boundary(const brio_tetrahedra *t, const uint8_t *label);
+size_t brio_count_boundary(const brio_context *ctx, const brio_tetrahedra *t, const uint8_t *label);
 
 /** Gives infinite tetrahedra of one label that hang together the other one, where their hull facets have under a
  *  hundredth of the hull's area: space beyond the hull does not change sides at a speck.

@@ -33,6 +33,7 @@ static const double GROWTH = 0.05, LONELY = 12, SUSPECT = 7, LIKELY = 4, MANY = 
 enum { TETS_A_THREAD = 1 << 13 };
 
 typedef struct {
+    brio_context *ctx;
     const brio_tetrahedron *tet;
     size_t num_tets, num_points;
     const double *points;
@@ -77,12 +78,21 @@ static bool has_changed(const search *s, const uint32_t *v) {
     return changed;
 }
 
+/* Announces the tetrahedra that a sweep passes over next, from the n-th one on. */
+static void expect_next(const search *s, size_t n) {
+    size_t end = n + BRIO_SWEEP_STRETCH < s->num_tets ? n + BRIO_SWEEP_STRETCH : s->num_tets;
+    if (n >= end) return;
+    brio_expect_rows(s->ctx, BRIO_ARRAYS(BRIO_READS(s->tet)), s->back ? s->num_tets - end : n,
+                     s->back ? s->num_tets - n : end);
+}
+
 /* Passes over the edges of the tetrahedra at which something changed, at first of all, each edge as often as it has
  * such tetrahedra. */
 static void pass_over(void *user, size_t begin, size_t end, int thread) {
     search *s = user;
     (void)thread;
     for (size_t n = begin; n < end; n++) {
+        if (n % BRIO_SWEEP_STRETCH == 0) expect_next(s, n + BRIO_SWEEP_STRETCH);
         const uint32_t *v = s->tet[s->back ? s->num_tets - 1 - n : n].vertex;
         if (!has_changed(s, v)) continue;
         for (int j = 1; j < 4; j++)
@@ -119,7 +129,8 @@ static size_t mark(const search *s, double times, uint8_t *stray) {
 brio_status brio_find_strays(brio_context *ctx, const brio_triangulation *t, const double *points, size_t num_points,
                              const double *spacing, const float *second, uint8_t *stray) {
     brio_status status = BRIO_OK;
-    search s = {.tet = brio_triangulation_tetrahedra(t),
+    search s = {.ctx = ctx,
+                .tet = brio_triangulation_tetrahedra(t),
                 .num_tets = brio_triangulation_stats(t)->tetrahedra,
                 .num_points = num_points,
                 .points = points,

@@ -63,6 +63,7 @@ static void count_own_votes(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t p = begin; p < end; p++) {
         double kept = 0, all = 0;
+        brio_expect_stars(g, p, true);
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
             add_vote(j, brio_star_tet(g->star[i]), brio_slot_of(g->star[i]), &kept, &all);
         j->own[p] = (evidence){(float)kept, (float)all, 0, 0};

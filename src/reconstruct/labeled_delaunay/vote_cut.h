@@ -5,14 +5,27 @@
 #include "reconstruct/labeled_delaunay/vote_graph.h"
 #include "reconstruct/labels/tetrahedra_flow.h"
 
-/** Workspace for many cuts of one graph, one after another. */
+/** A facet of an open tetrahedron to one that keeps its label. */
+typedef struct {
+    uint32_t node, beyond; /* a node of the flow; a tetrahedron of the graph */
+    int32_t weight, wants; /* of the facet; what it wanted in the last cut, for outer */
+} brio_cut_border;
+
+/** Workspace for many cuts of one graph, one after another. Node i of the flow is the i-th open tetrahedron. Where only
+ *  some are open, these are copied: so a cut reads nothing of the others. */
 typedef struct {
     const brio_vote_graph *g;
-    const uint8_t *open; /* #T, or NULL */
-    uint32_t *list;      /* the open tetrahedra, or NULL */
+    const uint8_t *open;      /* #T, or NULL */
+    uint32_t *list;           /* the open tetrahedra, or NULL: then node i is tetrahedron i */
+    const brio_tetrahedra *t; /* of the nodes: those of the graph, or `copied` */
+    brio_tetrahedra copied;   /* vertices as in the graph; mates are nodes, a facet to what is no node is its own */
+    const float (*vote)[4];   /* of the nodes: those of the graph, or `own_vote` */
+    float (*own_vote)[4];
+    brio_cut_border *border; /* by nodes */
+    size_t num_border;
     brio_tet_flow flow;
-    int32_t *wanted; /* #T: the weight of what wants an open tetrahedron outer, less of what wants it inner, in the last
-                        cut */
+    int32_t *wanted; /* #nodes: the weight of what wants an open tetrahedron outer, less of what wants it inner, in the
+                        last cut, but for the border */
 } brio_vote_cut;
 
 /** Makes room for cuts of a graph.

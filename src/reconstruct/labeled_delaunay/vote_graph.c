@@ -22,9 +22,10 @@
 #include "reconstruct/cocone/triangle.h"
 #include "reconstruct/labeled_delaunay/vote_weight.h"
 #include <math.h>
+#include <stdlib.h>
 
 /* All chosen. */
-enum { TETS_A_THREAD = 1 << 11, SAMPLES_A_THREAD = 1 << 12, SLICE = 1 << 20 };
+enum { TETS_A_THREAD = 1 << 11, SAMPLES_A_THREAD = 1 << 12, SLICE = 1 << 17, STARS = 1 << 11 };
 
 /* In log-odds, of a facet of the area of an equilateral triangle whose sides are one spacing: AREA is its weight in any
  * case, DOUBT is added if its samples see both of its tetrahedra in one direction. Larger facets weigh more, up to
@@ -173,6 +174,8 @@ static brio_status for_slices(lister *l, int threads, brio_part_fn step) {
     size_t count = l->b->dual->t.count;
     for (l->first = 0; l->first < count; l->first = l->end) {
         l->end = count - l->first < SLICE ? count : l->first + SLICE;
+        brio_expect_rows(l->b->g->ctx, BRIO_ARRAYS(BRIO_READS(l->b->dual->t.tet)), l->end,
+                         count - l->end < SLICE ? count : l->end + SLICE);
         BRIO_TRY(brio_for_parts(l->b->g->ctx, threads, l->b->dual->num_points, step, l));
     }
 done:
@@ -204,13 +207,15 @@ brio_status brio_vote_graph_new(brio_context *ctx, brio_pole_vectors *dual, cons
     int threads = brio_threads(ctx, size, TETS_A_THREAD);
     *out = (brio_vote_graph){.ctx = ctx, .dual = dual, .num_free = own ? size : dual->num_finite, .own = own};
     BRIO_TRY(BRIO_ALLOC(ctx, out->vote, size));
-    BRIO_TRY(brio_for(ctx, threads, size, find_cosines, &b));
+    BRIO_TRY(brio_sweep(ctx, threads, size, find_cosines, &b, BRIO_READS(dual->t.tet),
+                        BRIO_READS((double(*)[4])dual->centre), BRIO_WRITES(out->vote)));
     brio_pole_vectors_drop(ctx, dual);
     BRIO_TRY(BRIO_ALLOC(ctx, out->facet, size));
     BRIO_TRY(BRIO_ALLOC(ctx, out->first, dual->num_points + 1));
     BRIO_TRY(BRIO_ALLOC(ctx, out->star, 4 * dual->num_finite + 3 * hull));
-    BRIO_TRY(brio_for(ctx, threads, size, weigh_facets, &b));
-    BRIO_TRY(brio_for(ctx, threads, size, weigh_votes, &b));
+    BRIO_TRY(brio_sweep(ctx, threads, size, weigh_facets, &b, BRIO_READS(dual->t.tet), BRIO_READS(out->vote),
+                        BRIO_WRITES(out->facet)));
+    BRIO_TRY(brio_sweep(ctx, threads, size, weigh_votes, &b, BRIO_READS(dual->t.tet), BRIO_WRITES(out->vote)));
     BRIO_TRY(list_stars(&b));
 done:
     return status;
@@ -222,6 +227,81 @@ void brio_vote_graph_free(brio_vote_graph *g) {
     brio_release(g->ctx, g->first);
     brio_release(g->ctx, g->star);
     *g = (brio_vote_graph){.ctx = g->ctx};
+}
+
+/* Returns about where the tetrahedra of a star are: the middle one of them. */
+static size_t middle_of_star(const brio_vote_graph *g, size_t p) {
+    if (p >= g->dual->num_points || g->first[p] == g->first[p + 1]) return g->dual->num_finite;
+    return brio_star_tet(g->star[g->first[p] + (g->first[p + 1] - g->first[p]) / 2]);
+}
+
+void brio_expect_stars(const brio_vote_graph *g, size_t sample, bool votes) {
+    size_t n = g->dual->num_points, from = sample + STARS, to = from + STARS < n ? from + STARS : n;
+    if (!g->ctx->scratch || sample % STARS != 0 || from >= n) return;
+    brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->star)), g->first[from], g->first[to]);
+    brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->dual->t.tet), {votes ? g->vote : NULL, sizeof *g->vote, false}),
+                     middle_of_star(g, from), middle_of_star(g, to));
+}
+
+/* --- sums --- */
+
+typedef struct {
+    const brio_vote_graph *g;
+    brio_vote_unit unit;
+    const uint8_t *label;
+    int64_t *outer, *all;
+    bool alone; /* one thread does all */
+} adder;
+
+static void begin_sums(void *user, size_t begin, size_t end, int thread) {
+    const adder *a = user;
+    (void)thread;
+    for (size_t p = begin; p < end; p++) {
+        a->outer[p] = brio_in_vote_units(a->unit, brio_own_vote(a->g, p));
+        if (a->all) a->all[p] = llabs(a->outer[p]);
+    }
+}
+
+static inline void add(int64_t *sum, int64_t more, bool alone) {
+    if (alone)
+        *sum += more;
+    else
+        __atomic_fetch_add(sum, more, __ATOMIC_RELAXED);
+}
+
+static inline void add_votes_of(const adder *a, size_t begin, size_t end, bool alone, bool both) {
+    const brio_pole_vectors *v = a->g->dual;
+    const brio_vote_unit unit = a->unit;
+    for (size_t tet = begin; tet < end; tet++) {
+        const uint32_t *vertex = v->t.tet[tet].vertex;
+        const float *vote = a->g->vote[tet];
+        bool outer = a->label[tet] == BRIO_LABEL_OUTER;
+        for (int i = 0, n = num_samples(v, tet); i < n; i++) {
+            int64_t weight = brio_in_vote_units(unit, vote[i]);
+            add(&a->outer[vertex[i]], outer ? weight : -weight, alone);
+            if (both) add(&a->all[vertex[i]], llabs(weight), alone);
+        }
+    }
+}
+
+static void add_votes(void *user, size_t begin, size_t end, int thread) {
+    const adder *a = user;
+    (void)thread;
+    if (a->all)
+        add_votes_of(a, begin, end, a->alone, true);
+    else if (a->alone)
+        add_votes_of(a, begin, end, true, false);
+    else
+        add_votes_of(a, begin, end, false, false);
+}
+
+brio_status brio_sum_votes(const brio_vote_graph *g, brio_vote_unit unit, const uint8_t *label, int64_t *outer,
+                           int64_t *all) {
+    size_t n = g->dual->num_points, size = g->dual->t.count;
+    int threads = brio_threads(g->ctx, size, TETS_A_THREAD);
+    adder a = {g, unit, label, outer, all, threads == 1};
+    BRIO_FORWARD(brio_for(g->ctx, brio_threads(g->ctx, n, SAMPLES_A_THREAD), n, begin_sums, &a));
+    return brio_sweep(g->ctx, threads, size, add_votes, &a, BRIO_READS(g->dual->t.tet), BRIO_READS(g->vote));
 }
 
 /* --- energy --- */
@@ -263,7 +343,8 @@ static void sum_tets(void *user, size_t begin, size_t end, int thread) {
 brio_status brio_vote_energy(const brio_vote_graph *g, const uint8_t *label, double *out) {
     energy e = {.g = g, .label = label};
     size_t size = g->dual->t.count;
-    brio_status status = brio_for(g->ctx, brio_threads(g->ctx, size, TETS_A_THREAD), size, sum_tets, &e);
+    brio_status status = brio_sweep(g->ctx, brio_threads(g->ctx, size, TETS_A_THREAD), size, sum_tets, &e,
+                                    BRIO_READS(g->dual->t.tet), BRIO_READS(g->vote), BRIO_READS(g->facet));
     for (size_t p = 0; p < g->dual->num_points && g->own; p++)
         if ((g->own[p] < 0) == (label[size + p] == BRIO_LABEL_OUTER)) e.all += whole(fabsf(g->own[p]));
     *out = 0x1p-28 * (double)e.all;

@@ -60,6 +60,27 @@ static inline uint32_t brio_star_tet(uint32_t entry) {
     return entry >> 2;
 }
 
+/** Announces the stars that a loop over samples reaches soon, and their tetrahedra. For each of its samples.
+ *  votes  whether what they vote, too. */
+void brio_expect_stars(const brio_vote_graph *g, size_t sample, bool votes);
+
+/** What a weight is in whole numbers: weight / divisor * factor, rounded towards 0. */
+typedef struct {
+    double divisor, factor;
+} brio_vote_unit;
+
+static inline int64_t brio_in_vote_units(brio_vote_unit unit, float weight) {
+    return (int64_t)((double)weight / unit.divisor * unit.factor);
+}
+
+/** Sums the votes on each sample along the tetrahedra, which are read once and in order.
+ *  unit   so that the order of a sum does not matter.
+ *  label  #nodes of the graph.
+ *  outer  #P, written: the weights of a sample's votes for outer, less those for inner.
+ *  all    #P, written: the sum of their magnitudes; or NULL. */
+brio_status brio_sum_votes(const brio_vote_graph *g, brio_vote_unit unit, const uint8_t *label, int64_t *outer,
+                           int64_t *all);
+
 /** Returns the energy of labels, in the unit of the weights: the sum of |weight| over the edges that the labels
  *  contradict. Does not depend on the number of threads. */
 brio_status brio_vote_energy(const brio_vote_graph *g, const uint8_t *label, double *out);

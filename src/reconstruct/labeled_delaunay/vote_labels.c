@@ -28,36 +28,21 @@ typedef struct {
     brio_context *ctx;
     size_t num_tets, num_finite, num_samples;
     uint8_t *label, *fixed;
-    size_t turned; /* turned: samples that changed their label in the last turn */
+    int64_t *outer, *all; /* #P each: sums of votes */
+    size_t turned;        /* samples that changed their label in the last turn */
 } voting;
 
 /* --- one turn --- */
 
-/* Returns a weight in whole numbers: a star has less than 2^30 tetrahedra, so the sum of its votes has room. */
-static int64_t whole(float weight) {
-    return (int64_t)(0x1p32 * (double)weight);
-}
-
-/* Returns the sum of the weights of a sample's votes for outer, less those for inner.   all  receives the sum of their
- * magnitudes. */
-static int64_t tally(const voting *v, size_t sample, int64_t *all) {
-    int64_t outer = whole(brio_own_vote(v->g, sample));
-    *all = llabs(outer);
-    for (size_t i = v->g->first[sample]; i < v->g->first[sample + 1]; i++) {
-        int64_t weight = whole(brio_star_vote(v->g, v->g->star[i]));
-        outer += v->label[brio_star_tet(v->g->star[i])] == BRIO_LABEL_OUTER ? weight : -weight;
-        *all += llabs(weight);
-    }
-    return outer;
-}
+/* Votes in whole numbers: a star has less than 2^30 tetrahedra, so the sum of its votes has room. */
+static const brio_vote_unit WHOLE = {1, 0x1p32};
 
 static void turn_part(void *user, size_t begin, size_t end, int thread) {
     voting *v = user;
     size_t turned = 0;
-    int64_t all;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        int64_t outer = tally(v, p, &all);
+        int64_t outer = v->outer[p];
         uint8_t label = outer > 0 ? BRIO_LABEL_OUTER : outer < 0 ? BRIO_LABEL_INNER : v->label[v->num_tets + p];
         turned += label != v->label[v->num_tets + p];
         v->label[v->num_tets + p] = label;
@@ -67,17 +52,20 @@ static void turn_part(void *user, size_t begin, size_t end, int thread) {
 
 static brio_status take_turns(voting *v) {
     brio_status status = BRIO_OK;
-    brio_vote_cut cut;
+    brio_vote_cut cut = {0};
+    BRIO_TRY(BRIO_ALLOC(v->ctx, v->outer, v->num_samples));
     BRIO_TRY(brio_vote_cut_new(v->g, NULL, &cut));
     for (int turn = 0; turn < TURNS; turn++) {
         BRIO_TRY(brio_progress(v->ctx, "label", 0.6 * turn / TURNS));
         BRIO_TRY(brio_vote_cut_find(&cut, 0, v->label, v->label));
         v->turned = 0;
+        BRIO_TRY(brio_sum_votes(v->g, WHOLE, v->label, v->outer, NULL));
         BRIO_TRY(brio_for(v->ctx, brio_threads(v->ctx, v->num_samples, NODES_A_THREAD), v->num_samples, turn_part, v));
         if (v->turned <= v->num_samples / FEW) break;
     }
 done:
     brio_vote_cut_free(&cut);
+    brio_release(v->ctx, v->outer);
     return status;
 }
 
@@ -102,8 +90,7 @@ static void free_contested(void *user, size_t begin, size_t end, int thread) {
     const voting *v = user;
     (void)thread;
     for (size_t p = begin; p < end; p++) {
-        int64_t all, outer = tally(v, p, &all);
-        if (!((double)(all - llabs(outer)) > 2 * CONTESTED * (double)all)) continue;
+        if (!((double)(v->all[p] - llabs(v->outer[p])) > 2 * CONTESTED * (double)v->all[p])) continue;
         for (size_t i = v->g->first[p]; i < v->g->first[p + 1]; i++) {
             uint32_t tet = brio_star_tet(v->g->star[i]);
             for (int k = 0; k < 4 && tet < v->num_finite; k++) free_star(v, v->g->dual->t.tet[tet].vertex[k]);
@@ -147,10 +134,18 @@ brio_status brio_settle_labels(const brio_vote_graph *g, uint8_t *label, size_t 
     brio_status status = BRIO_OK;
     voting v = begin(g, label);
     BRIO_TRY(BRIO_ALLOC(v.ctx, v.fixed, v.num_tets + v.num_samples));
+    BRIO_TRY(BRIO_ALLOC(v.ctx, v.outer, v.num_samples));
+    BRIO_TRY(BRIO_ALLOC(v.ctx, v.all, v.num_samples));
     memset(v.fixed, 1, v.num_tets + v.num_samples);
+    BRIO_TRY(brio_sum_votes(g, WHOLE, label, v.outer, v.all));
     BRIO_TRY(brio_for(v.ctx, brio_threads(v.ctx, v.num_samples, NODES_A_THREAD), v.num_samples, free_contested, &v));
+    brio_release(v.ctx, v.outer);
+    brio_release(v.ctx, v.all);
+    v.outer = v.all = NULL;
     BRIO_TRY(settle_contested(&v, undecided));
 done:
+    brio_release(v.ctx, v.outer);
+    brio_release(v.ctx, v.all);
     brio_release(v.ctx, v.fixed);
     return status;
 }

@@ -4,8 +4,8 @@
 #include "base/memory.h"
 #include "base/team.h"
 
-/* EDGES: of a finite tetrahedron. NODES_A_THREAD: chosen. */
-enum { EDGES = 8, NODES_A_THREAD = 1 << 12 };
+/* EDGES: of a finite tetrahedron. NODES_A_THREAD: chosen. SOON: a piece of brio_for. */
+enum { EDGES = 8, NODES_A_THREAD = 1 << 12, SOON = 1 << 11 };
 
 typedef struct {
     const brio_vote_graph *g;
@@ -43,6 +43,7 @@ static size_t mark(const copier *c) {
     uint32_t num_tets = (uint32_t)g->dual->t.count;
     size_t nodes = num_tets + g->dual->num_points, bound = 0;
     for (uint32_t node = 0; node < nodes; node++) {
+        if (node < num_tets) brio_along(g->ctx, node, num_tets, BRIO_READS(g->dual->t.tet));
         if (c->fixed[node]) continue;
         bound += num_edges(g, node);
         c->number[node] = 1;
@@ -92,10 +93,21 @@ static void list_nodes(const copier *c) {
     if (r->count > r->num_nodes) r->fixed[r->num_nodes] = 1, r->label[r->num_nodes] = BRIO_LABEL_OUTER;
 }
 
+/* Announces the tetrahedra of a few nodes, from a place in the list on: most pages hold some. */
+static void expect_listed(const copier *c, size_t from) {
+    const brio_vote_graph *g = c->g;
+    const brio_vote_region *r = c->out;
+    size_t to = from + SOON < r->num_nodes ? from + SOON : r->num_nodes, count = g->dual->t.count;
+    if (from < to && r->node[to - 1] < count)
+        brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->dual->t.tet), BRIO_READS(g->vote), BRIO_READS(g->facet)),
+                         r->node[from], (size_t)r->node[to - 1] + 1);
+}
+
 static void copy_nodes(void *user, size_t begin, size_t end, int thread) {
     const copier *c = user;
     const brio_vote_region *r = c->out;
     (void)thread;
+    expect_listed(c, end);
     for (size_t i = begin; i < end; i++) {
         uint32_t node = r->node[i];
         r->fixed[i] = c->fixed[node];

@@ -12,12 +12,20 @@
  * The energy alone cannot do this, because it knows nothing of topology: it is a sum over tetrahedra and facets.
  *
  * The patches of a cut are listed before any is flipped, and go in the order of their hashes (hash_order.h). So what
- * becomes of one depends on those beside it, and on no number of a tetrahedron. */
+ * becomes of one depends on those beside it, and on no number of a tetrahedron.
+ *
+ * That order goes here and there, and where arrays are in scratch files each place is a page to wait for. Nearly all
+ * patches only deform the boundary. So this is found out when they are listed, along the tetrahedra, and it stands
+ * until a flip that stays has a sample of the patch (forget_patches): the order of hashes meets no other patch's
+ * pages. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "base/memory.h"
+#include "base/sort.h"
+#include "base/team.h"
 #include "reconstruct/labeled_delaunay/hash_order.h"
 #include "reconstruct/labeled_delaunay/simple_flips.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
+#include <assert.h>
 #include <stdlib.h>
 
 /* BIASES: cuts for each label. MOST_PATCH: tetrahedra of a patch. NEARBY: while no more tetrahedra were looked at,
@@ -47,21 +55,30 @@ typedef struct {
     size_t *first;  /* where each begins */
     uint64_t *hash; /* of each */
     size_t size, num_patches, room, first_room, hash_room;
+    uint8_t *deforms; /* of each patch: whether it deforms the boundary only, as far as is known */
+    uint64_t *owner;  /* tetrahedron << 32 | patch, ascending; listed when it is needed */
+    size_t num_owners, deforms_room, owner_room;
     size_t removed;
 } search;
 
 /* --- patches --- */
 
 /* Opens the tetrahedra of samples in doubt: those whose violated votes are over DOUBT of all their votes. */
-static void open_doubtful(search *s) {
+static brio_status open_doubtful(search *s) {
+    brio_status status = BRIO_OK;
     const brio_vote_graph *g = s->f->g;
+    int64_t *outer = NULL, *all = NULL;
+    BRIO_TRY(BRIO_ALLOC(s->f->ctx, outer, s->f->num_samples));
+    BRIO_TRY(BRIO_ALLOC(s->f->ctx, all, s->f->num_samples));
+    BRIO_TRY(brio_sum_votes(g, BRIO_FLIP_VOTES, s->f->label, outer, all));
     for (size_t p = 0; p < s->f->num_samples; p++) {
-        int64_t all = llabs(brio_vote_of(brio_own_vote(g, p))), outer = llabs(s->f->outer[p]);
-        for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
-            all += llabs(brio_vote_of(brio_star_vote(g, g->star[i])));
-        if ((double)(all - outer) <= 2 * DOUBT * (double)all) continue;
+        if ((double)(all[p] - llabs(outer[p])) <= 2 * DOUBT * (double)all[p]) continue;
         for (size_t i = g->first[p]; i < g->first[p + 1]; i++) s->open[brio_star_tet(g->star[i])] = 1;
     }
+done:
+    brio_release(s->f->ctx, outer);
+    brio_release(s->f->ctx, all);
+    return status;
 }
 
 static bool leans(const search *s, uint32_t tet, uint8_t label) {
@@ -82,7 +99,9 @@ static uint64_t sort_by_hash(const search *s, uint32_t *tet, size_t count) {
     return sum;
 }
 
-/* Lists the patch of a tetrahedron, and marks it as done. Leaves it out if it is too large. */
+/* Lists the patch of a tetrahedron, and marks it as done. Leaves it out if it is too large. Looks at once whether it
+ * deforms the boundary only, which nearly all do: patches are listed in the order of the tetrahedra, so what one reads
+ * is near what the last one read. */
 static brio_status list_patch(search *s, uint32_t seed, uint8_t label) {
     brio_status status = BRIO_OK;
     size_t begin = s->size;
@@ -106,8 +125,10 @@ static brio_status list_patch(search *s, uint32_t seed, uint8_t label) {
     hash = sort_by_hash(s, s->tet + begin, s->size - begin);
     BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->first, s->first_room, s->num_patches + 2));
     BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->hash, s->hash_room, s->num_patches + 1));
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->deforms, s->deforms_room, s->num_patches + 1));
     s->hash[s->num_patches] = hash;
     s->first[s->num_patches] = begin;
+    s->deforms[s->num_patches] = brio_flips_deform(s->m, s->tet + begin, s->size - begin);
     s->first[++s->num_patches] = s->size;
 done:
     return status;
@@ -116,9 +137,11 @@ done:
 /* Lists the patches of tetrahedra with a label that have the other one if the votes lean to it. */
 static brio_status list_patches(search *s, uint8_t label) {
     brio_status status = BRIO_OK;
-    s->size = s->num_patches = 0;
-    for (uint32_t tet = 0; tet < s->f->num_finite; tet++)
+    s->size = s->num_patches = s->num_owners = 0;
+    for (uint32_t tet = 0; tet < s->f->num_finite; tet++) {
+        brio_along(s->f->ctx, tet, s->f->num_finite, BRIO_READS(s->t->tet));
         if (leans(s, tet, label)) BRIO_TRY(list_patch(s, tet, label));
+    }
 done:
     return status;
 }
@@ -212,6 +235,61 @@ static size_t keep_label(const search *s, uint32_t *patch, size_t count, uint8_t
     return kept;
 }
 
+/* Lists which patch each tetrahedron of the patches is in, by tetrahedra. */
+static brio_status list_owners(search *s) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->owner, s->owner_room, s->size));
+    for (size_t i = 0; i < s->num_patches; i++)
+        for (size_t k = s->first[i]; k < s->first[i + 1]; k++) s->owner[k] = (uint64_t)s->tet[k] << 32 | i;
+    BRIO_TRY(brio_sort_many_keys(s->f->ctx, s->owner, s->size));
+    s->num_owners = s->size;
+done:
+    return status;
+}
+
+/* Forgets what is known of the patch that a tetrahedron is in. */
+static void forget_patch(search *s, uint32_t tet) {
+    size_t low = 0, high = s->num_owners;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (s->owner[middle] >> 32 < tet)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    if (low < s->num_owners && s->owner[low] >> 32 == tet) s->deforms[(uint32_t)s->owner[low]] = 0;
+}
+
+/* Forgets what is known of the patches at the samples of flips [from, size). Whether a patch deforms the boundary only
+ * is read from the stars of its samples. What is flipped in such a star has the sample, too. */
+static brio_status forget_patches(search *s, size_t from) {
+    brio_status status = BRIO_OK;
+    const brio_vote_graph *g = s->f->g;
+    if (s->num_owners == 0) BRIO_TRY(list_owners(s));
+    for (size_t i = from; i < s->f->size; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t p = s->t->tet[s->f->flipped[i]].vertex[k];
+            for (size_t n = g->first[p]; n < g->first[p + 1]; n++) forget_patch(s, brio_star_tet(g->star[n]));
+        }
+done:
+    return status;
+}
+
+/* Weighs a patch unless it deforms the boundary only. */
+static brio_status try_patch(search *s, size_t i, uint8_t label) {
+    brio_status status = BRIO_OK;
+    size_t from = s->f->size, count;
+    uint32_t *patch = s->tet + s->first[i];
+    assert(!s->deforms[i] || brio_flips_deform(s->m, patch, s->first[i + 1] - s->first[i]));
+    if (s->deforms[i]) return BRIO_OK;
+    count = keep_label(s, patch, s->first[i + 1] - s->first[i], label);
+    if (count == 0 || brio_flips_deform(s->m, patch, count)) return BRIO_OK;
+    BRIO_TRY(weigh_patch(s, patch, count, label));
+    if (s->f->size > from) BRIO_TRY(forget_patches(s, from));
+done:
+    return status;
+}
+
 /* Weighs the patches of tetrahedra with a label that have the other one if the votes lean to it. */
 static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     brio_status status = BRIO_OK;
@@ -223,11 +301,7 @@ static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     BRIO_TRY(BRIO_ALLOC(ctx, order, s->num_patches));
     for (size_t i = 0; i < s->num_patches; i++) order[i] = (uint32_t)i;
     BRIO_TRY(brio_radix_sort(ctx, s->hash, order, s->num_patches, 64));
-    for (size_t i = 0; i < s->num_patches; i++) {
-        uint32_t *patch = s->tet + s->first[order[i]];
-        size_t count = keep_label(s, patch, s->first[order[i] + 1] - s->first[order[i]], label);
-        if (count > 0 && !brio_flips_deform(s->m, patch, count)) BRIO_TRY(weigh_patch(s, patch, count, label));
-    }
+    for (size_t i = 0; i < s->num_patches; i++) BRIO_TRY(try_patch(s, order[i], label));
 done:
     brio_release(ctx, order);
     return status;
@@ -242,7 +316,7 @@ brio_status brio_remove_weak_handles(brio_mending *m, size_t *removed) {
     s->m = m, s->f = m->flips, s->t = &m->flips->g->dual->t;
     BRIO_TRY(BRIO_ALLOC(ctx, s->leaning, s->f->num_tets));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->open, s->f->num_tets));
-    open_doubtful(s);
+    BRIO_TRY(open_doubtful(s));
     BRIO_TRY(brio_vote_cut_new(s->f->g, s->open, &s->cut));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->seen, s->f->num_tets));
     for (int i = 0; i < BIASES; i++) {
@@ -260,6 +334,8 @@ done:
         brio_release(ctx, s->tet);
         brio_release(ctx, s->first);
         brio_release(ctx, s->hash);
+        brio_release(ctx, s->deforms);
+        brio_release(ctx, s->owner);
     }
     brio_release(ctx, s);
     return status;

@@ -344,6 +344,13 @@ static void colour_blocks(const finder *f, uint32_t *round, uint32_t *taken) {
     }
 }
 
+static int compare_places(uint32_t a, uint32_t b, const void *user) {
+    const size_t *begin = user;
+    return (begin[a] > begin[b]) - (begin[a] < begin[b]);
+}
+
+/* Lists the blocks of each round along the curve of their cells: they do not touch, so their order does not matter, and
+ * what is near is worked on together. */
 static brio_status list_rounds(const finder *f, const uint32_t *round) {
     brio_status status = BRIO_OK;
     brio_node_blocks *b = f->out;
@@ -354,6 +361,9 @@ static brio_status list_rounds(const finder *f, const uint32_t *round) {
     for (size_t r = 0, end = 0; r <= b->num_rounds; r++) end += b->first_round[r], b->first_round[r] = end;
     for (size_t i = b->num_blocks; i-- > 0;)
         if (f->trouble[i]) b->block[--b->first_round[round[i]]] = (uint32_t)i;
+    for (size_t r = 0; r < b->num_rounds; r++)
+        BRIO_TRY(brio_sort_many_indices(b->ctx, b->block + b->first_round[r], b->first_round[r + 1] - b->first_round[r],
+                                        compare_places, b->begin));
 done:
     return status;
 }

@@ -14,6 +14,7 @@ typedef struct {
     const uint32_t *open; /* num_open: the tetrahedra that take part; NULL: those below num_open do */
     size_t num_open;
     size_t part_size;       /* tetrahedra of a part: parts are pushed side by side at first */
+    size_t most_together;   /* as many are merged before others are begun */
     bool started;           /* whether there was a flow */
     size_t from, to;        /* open[from] to open[to - 1] are pushed now */
     brio_flow_node *node;   /* #T */
@@ -36,7 +37,7 @@ void brio_tet_flow_free(brio_tet_flow *f);
  *  negative ones to the sink; the sum of the magnitudes at a tetrahedron is less than 2^31.
  *  Before a further call, which begins from the flow of the last one, the caller adds the changes to `terminal`. Such a
  *  call is quick if few terminals changed. Runs in threads. The sides do not depend on the number of threads, nor on
- *  part_size.
+ *  part_size and most_together.
  *  Based on: [Boykov Kolmogorov 2004]; Kohli, Torr. Dynamic graph cuts for efficient inference in Markov random fields.
  *            IEEE PAMI 2007. Liu, Sun. Parallel graph-cuts by adaptive bottom-up merging. CVPR 2010. */
 brio_status brio_tet_flow_run(brio_tet_flow *f);

@@ -2,11 +2,15 @@
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/scratch_file.h"
 #include "base/versioned.h"
 #include "order/canonical_points.h"
 #include "reconstruct/surface/method.h"
 #include <math.h>
 #include <stdio.h>
+
+/* Share of the estimate that is needed in any case: points that are given twice count once. Chosen. */
+static const double SURE = 0.75;
 
 /* Writes the names of the methods that have an option, with commas between. */
 static void list_methods(const char *option, char *text, size_t room) {
@@ -78,6 +82,17 @@ static void drop_explanation(const brio_surface_options *o) {
     *o->explanation = NULL;
 }
 
+/* Refuses points for which the folder of scratch files has no room: before the work, not an hour after. */
+static brio_status require_disk(brio_context *ctx, size_t num_points, const brio_surface_options *o) {
+    uint64_t room;
+    double need = SURE * brio_method_bytes(brio_method_row_of(o->method), (double)num_points, o);
+    if (!brio_scratch_room(ctx, &room)) return BRIO_OK;
+    BRIO_EXPECT(ctx, need <= (double)room, BRIO_ERR_NO_MEMORY,
+                "%s: %zu points need about %.0f MB of scratch files, and this disk has room for %.0f MB", ctx->scratch,
+                num_points, need / SURE / 1e6, (double)room / 1e6);
+    return BRIO_OK;
+}
+
 brio_status brio_surface(brio_context *ctx, const double *points, size_t num_points,
                          const brio_surface_options *options, brio_mesh **out, brio_surface_stats *stats) {
     BRIO_DOOR;
@@ -89,6 +104,7 @@ brio_status brio_surface(brio_context *ctx, const double *points, size_t num_poi
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_surface_stats, stats));
     BRIO_TRY(settle(ctx, options, &o));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
+    BRIO_TRY(require_disk(ctx, num_points, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(brio_method_row_of(o.method)->make(ctx, points, num_points, &o, mesh, &s));
     *out = mesh;
