@@ -32,7 +32,8 @@ static bool has_all(unsigned int bits, unsigned int wanted) {
 brio_instruction_set brio_most_instructions(void) {
     unsigned int a, basic, more, c, d, kept;
     if (!__get_cpuid(1, &a, &more, &basic, &d) || !has_all(basic, bit_OSXSAVE | bit_AVX | bit_FMA)) return BRIO_PLAIN;
-    __asm__("xgetbv" : "=a"(kept), "=d"(d) : "c"(0));
+    /* volatile: a processor without it must not come here before the test above */
+    __asm__ volatile("xgetbv" : "=a"(kept), "=d"(d) : "c"(0));
     if (!has_all(kept, KEPT_FOR_AVX) || !__get_cpuid_count(7, 0, &a, &more, &c, &d) || !has_all(more, bit_AVX2))
         return BRIO_PLAIN;
     bool wide = has_all(kept, KEPT_FOR_AVX512) && has_all(more, bit_AVX512F | bit_AVX512DQ | bit_AVX512VL);

@@ -21,8 +21,10 @@
 #define BRIO_MAP_FROM (1 << 20)
 #endif
 
-/* HEADER: a cache line. FRONT: the bytes before a mapped block. */
-enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = BRIO_MAP_FROM };
+/* HEADER: a cache line. FRONT: the bytes before a mapped block. LEAST_FILE, SHARE: a block of
+ * these bytes, and of more than one in SHARE bytes of the memory, is in a scratch file, where there are such files;
+ * chosen. */
+enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = BRIO_MAP_FROM, LEAST_FILE = 1 << 16, SHARE = 64 };
 
 /* KIND_LOST is what is left of a header in a scratch file that somebody cut: zeros. Not even the size of such a block
  * is known, so that its mapping and its file stay. */
@@ -91,6 +93,13 @@ static size_t round_up(size_t size, size_t unit) {
     return (size + unit - 1) / unit * unit;
 }
 
+/* Returns whether a block of `size` bytes, header included, is a mapping. Where memory is little, a dozen blocks just
+ * below MAP_FROM fill it, and only the pages of files can be given to others. */
+static bool is_mapped(const brio_context *ctx, size_t size) {
+    bool large = ctx->scratch && size >= LEAST_FILE && size > brio_memory_limit(ctx) / SHARE;
+    return !ctx->custom && (large || size >= MAP_FROM);
+}
+
 /* Returns the bytes of a mapping for a block of `size` bytes, header included. */
 static size_t mapped_size(size_t size) {
     assert(size >= HEADER);
@@ -153,7 +162,7 @@ static brio_status refuse(brio_context *ctx, size_t size) {
 static void *block_new(brio_context *ctx, size_t size, bool in_memory, brio_status *status) {
     block_header h = {.size = size, .file = {.cached = -1, .direct = -1}, .kind = KIND_HEAP};
     char *base = NULL;
-    if (ctx->custom || (size < MAP_FROM && !in_memory)) {
+    if (ctx->custom || (!in_memory && !is_mapped(ctx, size))) {
         if (account_add(ctx, size)) {
             base = ctx->allocator.alloc(size, ctx->allocator.user);
             if (!base) account_sub(ctx, size);
@@ -344,7 +353,7 @@ void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, bri
         *status = lost(ctx);
         return NULL;
     }
-    bool mapped = !ctx->custom && bytes >= MAP_FROM;
+    bool mapped = is_mapped(ctx, bytes);
     /* the sanitizers of threads and memory do not see mremap: their shadow memory would stay at the old addresses */
     if (kind != KIND_HEAP && mapped && !BRIO_TSAN && !BRIO_MSAN)
         block = block_resize_mapped(ctx, block, bytes, status);

@@ -36,10 +36,11 @@ void brio_unlock_file(int file, const char *path) {
 
 #else
 
+/* Returns false where a file system does not count its blocks: in memory without a limit, or behind a program. */
 bool brio_free_bytes(const char *path, uint64_t *bytes) {
     struct statvfs facts;
-    if (statvfs(path, &facts) != 0) return false;
-    *bytes = (uint64_t)facts.f_bavail * facts.f_frsize;
+    if (statvfs(path, &facts) != 0 || facts.f_blocks == 0) return false;
+    if (__builtin_mul_overflow((uint64_t)facts.f_bavail, (uint64_t)facts.f_frsize, bytes)) *bytes = UINT64_MAX;
     return true;
 }
 

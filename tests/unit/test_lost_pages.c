@@ -26,14 +26,16 @@ int sync_file_range(int file, off_t offset, off_t size, unsigned flags) {
     return -1;
 }
 
-/* The system's, except that the disk may be full. */
-static bool full;
+/* The system's, except that the disk may have another number of blocks free, or may not count any. */
+static uint64_t blocks_free;
+static bool says_other, counts_none;
 
 int statvfs(const char *restrict path, struct statvfs *restrict out) {
     int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     int failed = folder < 0 ? -1 : fstatvfs(folder, out);
     if (folder >= 0) close(folder);
-    if (full && !failed) out->f_bavail = 1;
+    if (says_other && !failed) out->f_bavail = blocks_free, out->f_frsize = 4096;
+    if (counts_none && !failed) out->f_blocks = out->f_bfree = out->f_bavail = 0;
     return failed;
 }
 
@@ -168,25 +170,70 @@ static void a_scratch_file_without_room_for_its_mapping_stays_whole(void) {
     brio_context_free(ctx);
 }
 
-static void a_surface_for_which_the_disk_has_no_room_is_refused(void) {
-    enum { N = 500 };
-    double p[3 * N];
-    brio_context *ctx = new_context();
+enum { SAMPLES = 500, TIMES = 20 };
+
+/* Finds the surface of some points, with scratch files. */
+static brio_status find_surface(brio_context *ctx, const double *points, size_t num_points) {
     brio_surface_options o = {.size = sizeof o};
     brio_mesh *mesh = NULL;
-    sphere_points(1, N, p);
     EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
-    full = true;
-    EXPECT(brio_surface(ctx, p, N, &o, &mesh, NULL) == BRIO_ERR_NO_MEMORY);
-    EXPECT(strstr(brio_message(ctx), ".: 500 points need about "), "%s", brio_message(ctx));
-    full = false;
-    EXPECT(brio_surface(ctx, p, N, &o, &mesh, NULL) == BRIO_OK);
+    brio_status status = brio_surface(ctx, points, num_points, &o, &mesh, NULL);
     brio_mesh_free(mesh);
+    return status;
+}
+
+static void a_surface_for_which_the_disk_has_no_room_is_refused(void) {
+    double p[3 * SAMPLES];
+    brio_context *ctx = new_context();
+    sphere_points(1, SAMPLES, p);
+    says_other = true, blocks_free = 1;
+    EXPECT(find_surface(ctx, p, SAMPLES) == BRIO_ERR_NO_MEMORY);
+    EXPECT(strstr(brio_message(ctx), ".: 500 points need about "), "%s", brio_message(ctx));
+    says_other = false;
+    EXPECT(find_surface(ctx, p, SAMPLES) == BRIO_OK);
+    brio_context_free(ctx);
+}
+
+/* Such as memory without a limit: it has 0 blocks, and 0 are free. */
+static void a_disk_that_counts_no_blocks_was_full(void) {
+    double p[3 * SAMPLES];
+    brio_context *ctx = new_context();
+    sphere_points(1, SAMPLES, p);
+    counts_none = true;
+    EXPECT(find_surface(ctx, p, SAMPLES) == BRIO_OK, "%s", brio_message(ctx));
+    counts_none = false;
+    brio_context_free(ctx);
+}
+
+/* 2^52 + 1 blocks have 4096 bytes more than 2^64. */
+static void a_disk_of_more_bytes_than_can_be_counted_was_full(void) {
+    double p[3 * SAMPLES];
+    brio_context *ctx = new_context();
+    sphere_points(1, SAMPLES, p);
+    says_other = true, blocks_free = (UINT64_C(1) << 52) + 1;
+    EXPECT(find_surface(ctx, p, SAMPLES) == BRIO_OK, "%s", brio_message(ctx));
+    says_other = false;
+    brio_context_free(ctx);
+}
+
+/* The disk has room for the positions, and not for as many points: twice as many as points that are given once. */
+static void points_that_are_given_many_times_needed_disk_each_time(void) {
+    static double p[3 * SAMPLES * TIMES];
+    brio_context *ctx = new_context();
+    sphere_points(1, SAMPLES * TIMES, p);
+    says_other = true, blocks_free = 2 * SAMPLES * 1110 / 4096;
+    EXPECT(find_surface(ctx, p, SAMPLES * TIMES) == BRIO_ERR_NO_MEMORY);
+    for (size_t i = 3 * SAMPLES; i < 3 * SAMPLES * TIMES; i++) p[i] = p[i - 3 * SAMPLES];
+    EXPECT(find_surface(ctx, p, SAMPLES * TIMES) == BRIO_OK, "%s", brio_message(ctx));
+    says_other = false;
     brio_context_free(ctx);
 }
 
 SUITE(test_lost_pages) {
     RUN(a_surface_for_which_the_disk_has_no_room_is_refused);
+    RUN(a_disk_that_counts_no_blocks_was_full);
+    RUN(a_disk_of_more_bytes_than_can_be_counted_was_full);
+    RUN(points_that_are_given_many_times_needed_disk_each_time);
     RUN(pages_that_the_disk_loses_before_the_flush_fail_the_output);
     RUN(pages_that_the_disk_loses_fail_the_write_of_a_scratch_file);
     RUN(a_scratch_file_that_was_cut_is_an_error_and_no_zeros);

@@ -150,7 +150,31 @@ static void a_sweep_waits_for_few_pages(void) {
     brio_context_free(ctx);
 }
 
+/* --- little memory --- */
+
+/* Blocks of less than a mebibyte were memory, which no file gives back: a few of them filled a small limit. */
+static void blocks_below_a_mebibyte_filled_a_small_limit(void) {
+    enum { BLOCKS = 16, BYTES = 900 << 10 };
+    unsigned char *block[BLOCKS] = {NULL};
+    brio_context *ctx;
+    brio_context_new(NULL, &ctx);
+    brio_context_set_memory_limit(ctx, 6 << 20);
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
+    for (int i = 0; i < BLOCKS; i++) {
+        EXPECT(BRIO_ALLOC(ctx, block[i], 1000) == BRIO_OK && BRIO_RESIZE(ctx, block[i], BYTES) == BRIO_OK, "%s",
+               brio_message(ctx));
+        if (block[i]) memset(block[i], i, BYTES);
+    }
+    EXPECT(brio_context_memory(ctx) < BYTES, "%zu bytes", brio_context_memory(ctx));
+    for (int i = 0; i < BLOCKS; i++) {
+        EXPECT(block[i] && BRIO_RESIZE(ctx, block[i], 1000) == BRIO_OK && block[i][999] == i);
+        brio_release(ctx, block[i]);
+    }
+    brio_context_free(ctx);
+}
+
 SUITE(test_scratch) {
+    RUN(blocks_below_a_mebibyte_filled_a_small_limit);
     RUN(a_sweep_waits_for_few_pages);
     RUN(uniform_points_give_the_same_arrays);
     RUN(weighted_lattice_with_duplicates_gives_the_same_arrays);

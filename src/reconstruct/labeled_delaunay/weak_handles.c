@@ -261,7 +261,8 @@ static void forget_patch(search *s, uint32_t tet) {
 }
 
 /* Forgets what is known of the patches at the samples of flips [from, size). Whether a patch deforms the boundary only
- * is read from the stars of its samples. What is flipped in such a star has the sample, too. */
+ * is read from the stars of its samples. What is flipped in such a star has the sample, too. A patch at a sample with a
+ * star of over BRIO_STAR_ROOM tetrahedra is never known to deform only, so that these stars need not be read. */
 static brio_status forget_patches(search *s, size_t from) {
     brio_status status = BRIO_OK;
     const brio_vote_graph *g = s->f->g;
@@ -269,6 +270,7 @@ static brio_status forget_patches(search *s, size_t from) {
     for (size_t i = from; i < s->f->size; i++)
         for (int k = 0; k < 4; k++) {
             uint32_t p = s->t->tet[s->f->flipped[i]].vertex[k];
+            if (g->first[p + 1] - g->first[p] > BRIO_STAR_ROOM) continue;
             for (size_t n = g->first[p]; n < g->first[p + 1]; n++) forget_patch(s, brio_star_tet(g->star[n]));
         }
 done:

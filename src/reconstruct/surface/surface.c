@@ -3,13 +3,14 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/scratch_file.h"
+#include "base/sort.h"
 #include "base/versioned.h"
 #include "order/canonical_points.h"
 #include "reconstruct/surface/method.h"
 #include <math.h>
 #include <stdio.h>
 
-/* Share of the estimate that is needed in any case: points that are given twice count once. Chosen. */
+/* Share of the estimate that is needed in any case. Chosen. */
 static const double SURE = 0.75;
 
 /* Writes the names of the methods that have an option, with commas between. */
@@ -82,14 +83,38 @@ static void drop_explanation(const brio_surface_options *o) {
     *o->explanation = NULL;
 }
 
-/* Refuses points for which the folder of scratch files has no room: before the work, not an hour after. */
-static brio_status require_disk(brio_context *ctx, size_t num_points, const brio_surface_options *o) {
+/* Estimates how many positions points have: counts those whose hash is a multiple of a number. With over KEPT of them
+ * in the sample, all points have positions of their own, as far as that matters. */
+static double count_positions(const double *points, size_t num_points) {
+    enum { ROOM = 1 << 11, KEPT = ROOM / 4 * 3 };
+    uint64_t seen[ROOM] = {0}, step = num_points / (KEPT / 2) + 1;
+    size_t count = 0;
+    for (size_t i = 0; i < num_points; i++) {
+        uint64_t hash = brio_position_hash(points + 3 * i), at = brio_mix(hash) % ROOM;
+        if (hash % step != 0) continue;
+        while (seen[at] != 0 && seen[at] != hash) at = (at + 1) % ROOM;
+        if (seen[at] == hash || hash == 0) continue;
+        if (++count > KEPT) return (double)num_points;
+        seen[at] = hash;
+    }
+    return fmin((double)count * (double)step, (double)num_points);
+}
+
+static double disk_bytes(double num_points, const brio_surface_options *o) {
+    return brio_method_bytes(brio_method_row_of(o->method), num_points, o);
+}
+
+/* Refuses points for which the folder of scratch files has no room: before the work, not an hour after. Points that are
+ * given twice need it once; they are looked for only where it matters. */
+static brio_status require_disk(brio_context *ctx, const double *points, size_t num_points,
+                                const brio_surface_options *o) {
     uint64_t room;
-    double need = SURE * brio_method_bytes(brio_method_row_of(o->method), (double)num_points, o);
-    if (!brio_scratch_room(ctx, &room)) return BRIO_OK;
-    BRIO_EXPECT(ctx, need <= (double)room, BRIO_ERR_NO_MEMORY,
+    double need = disk_bytes((double)num_points, o);
+    if (!brio_scratch_room(ctx, &room) || SURE * need <= (double)room) return BRIO_OK;
+    need = disk_bytes(count_positions(points, num_points), o);
+    BRIO_EXPECT(ctx, SURE * need <= (double)room, BRIO_ERR_NO_MEMORY,
                 "%s: %zu points need about %.0f MB of scratch files, and this disk has room for %.0f MB", ctx->scratch,
-                num_points, need / SURE / 1e6, (double)room / 1e6);
+                num_points, need / 1e6, (double)room / 1e6);
     return BRIO_OK;
 }
 
@@ -104,7 +129,7 @@ brio_status brio_surface(brio_context *ctx, const double *points, size_t num_poi
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_surface_stats, stats));
     BRIO_TRY(settle(ctx, options, &o));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
-    BRIO_TRY(require_disk(ctx, num_points, &o));
+    BRIO_TRY(require_disk(ctx, points, num_points, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(brio_method_row_of(o.method)->make(ctx, points, num_points, &o, mesh, &s));
     *out = mesh;
