@@ -1,7 +1,7 @@
 /* How a surface came to be, on a page: see page.h.
  *
  * What is shown as numbers is exact: places of samples, centres and radii of polar balls. Vertices, which are only
- * drawn, are single precision numbers, relative to their sample; lengths beyond these are there times a power of two. */
+ * drawn, are single precision numbers, relative to their sample; a power of two brings lengths into their range. */
 #include "base/memory.h"
 #include "page/block.h"
 #include "page/page.h"
