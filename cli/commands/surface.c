@@ -354,11 +354,11 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
         o.normals = normals = malloc((3 * points->num_vertices + 1) * sizeof *normals);
         if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
     }
+    if (a->explain) o.explanation = &r->explanation;
     TRY(cli_usual_points(r, points, NULL, false, &usual));
     status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
     found->open = o.open > 0 || (is(method, BRIO_METHOD_MAY_END) && o.holes != BRIO_HOLES_CLOSED);
-    if (a->explain) o.explanation = &r->explanation;
     bool sided = has(method, "evidence");
     if (sided) TRY(cli_find_evidence(r, &a->evidence, points, &e));
     if (sided && a->pieces <= 1) o.evidence = &e.taken;

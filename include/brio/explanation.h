@@ -20,8 +20,9 @@ typedef enum brio_explained_polygon {
 
 /** How a surface came to be, sample by sample: what brio_surface had in its hands. #E samples are explained; of sample
  *  e the lists are items offsets[e] to offsets[e + 1] - 1, and numbers of vertices are rows of `vertices`. Lengths are
- *  those of the points. The numbers do not depend on the order of the points, nor on threads. Later versions may append
- *  fields. */
+ *  those of the points. Samples of a power crust may share a pole: of a power cell with over 128 vertices only the
+ *  faces are there that touch the cell of the sample's other pole, and no face with over 128 corners. The numbers do
+ *  not depend on the order of the points, nor on threads. Later versions may append fields. */
 struct brio_explanation {
     size_t size; /* of the struct in the library that runs */
     brio_context *context;
@@ -34,8 +35,8 @@ struct brio_explanation {
     double *place;      /* #E by 3: where it is triangulated: at its point, unless points were smoothed before */
     double *axis;       /* #E by 3: of the co-cone, a unit vector; LABELED: outwards */
     double *pole;       /* #E by 2 by 4: centre and radius of the polar ball of the farther pole, and of the one on the
-                           other side. A pole at infinity has a unit direction and the radius infinity; where there is
-                           none, or it was discarded, all are NaN */
+                           other side. A pole at infinity, or with a ball that doubles cannot hold, has a unit
+                           direction and the radius infinity; where there is none, or it was discarded, all are NaN */
     int8_t *pole_side;  /* #E by 2: -1 inner, 1 outer, 0 not known */
     uint64_t *vertex_offsets; /* #E + 1 */
     double *vertices;         /* by 3: the sample, its neighbours, the vertices of polygons */

@@ -62,7 +62,7 @@ static void shrink_cell(work *w) {
     double middle[3] = {0, 0, 0}, count = (double)(w->vertices - w->first), *v = w->mesh->vertices;
     for (size_t i = 3 * (size_t)w->first; i < 3 * w->vertices; i++) middle[i % 3] += v[i] / count;
     for (size_t i = 3 * (size_t)w->first; i < 3 * w->vertices; i++)
-        v[i] = middle[i % 3] + (1 - w->shrink) * (v[i] - middle[i % 3]);
+        v[i] = w->shrink * middle[i % 3] + (1 - w->shrink) * v[i];
 }
 
 static brio_status add_cell(work *w, size_t c) {

@@ -1,11 +1,12 @@
 /* How a surface came to be, on a page: see page.h.
  *
  * What is shown as numbers is exact: places of samples, centres and radii of polar balls. Vertices, which are only
- * drawn, are single precision numbers, relative to their sample. */
+ * drawn, are single precision numbers, relative to their sample; a power of two brings lengths into their range. */
 #include "base/memory.h"
 #include "page/block.h"
 #include "page/page.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { NAME_BYTES = 32, UNKNOWN = 255 }; /* UNKNOWN: no confidence */
@@ -16,6 +17,7 @@ typedef struct {
     const brio_page_how *how;
     const brio_explanation *e;
     uint32_t *of; /* #vertices: the sample of each */
+    int exponent; /* lengths on the page are those of the explanation times 2^-exponent */
 } explained;
 
 /* Entry i * stride + offset of an array. */
@@ -72,7 +74,8 @@ typedef struct {
 static uint64_t vertex_at(const void *user, size_t i) {
     const relative *r = user;
     const brio_explanation *e = r->x->e;
-    return float_bits(e->vertices[3 * i + r->offset] - e->place[3 * (size_t)r->x->of[i] + r->offset]);
+    double at = e->vertices[3 * i + r->offset], from = e->place[3 * (size_t)r->x->of[i] + r->offset];
+    return float_bits(ldexp(at, -r->x->exponent) - ldexp(from, -r->x->exponent));
 }
 
 static uint64_t local(const explained *x, uint32_t v) {
@@ -152,11 +155,20 @@ static brio_status put_items(const explained *x) {
     return put(x, "e-corner", (brio_page_column){corner_at, &of_vertices, corners, 4, BRIO_PAGE_DELTA});
 }
 
+/* Returns 0, or the exponent of the greatest coordinate if single precision would lose lengths like it. */
+static int exponent_of(const brio_explanation *e) {
+    enum { USUAL = 60 };
+    double most = 0;
+    for (size_t i = 0; i < 3 * e->num_samples; i++) most = fmax(most, fabs(e->place[i]));
+    int exponent = most > 0 ? ilogb(most) : 0;
+    return abs(exponent) > USUAL ? exponent : 0;
+}
+
 brio_status brio_page_explanation(brio_output *out, const brio_page_how *how) {
     brio_status status = BRIO_OK;
     const brio_explanation *e = how->explanation;
-    explained x = {out, how, e, NULL};
     if (!e) return BRIO_OK;
+    explained x = {out, how, e, NULL, exponent_of(e)};
     BRIO_TRY(BRIO_ALLOC(out->ctx, x.of, e->vertex_offsets[e->num_samples] + 1));
     for (size_t s = 0; s < e->num_samples; s++)
         for (uint64_t v = e->vertex_offsets[s]; v < e->vertex_offsets[s + 1]; v++) x.of[v] = (uint32_t)s;
@@ -185,5 +197,5 @@ brio_status brio_page_describe_explanation(brio_output *out, const brio_explanat
         BRIO_FORWARD(brio_output_format(out, ",\"%s\":%llu", counts[i].name, (unsigned long long)counts[i].count));
     BRIO_FORWARD(brio_output_string(out, ",\"theta\":"));
     BRIO_FORWARD(brio_output_double(out, 0, e->theta));
-    return brio_output_string(out, "}");
+    return brio_output_format(out, ",\"exponent\":%d}", exponent_of(e));
 }

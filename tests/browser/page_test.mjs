@@ -445,6 +445,25 @@ async function explained(method = "power-crust") {
     await page.context().close();
 }
 
+/** Faces on the hull have one tetrahedron, others two: of those on the hull half a face was counted. */
+async function takenOnTheHull() {
+    run("generate", "sphere", "-n", "60", "-o", "round.ply");
+    run("surface", "round.ply", "--noise", "keep", "-o", "hull.ply", "--explain", "--view", "hull.html");
+    const page = await open("hull.html"), panel = page.locator(".explanation");
+    await panel.getByLabel("show a sample").check();
+    await page.waitForFunction(() => document.querySelectorAll(".told dt").length > 0);
+    for (const i of [3, 30]) {
+        await panel.getByRole("slider", { name: "Sample" }).fill(String(i));
+        await page.waitForFunction(i => window.brioPage.drawings[0].state.explain === i && document.querySelector(".told dd").textContent.endsWith(` ${window.brioPage.drawings[0].told.point}`), i);
+        const [said, known] = await page.evaluate(() => {
+            const d = window.brioPage.drawings[0], l = d.layer, rows = [...document.querySelectorAll(".told dt")], near = v => Math.hypot(...d.told.place.map((x, k) => x - l.meta.low[k] - l.meta.step * l.positions[3 * v + k])) < 1e-4;
+            return [rows.find(e => e.textContent === "faces taken").nextSibling.textContent, [...l.triangles].filter(near).length];
+        });
+        expect(known > 2 && said === String(known), `${said} faces were taken, and ${known} are there`);
+    }
+    await page.context().close();
+}
+
 /** Balls about points have the size of their radius. */
 async function balls() {
     writeFileSync(at("two.csv"), "x,y,z,radius\n0,0,0,1\n4,0,0,0.5\n");
@@ -684,8 +703,8 @@ async function large() {
     return mesh;
 }
 
-const SHORT = { silhouetteAndColour, picking, explained, narrowed: () => narrow("explained.html"), injection, alphas, apart, figures };
-const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, explained, labeled: () => explained("labeled-delaunay"), figures, narrow, narrowed: () => narrow("explained.html"), injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
+const SHORT = { silhouetteAndColour, picking, explained, takenOnTheHull, narrowed: () => narrow("explained.html"), injection, alphas, apart, figures };
+const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, explained, takenOnTheHull, labeled: () => explained("labeled-delaunay"), figures, narrow, narrowed: () => narrow("explained.html"), injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
     for (const [name, test] of Object.entries({ short: SHORT, long: LONG, bench: { bench } }[length])) {
         const began = Date.now();

@@ -311,6 +311,29 @@ class Explains(ViewTest):
         of = [number[p] for p in zip(*(page.reals(0, "exact-" + k, page.layers[0]["vertices"], "d") for k in "xyz"))]
         self.assertEqual(found, {frozenset(of[v] for v in f) for f in page.triangles(0)})
 
+    def test_lengths_beyond_single_precision_were_nothing_or_infinite(self):
+        points = [[int(x) for x in p] for p in ((3, 0, 1), (-5, 2, 0), (1, 4, -2), (0, -3, 6), (2, 2, 2), (-1, -4, -3), (4, -2, -5), (-3, 1, 5))]
+        seen = []
+        for exponent in 0, 900, -900:
+            few = self.xyz("few.xyz", [[x * 2.0 ** exponent for x in p] for p in points])
+            self.expect(0, "surface", few, "--method", "tight-cocone", "-o", self.path("out.ply"), "--view", self.path("page.html"), "--explain")
+            page = self.read("page.html")
+            m = page.layers[0]["explanation"]
+            self.assertEqual(m["exponent"] == 0, exponent == 0)
+            near = [x * 2.0 ** (m["exponent"] - exponent) for k in range(3) for x in page.reals(0, "e-vertex-%d" % k, m["vertices"], "f")]
+            seen.append(["none" if math.isnan(x) else x for x in near])
+        self.assertGreater(len({x for x in seen[0] if x != "none"}), 10)
+        self.assertEqual(seen[1], seen[0])
+        self.assertEqual(seen[2], seen[0])
+
+    def test_memory_of_an_explanation_was_not_counted(self):
+        self.expect(0, "generate", "sphere", "-n", "20000", "-o", self.path("many.npy"))
+        needed = []
+        for more in [], ["--explain"]:
+            result = self.expect(4, "surface", self.path("many.npy"), "-o", self.path("out.ply"), "--view", self.path("page.html"), "--max-memory", "15M", *more)
+            needed.append(float(re.search(r"about ([0-9.]+) MiB needed", result.err).group(1)))
+        self.assertGreater(needed[1], needed[0] + 20)
+
     def test_of_many_samples_an_even_choice(self):
         self.expect(0, "generate", "sphere", "-n", "5400", "-o", self.path("many.npy"))
         report = self.expect(0, "surface", self.path("many.npy"), "--method", "cocone", "-o", self.path("out.ply"), "--view", self.path("page.html"), "--explain")

@@ -3,6 +3,7 @@
  * nearest places; a choice of samples has what all of them have. */
 #include "dual/pole_vectors.h"
 #include "failing_allocator.h"
+#include "reconstruct/explanation/explanation.h"
 #include "points.h"
 
 /* FEW: so that every sample can be held against all others. */
@@ -257,6 +258,89 @@ static void some_samples_are_explained_alike(void) {
     end(&some);
 }
 
+/* Returns how many balls of a surface through the points times 2^exponent are none, nor a direction to one that doubles
+ * cannot hold. */
+static size_t count_unheld(int exponent, size_t *at_infinity) {
+    case_of c = {.ctx = new_context()};
+    const brio_surface_options o = {.size = sizeof o, .method = BRIO_SURFACE_COCONE, .explanation = &c.e};
+    size_t unheld = 0;
+    make_points(c.points);
+    for (size_t i = 0; i < 3 * FEW; i++) c.points[i] = ldexp(c.points[i] - 100, exponent);
+    EXPECT(brio_surface(c.ctx, c.points, FEW, &o, &c.mesh, NULL) == BRIO_OK, "%s", brio_message(c.ctx));
+    *at_infinity = 0;
+    for (size_t i = 0; i < 2 * c.e->num_samples; i++) {
+        const double *p = c.e->pole + 4 * i;
+        double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        *at_infinity += p[3] == INFINITY;
+        if (p[3] == INFINITY)
+            unheld += !(fabs(length - 1) < NEAR);
+        else if (!isnan(p[3]))
+            unheld += isinf(p[0]) || isinf(p[1]) || isinf(p[2]);
+    }
+    end(&c);
+    return unheld;
+}
+
+/* Points of which doubles hold the places and not all balls: such a ball had an infinite centre, which a page read as a
+ * direction. */
+static void polar_balls_beyond_doubles_were_no_directions(void) {
+    size_t usual, beyond;
+    EXPECT(count_unheld(0, &usual) == 0);
+    EXPECT(count_unheld(1022, &beyond) == 0);
+    EXPECT(beyond > usual, "%zu poles at infinity, before %zu", beyond, usual);
+}
+
+/* A ball's samples share the pole in its middle; its cell has a face for each of them. */
+static void samples_that_share_a_pole_were_each_told_all_of_its_cell(void) {
+    enum { MANY = 800, A_SAMPLE = 100 };
+    brio_context *ctx = new_context();
+    static double points[3 * MANY];
+    brio_explanation *e = NULL;
+    brio_mesh *mesh = NULL;
+    const brio_surface_options o = {
+        .size = sizeof o, .method = BRIO_SURFACE_POWER_CRUST, .noise = BRIO_NOISE_KEEP, .explanation = &e};
+    sphere_points(5, MANY, points);
+    EXPECT(brio_surface(ctx, points, MANY, &o, &mesh, NULL) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(e->polygon_offsets[MANY] < A_SAMPLE * (uint64_t)MANY, "%llu polygons of %d samples",
+           (unsigned long long)e->polygon_offsets[MANY], MANY);
+    size_t without = 0;
+    for (size_t i = 0; i < MANY; i++) {
+        size_t taken = 0;
+        for (uint64_t n = e->polygon_offsets[i]; n < e->polygon_offsets[i + 1]; n++)
+            taken += e->polygon_kind[n] == BRIO_EXPLAINED_TAKEN;
+        without += !taken && e->pole_side[2 * i] * e->pole_side[2 * i + 1] < 0;
+    }
+    EXPECT(without < MANY / 20, "%zu samples of an inner and an outer pole without a face that was taken", without);
+    brio_explanation_free(e);
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
+/* Numbers of vertices have 32 bits. */
+static void numbers_of_vertices_wrapped_round(void) {
+    brio_context *ctx = new_context();
+    brio_explanation e = {0};
+    brio_explaining x = {.ctx = ctx, .e = &e, .vertices = UINT32_MAX};
+    EXPECT(brio_explain_vertex(&x, (double[3]){0, 0, 0}, 0) == BRIO_ERR_TOO_LARGE && !e.vertices);
+    brio_context_free(ctx);
+}
+
+/* The estimate had the bytes of a point that an explanation takes, and none of the explained samples. */
+static void explained_samples_were_not_estimated(void) {
+    enum { POINTS = 100000, BYTES = 3000 };
+    brio_context *ctx = new_context();
+    brio_explanation *e = NULL;
+    uint64_t few = 0, usual = 0, all = 0;
+    brio_surface_options o = {.size = sizeof o, .explanation = &e, .explained = 10};
+    EXPECT(brio_estimate_surface(ctx, POINTS, &o, &few) == BRIO_OK);
+    o.explained = 0;
+    EXPECT(brio_estimate_surface(ctx, POINTS, &o, &usual) == BRIO_OK);
+    o.explained = 10 * POINTS;
+    EXPECT(brio_estimate_surface(ctx, POINTS, &o, &all) == BRIO_OK);
+    EXPECT(usual > few + 4990 * (uint64_t)BYTES && all > usual + 95000 * (uint64_t)BYTES);
+    brio_context_free(ctx);
+}
+
 static void failures_leave_no_explanation(void) {
     brio_context *ctx = new_context();
     brio_explanation *e = (brio_explanation *)&ctx; /* what is no explanation */
@@ -305,6 +389,10 @@ SUITE(test_explanation) {
     RUN(cocones_are_explained);
     RUN(power_crusts_are_explained);
     RUN(some_samples_are_explained_alike);
+    RUN(polar_balls_beyond_doubles_were_no_directions);
+    RUN(samples_that_share_a_pole_were_each_told_all_of_its_cell);
+    RUN(numbers_of_vertices_wrapped_round);
+    RUN(explained_samples_were_not_estimated);
     RUN(failures_leave_no_explanation);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();

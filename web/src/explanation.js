@@ -33,7 +33,8 @@ export class Explanation {
     /** What is known of sample e. Sides are -1 inner, 1 outer, 0 not known; corners are numbers of `vertices`, and the sample is number 0. */
     at(e) {
         const vertices = [], tetrahedra = [], polygons = [];
-        for (let v = this.vertexFrom[e]; v < this.vertexFrom[e + 1]; v++) vertices.push(this.vertex.map(c => c[v]));
+        const unit = 2 ** this.meta.exponent;
+        for (let v = this.vertexFrom[e]; v < this.vertexFrom[e + 1]; v++) vertices.push(this.vertex.map(c => unit * c[v]));
         for (let t = this.tetrahedronFrom[e]; t < this.tetrahedronFrom[e + 1]; t++)
             tetrahedra.push({ corners: [0, ...this.tetrahedron.map(c => c[t])], side: this.side[t] - 1, taken: this.taken[t], confidence: this.confidence[t] === UNKNOWN ? null : this.confidence[t] / CONFIDENCES });
         for (let p = this.polygonFrom[e]; p < this.polygonFrom[e + 1]; p++)
@@ -50,6 +51,15 @@ export class Explanation {
         }
         return best;
     }
+}
+
+/** How many faces the surface took at a sample: facets, whether one of its tetrahedra has them or two, and faces of power cells. */
+export function facesTaken(told) {
+    const facets = new Set();
+    for (const t of told.tetrahedra)
+        for (let i = 1; i < 4; i++)
+            if (t.taken >> i & 1) facets.add(t.corners.filter((_, c) => c && c !== i).sort((a, b) => a - b).join());
+    return facets.size + told.polygons.filter(p => p.taken).length;
 }
 
 const COLOURS = { inner: [0.84, 0.22, 0.2], outer: [0.2, 0.46, 0.9], unknown: [0.55, 0.58, 0.62], cell: [0.45, 0.3, 0.75], cocone: [0.16, 0.62, 0.3], taken: [0.95, 0.7, 0.2] };

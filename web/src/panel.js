@@ -1,6 +1,7 @@
 // The panel: for each layer what is shown of it, its colours, counts and certificate.
 import { MAPS, colourAt } from "./colours.js";
 import { count, exactly, labelled, make, short } from "./dom.js";
+import { facesTaken } from "./explanation.js";
 
 const BINS = 64;
 
@@ -75,8 +76,8 @@ function toldRows(told) {
             return p.radius === Infinity ? [[words, `at infinity, ${name(p.side)}`]] : [[words, name(p.side)], ["centre", place(p.centre)], ["radius", exactly(p.radius)]];
         }),
         sides.some(Boolean) && ["tetrahedra", `${sides.filter(x => x < 0).length} inner, ${sides.filter(x => x > 0).length} outer`],
-        sure.length > 0 && ["least sure of these", short(+Math.min(...sure).toFixed(2))],
-        ["faces taken", count(told.tetrahedra.reduce((n, t) => n + (t.taken >> 1 & 1) + (t.taken >> 2 & 1) + (t.taken >> 3 & 1), 0) / 2 + told.polygons.filter(p => p.taken).length)]]);
+        sure.length > 0 && ["least sure of these", short(+sure.reduce((a, b) => Math.min(a, b)).toFixed(2))],
+        ["faces taken", count(facesTaken(told))]]);
 }
 
 /** How the surface came to be: a sample is chosen by a slider, or by a click on the surface. */

@@ -28,6 +28,8 @@ void brio_explanation_free(brio_explanation *e) {
 
 brio_status brio_explain_vertex(brio_explaining *x, const double place[3], uint32_t point) {
     brio_explanation *e = x->e;
+    BRIO_EXPECT(x->ctx, x->vertices < UINT32_MAX, BRIO_ERR_TOO_LARGE,
+                "an explanation of more than 2^32 vertices: explain fewer samples");
     BRIO_FORWARD(BRIO_RESERVE(x->ctx, e->vertices, x->vertex_room, 3 * x->vertices + 3));
     BRIO_FORWARD(BRIO_RESERVE(x->ctx, e->vertex_point, x->point_room, x->vertices + 1));
     for (size_t k = 0; k < 3; k++) e->vertices[3 * x->vertices + k] = ldexp(place[k], x->exponent);

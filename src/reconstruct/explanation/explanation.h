@@ -46,7 +46,7 @@ typedef struct brio_explained {
 } brio_explained;
 
 /** Fills *options->explanation; does nothing without.
- *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, BRIO_ERR_TOO_LARGE. */
 brio_status brio_explain(brio_context *ctx, const brio_explained *samples);
 
 #endif

@@ -6,14 +6,13 @@
  *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figures 2.10 and 3.4. */
 #include "base/memory.h"
+#include "base/sort.h"
 #include "base/vector.h"
 #include "reconstruct/explanation/explanation.h"
 #include "reconstruct/labels/label.h"
 #include "triangulation/ring.h"
 #include <math.h>
 #include <string.h>
-
-enum { MOST_EXPLAINED = 5000 };
 
 typedef struct {
     brio_context *ctx;
@@ -24,8 +23,11 @@ typedef struct {
     brio_incidences stars;
     uint64_t *face_first; /* #samples + 1: of the faces at each sample in `face` */
     uint32_t *face;
-    double length;                  /* of cut rays */
-    uint32_t sample, centres, next; /* the one at work; the first of its vertices that is a centre; the next vertex */
+    uint64_t *opposite; /* of the faces at the sample at work: the edges opposite to it, sorted */
+    size_t opposites, opposite_room;
+    uint32_t *row; /* #points: among the vertices of a sample; of one before the sample at work if it is below `next` */
+    double length; /* of cut rays */
+    uint32_t sample, centres, next; /* the one at work; its first vertex that is a centre; its first vertex */
 } work;
 
 /* --- which samples --- */
@@ -38,7 +40,7 @@ static bool is_sample(const work *w, size_t p) {
  * `point` has their numbers. */
 static brio_status choose(work *w) {
     brio_explanation *e = w->x.e;
-    size_t most = w->s->options->explained ? w->s->options->explained : MOST_EXPLAINED, n = 0, at = 0;
+    size_t most = w->s->options->explained, n = 0, at = 0;
     for (size_t p = 0; p < w->s->num_samples; p++) n += is_sample(w, p);
     e->all_samples = n;
     e->num_samples = n < most ? n : most;
@@ -83,27 +85,45 @@ static int8_t side_of(const work *w, uint32_t tet) {
     return (w->s->label[tet] == BRIO_LABEL_OUTER) != w->s->inverted ? 1 : -1;
 }
 
+static uint64_t edge_key(uint32_t a, uint32_t b) {
+    return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+/* Lists the edges opposite to the sample in the faces at it: there may be as many as there are samples. */
+static brio_status list_opposites(work *w) {
+    uint64_t from = w->face_first[w->sample], to = w->face_first[w->sample + 1];
+    BRIO_FORWARD(BRIO_RESERVE(w->ctx, w->opposite, w->opposite_room, (size_t)(to - from) + 1));
+    w->opposites = 0;
+    for (uint64_t i = from; i < to; i++) {
+        const uint32_t *f = w->s->faces + 3 * (size_t)w->face[i];
+        int k = f[0] == w->sample ? 0 : f[1] == w->sample ? 1 : 2;
+        w->opposite[w->opposites++] = edge_key(f[(k + 1) % 3], f[(k + 2) % 3]);
+    }
+    brio_sort_keys(w->opposite, w->opposites);
+    return BRIO_OK;
+}
+
 /* Returns whether the surface has the triangle of the sample, a and b. */
 static bool is_taken(const work *w, uint32_t a, uint32_t b) {
-    for (uint64_t i = w->face_first[w->sample]; i < w->face_first[w->sample + 1]; i++) {
-        const uint32_t *f = w->s->faces + 3 * (size_t)w->face[i];
-        if (brio_slot_of_vertex((uint32_t[4]){f[0], f[1], f[2], BRIO_INFINITE}, a) < 3 &&
-            brio_slot_of_vertex((uint32_t[4]){f[0], f[1], f[2], BRIO_INFINITE}, b) < 3)
-            return true;
+    uint64_t key = edge_key(a, b);
+    size_t low = 0, high = w->opposites;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (w->opposite[middle] < key)
+            low = middle + 1;
+        else
+            high = middle;
     }
-    return false;
+    return low < w->opposites && w->opposite[low] == key;
 }
 
 /* Returns the row of a sample among the vertices of the sample at work; adds it if it is not there. */
 static brio_status find_vertex(work *w, uint32_t v, uint32_t *row) {
-    brio_explanation *e = w->x.e;
-    bool bounding = v >= w->s->num_samples;
-    const double *place = w->s->points + 3 * (size_t)v;
-    double scaled[3];
-    for (int k = 0; k < 3; k++) scaled[k] = ldexp(place[k], w->s->exponent);
-    for (*row = w->next; *row < w->x.vertices; ++*row) /* positions are distinct: vertices of one triangulation */
-        if (!memcmp(e->vertices + 3 * (size_t)*row, scaled, sizeof scaled)) return BRIO_OK;
-    return brio_explain_vertex(&w->x, place, bounding ? UINT32_MAX : w->s->order[v]);
+    *row = w->row[v];
+    if (*row >= w->next && *row != UINT32_MAX) return BRIO_OK;
+    *row = w->row[v] = (uint32_t)w->x.vertices;
+    return brio_explain_vertex(&w->x, w->s->points + 3 * (size_t)v,
+                               v < w->s->num_samples ? w->s->order[v] : UINT32_MAX);
 }
 
 static brio_status add_tetrahedron(work *w, uint32_t tet) {
@@ -215,6 +235,17 @@ static void write_axis(const work *w, const double *pole, double *axis) {
     for (int k = 0; k < 3 && w->s->more; k++) axis[k] /= length;
 }
 
+/* Writes a polar ball in lengths of the points. One that doubles cannot hold is a pole at infinity. */
+static void write_pole(const work *w, const double *pole, double *out) {
+    const double *from = w->s->points + 3 * (size_t)w->sample;
+    bool finite = pole[3] != INFINITY;
+    for (int k = 0; k < 4; k++) out[k] = finite ? ldexp(pole[k], w->s->exponent) : pole[k];
+    for (int k = 0; k < 4; k++) finite &= !isinf(out[k]);
+    if (finite || pole[3] == INFINITY) return;
+    for (int k = 0; k < 3; k++) out[k] = (pole[k] - from[k]) / pole[3];
+    out[3] = INFINITY;
+}
+
 static brio_status explain_sample(work *w, size_t i) {
     brio_explanation *e = w->x.e;
     uint32_t s = w->sample = e->point[i];
@@ -222,13 +253,13 @@ static brio_status explain_sample(work *w, size_t i) {
     const uint32_t *star = w->stars.items + w->stars.offsets[s];
     size_t count = (size_t)(w->stars.offsets[s + 1] - w->stars.offsets[s]);
     w->next = (uint32_t)w->x.vertices;
+    BRIO_FORWARD(list_opposites(w));
     for (size_t n = 0; n < count; n++) BRIO_FORWARD(add_tetrahedron(w, star[n]));
     BRIO_FORWARD(add_cell(w, star, count));
     read_poles(w, pole, e->pole_side + 2 * i);
     if (w->s->more) BRIO_FORWARD(w->s->more(w->s->user, &w->x, s, pole, e->pole_side + 2 * i));
     write_axis(w, pole, e->axis + 3 * i);
-    for (size_t k = 0; k < 8; k++)
-        e->pole[8 * i + k] = pole[k | 3] == INFINITY ? pole[k] : ldexp(pole[k], w->s->exponent);
+    for (size_t k = 0; k < 8; k += 4) write_pole(w, pole + k, e->pole + 8 * i + k);
     for (size_t k = 0; k < 3; k++) e->place[3 * i + k] = ldexp(w->s->points[3 * (size_t)s + k], w->s->exponent);
     e->point[i] = w->s->order[s];
     e->vertex_offsets[i + 1] = w->x.vertices;
@@ -250,6 +281,8 @@ static brio_status prepare(work *w) {
     w->dual = s->dual ? s->dual : &w->found;
     BRIO_FORWARD(brio_triangulation_incident_tetrahedra(w->ctx, s->delaunay, &w->stars));
     measure(w);
+    BRIO_FORWARD(BRIO_ALLOC(w->ctx, w->row, s->num_points + 1));
+    memset(w->row, 0xff, (s->num_points + 1) * sizeof *w->row);
     BRIO_FORWARD(choose(w));
     return list_faces(w);
 }
@@ -268,5 +301,7 @@ done:
     brio_pole_vectors_free(ctx, &w.found);
     brio_release(ctx, w.face_first);
     brio_release(ctx, w.face);
+    brio_release(ctx, w.opposite);
+    brio_release(ctx, w.row);
     return status;
 }

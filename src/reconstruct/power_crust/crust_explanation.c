@@ -4,6 +4,9 @@
  * The Delaunay triangulation of the samples was freed when the poles were found; it is made once more, with the same
  * bits.
  *
+ * Samples may share a pole: a ball has one in its middle. Its cell would be told once for each of them. So of a large
+ * cell only the faces are told that touch the cell of the sample's other pole.
+ *
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, figures 3.4 and 3.7. */
 #include "reconstruct/power_crust/crust_explanation.h"
 #include "base/memory.h"
@@ -15,11 +18,16 @@
 
 static const double THETA = 0.39269908169872414; /* pi / 8: of the shapes of cells (dual/poles.c) */
 
+/* A cell of more vertices is large, and a face of more corners is left out. Cells have 27 vertices on average. */
+enum { MANY = 128 };
+
 typedef struct {
     const brio_labeled_poles *l;
     brio_incidences stars; /* of the poles */
     uint32_t *tets; /* of the power diagram: those that are vertices of the sample at work, from row `first` on */
     size_t count, capacity, first;
+    uint32_t beside[2 * MANY]; /* poles whose faces with a large cell are told */
+    size_t besides;
 } crust_work;
 
 /* Adds a corner of a face: a vertex of the power diagram, where the crust has it. */
@@ -37,30 +45,56 @@ static brio_status add_corner(crust_work *w, brio_explaining *x, uint32_t tet) {
     return brio_explain_corner(x, w->first + i);
 }
 
-/* Adds the face between the cells of the poles in slots i and j of a tetrahedron, if it is the first of the face's;
- * leaves out faces without end. */
+/* Adds the face between the cells of the poles in slots i and j of a tetrahedron; leaves out faces without end, and of
+ * too many corners. */
 static brio_status add_face(crust_work *w, brio_explaining *x, uint32_t tet, int i, int j) {
     const brio_power_diagram *d = &w->l->diagram;
     const brio_tetrahedra *t = &d->power;
     const uint32_t p = t->tet[tet].vertex[i], q = t->tet[tet].vertex[j];
-    if (!brio_ring_size(t, tet, i, j)) return BRIO_OK;
+    size_t corners = 1;
     brio_ring ring = brio_ring_second(t, tet, i, j);
-    for (bool more = true; more; more = brio_ring_next(&ring))
-        if (ring.tet >= d->num_finite) return BRIO_OK;
+    for (bool more = true; more; more = brio_ring_next(&ring), corners++)
+        if (ring.tet >= d->num_finite || corners == MANY) return BRIO_OK;
     ring = brio_ring_second(t, tet, i, j);
     BRIO_FORWARD(add_corner(w, x, tet));
     do { BRIO_FORWARD(add_corner(w, x, ring.tet)); } while (brio_ring_next(&ring));
     return brio_explain_polygon(x, w->l->label[p] != w->l->label[q] ? BRIO_EXPLAINED_TAKEN : BRIO_EXPLAINED_LEFT);
 }
 
+static bool is_large(const crust_work *w, uint32_t pole) {
+    return w->stars.offsets[pole + 1] - w->stars.offsets[pole] > MANY;
+}
+
 /* Adds the faces of a pole's cell, save for those that it shares with the pole `but`. */
 static brio_status add_cell(crust_work *w, brio_explaining *x, uint32_t pole, uint32_t but) {
     const brio_tetrahedra *t = &w->l->diagram.power;
+    if (is_large(w, pole)) return BRIO_OK;
     for (uint64_t n = w->stars.offsets[pole]; n < w->stars.offsets[pole + 1]; n++) {
         uint32_t tet = w->stars.items[n];
         int slot = brio_slot_of_vertex(t->tet[tet].vertex, pole);
         for (int j = 0; j < 4; j++)
-            if (j != slot && t->tet[tet].vertex[j] != but) BRIO_FORWARD(add_face(w, x, tet, slot, j));
+            if (j != slot && t->tet[tet].vertex[j] != but && brio_ring_size(t, tet, slot, j))
+                BRIO_FORWARD(add_face(w, x, tet, slot, j));
+    }
+    return BRIO_OK;
+}
+
+/* Adds the faces of a large cell that touch that of the pole `other`, which is not large and has been told. */
+static brio_status add_large_cell(crust_work *w, brio_explaining *x, uint32_t pole, uint32_t other) {
+    const brio_tetrahedra *t = &w->l->diagram.power;
+    w->besides = 0;
+    for (uint64_t n = w->stars.offsets[other]; n < w->stars.offsets[other + 1]; n++) {
+        uint32_t tet = w->stars.items[n];
+        const uint32_t *v = t->tet[tet].vertex;
+        int slot = brio_slot_of_vertex(v, pole);
+        for (int j = 0; j < 4 && slot < 4; j++) {
+            size_t i = 0;
+            if (j == slot || v[j] == other) continue;
+            while (i < w->besides && w->beside[i] != v[j]) i++;
+            if (i < w->besides) continue;
+            w->beside[w->besides++] = v[j];
+            BRIO_FORWARD(add_face(w, x, tet, slot, j));
+        }
     }
     return BRIO_OK;
 }
@@ -68,7 +102,7 @@ static brio_status add_cell(crust_work *w, brio_explaining *x, uint32_t pole, ui
 static brio_status add_poles(void *user, brio_explaining *x, uint32_t s, double pole[8], int8_t side[2]) {
     crust_work *w = user;
     const brio_poles *poles = &w->l->poles;
-    uint32_t but = BRIO_NO_POLE;
+    uint32_t cell[2] = {BRIO_NO_POLE, BRIO_NO_POLE};
     w->count = 0;
     w->first = x->vertices;
     for (size_t i = 0; i < 2; i++) {
@@ -80,10 +114,13 @@ static brio_status add_poles(void *user, brio_explaining *x, uint32_t s, double 
         memcpy(row, poles->centre + 3 * (size_t)p, 3 * sizeof *row);
         row[3] = sqrt(poles->square[p]);
         side[i] = w->l->label[p] == BRIO_LABEL_OUTER ? 1 : -1;
-        p = w->l->diagram.representative[p];
-        BRIO_FORWARD(add_cell(w, x, p, but));
-        but = p;
+        const uint32_t told = cell[0] == BRIO_NO_POLE || is_large(w, cell[0]) ? BRIO_NO_POLE : cell[0];
+        cell[i] = w->l->diagram.representative[p];
+        if (!i || cell[0] != cell[1]) BRIO_FORWARD(add_cell(w, x, cell[i], told));
     }
+    for (int i = 0; i < 2; i++)
+        if (cell[0] != BRIO_NO_POLE && cell[1] != BRIO_NO_POLE && is_large(w, cell[i]) && !is_large(w, cell[1 - i]))
+            BRIO_FORWARD(add_large_cell(w, x, cell[i], cell[1 - i]));
     return BRIO_OK;
 }
 

@@ -21,6 +21,9 @@ typedef struct {
     double (*bytes)(double points, const brio_surface_options *options);
 } brio_method_row;
 
+/** The samples that are explained where the caller says no number. */
+enum { BRIO_MOST_EXPLAINED = 5000 };
+
 /** Returns the row of a method, or NULL for a number that names none. */
 const brio_method_row *brio_method_row_of(brio_surface_method method);
 

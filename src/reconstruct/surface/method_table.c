@@ -16,7 +16,8 @@ enum {
     OFFSET_BYTES = 1300,
     COCONE_BYTES = 616,
     EXPLANATION_BYTES = 700
-}; /* a point */
+};                               /* a point */
+enum { EXPLAINED_BYTES = 4096 }; /* an explained sample */
 
 /* Adds what triangles and a simplification take to the bytes of a crust's balls and faces. Triangles: a scan of 20,000
  * points 210 bytes a point, bunny 350. Simplified: knot2 2,080, bunny 2,150, fandisk 2,200. */
@@ -103,5 +104,7 @@ int brio_surface_method_has(brio_surface_method method, const char *option) {
 
 double brio_method_bytes(const brio_method_row *row, double points, const brio_surface_options *options) {
     double bytes = row->bytes ? row->bytes(points, options) : row->bytes_a_point * points;
-    return options && options->explanation ? bytes + EXPLANATION_BYTES * points : bytes;
+    if (!options || !options->explanation) return bytes;
+    double most = (double)(options->explained ? options->explained : BRIO_MOST_EXPLAINED);
+    return bytes + EXPLANATION_BYTES * points + EXPLAINED_BYTES * fmin(points, most);
 }

@@ -62,6 +62,7 @@ static brio_status settle(brio_context *ctx, const brio_surface_options *options
     *o = (brio_surface_options){0};
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_surface_options, options, o));
     if (o->explanation) *o->explanation = NULL;
+    if (!o->explained) o->explained = BRIO_MOST_EXPLAINED;
     BRIO_EXPECT(ctx, (unsigned)o->method < BRIO_SURFACE_END, BRIO_ERR_ARGUMENT, "no such method: %d", (int)o->method);
     BRIO_EXPECT(ctx, (unsigned)o->noise < BRIO_NOISE_END, BRIO_ERR_ARGUMENT, "no such way with noise: %d",
                 (int)o->noise);
