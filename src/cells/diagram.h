@@ -135,7 +135,7 @@ typedef struct brio_cell_complex {
     size_t num_finite, count;
     const uint32_t (*more)[4];
     size_t num_more;
-    const uint32_t *owner; /* #points - #sites: of which site each other point is a translate; for a sweep */
+    const uint32_t *owner; /* #points - #sites: of which site each other point is a translate; NULL: of none */
     /** Makes the complex of which no sweep is made, for the cells that a sweep leaves: sets tet, num_finite and count.
      *  Points stay.   wanted  #points: whose cells are wanted.   NULL: this is it. */
     brio_status (*whole)(void *user, const uint8_t *wanted, struct brio_cell_complex *whole);

@@ -13,15 +13,17 @@
  * - so the terms of a facet are off by at most (4 u R' C + G (d + 3 R' v / |n|)) / (24 |n|). Here G is the sum of
  *   |ij|^2 |ki . kj| over its edges, and C that of |ij|^2 |ki| |kj|: the product of the edges times their sum. With
  *   weights G is the sum of 4 W |ij|^2 D, and 8 W^2 times the squared sum of squares bounds C.
+ * This holds where v is at most RAW / 3 of each |n|; a facet whose corners are on a line up to rounding says nothing.
  * Squares of sums are at most as many times the sum of squares. The bound is twice that of the four facets, which
  * covers the rounding of the sum and of the bound. */
 #include "cells/shares.h"
 #include <assert.h>
 #include <math.h>
 
-/* FINE: centres whose error is more than this part of R' need more than doubles; chosen. LEAST, MOST: squared edges
- * between these keep all products within the range of doubles. */
-static const double FINE = 0x1p-40, LEAST = 0x1p-200, MOST = 0x1p200, UNIT = 0x1p-53;
+/* FINE: centres whose error is more than this part of R' need more than doubles. RAW: the part of each |n| that 3 v may
+ * be. Both chosen. LEAST, MOST: squared edges between these keep all products within the range of doubles, those of the
+ * bound included: there |n|^2 is at least 2^-408, the squared sum 4 |n|^4, and d + 3 R' v / |n| at least 2^-129. */
+static const double FINE = 0x1p-40, RAW = 0x1p-6, LEAST = 0x1p-160, MOST = 0x1p160, UNIT = 0x1p-53;
 
 /* Edges are numbered 01 02 03 12 13 23, facets by the vertex opposite to them. */
 static const uint8_t ENDS[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
@@ -33,7 +35,8 @@ typedef struct {
     lanes way[6][3], at[6]; /* of each edge: the vector, and its square */
     lanes normal[4][3];     /* of each facet: twice its area vector; those of 1 and 3 point to the opposite vertex */
     lanes inverse[4];       /* 1 / |normal|^2 */
-    lanes most, wide;       /* M and W */
+    lanes most, least;      /* M, and the least squared edge */
+    lanes wide;             /* W */
 } solid;
 
 static inline lanes dot(const lanes a[3], const lanes b[3]) {
@@ -56,13 +59,14 @@ static inline void load(const brio_share_batch *b, const uint8_t index[LANES], s
         for (int n = 0; weighted && n < LANES; n++) weight[n] = b->weights[b->vertex[index[n]][i]];
         if (weighted) s->w[i] = load_lanes(weight);
     }
-    s->most = all(0), s->wide = all(1);
+    s->most = all(0), s->least = all(__builtin_inf()), s->wide = all(1);
     for (int k = 0; k < 3; k++) s->first[k] = p[0][k];
     for (int e = 0; e < 6; e++) {
         int i = ENDS[e][0], j = ENDS[e][1];
         for (int k = 0; k < 3; k++) s->way[e][k] = p[j][k] - p[i][k];
         s->at[e] = dot(s->way[e], s->way[e]);
         s->most = maximum(s->at[e], s->most);
+        s->least = choose(greater(s->least, s->at[e]), s->at[e], s->least);
         if (weighted) s->wide = maximum(all(1) + magnitude(s->w[i] - s->w[j]) / s->at[e], s->wide);
     }
     for (int f = 0; f < 4; f++) {
@@ -70,6 +74,11 @@ static inline void load(const brio_share_batch *b, const uint8_t index[LANES], s
         cross(s->way[EDGE_OF[i][CORNERS[f][1]]], s->way[EDGE_OF[i][CORNERS[f][2]]], s->normal[f]);
         s->inverse[f] = all(1) / dot(s->normal[f], s->normal[f]);
     }
+}
+
+/* Returns whether doubles hold the products of the edges. */
+static inline lane_mask is_ordinary(const solid *s) {
+    return both(greater(s->least, all(LEAST)), greater(all(MOST), s->most));
 }
 
 /* Returns the product of the ways from vertex i to j and k. */
@@ -83,6 +92,7 @@ static inline lanes angle(const solid *s, int i, int j, int k) {
 static inline lanes add_orthoschemes(const solid *s, const lanes o[3], lanes off, lanes far, lanes share[4],
                                      const bool weighted) {
     lanes errors = all(0), tiny = all(UNIT * UNIT) * far;
+    lane_mask known = is_ordinary(s);
     for (int i = 0; i < 4; i++) share[i] = all(0);
     for (int f = 0; f < 4; f++) {
         const uint8_t *v = CORNERS[f];
@@ -112,11 +122,11 @@ static inline lanes add_orthoschemes(const solid *s, const lanes o[3], lanes off
         lanes a = s->at[EDGE_OF[v[0]][v[1]]], b = s->at[EDGE_OF[v[0]][v[2]]], c = s->at[EDGE_OF[v[1]][v[2]]];
         lanes squares = a + b + c, rounded = all(3) * a * b * c * squares;
         if (weighted) rounded = all(64) * s->wide * s->wide * s->wide * s->wide * squares * squares * squares * squares;
-        lanes turned = all(144) * tiny * a * b * s->inverse[f];
-        errors += s->inverse[f] * (all(16) * tiny * rounded + sum * sum * (off + turned));
+        lanes raw = all(144 * UNIT * UNIT) * a * b * s->inverse[f];
+        known = both(known, greater(all(RAW * RAW), raw));
+        errors += s->inverse[f] * (all(16) * tiny * rounded + sum * sum * (off + raw * far));
     }
-    lane_mask ordinary = both(greater(s->most, all(LEAST)), greater(all(MOST), s->most));
-    return choose(ordinary, root(all(12.0 * 4 / 576) * errors), all(__builtin_inf()));
+    return choose(known, root(all(12.0 * 4 / 576) * errors), all(__builtin_inf()));
 }
 
 /* Stores what was found in the lanes of `found`. */
@@ -148,8 +158,7 @@ static inline unsigned solve(const brio_share_batch *b, const uint8_t index[LANE
     }
     lanes far = all(2) * (dot(o, o) + s.most), flat = s.at[0] * s.at[1] * s.at[2] / (det * det) * s.wide * s.wide;
     lanes part = all(4900 * UNIT * UNIT) * flat;
-    lane_mask fine = both(both(greater(all(FINE * FINE), part), greater(det, all(0))),
-                          both(greater(s.most, all(LEAST)), greater(all(MOST), s.most)));
+    lane_mask fine = both(both(greater(all(FINE * FINE), part), greater(det, all(0))), is_ordinary(&s));
     unsigned found = bits_of(both(fine, greater(all(__builtin_inf()), big)));
     lanes bound = add_orthoschemes(&s, o, part * far, far, share, weighted);
     store(b, index, found, share, bound);

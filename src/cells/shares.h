@@ -32,8 +32,8 @@ typedef struct brio_share_batch {
 
 /** Computes centres, shares, and what bounds their errors. The bits do not depend on the instruction set, but on the
  *  order of the four vertices.
- *  Lengths and weights are scaled so that doubles hold sixth powers of the edges: tetrahedra with an edge beyond 2^-100
- *  or 2^100 get infinite bounds.
+ *  Lengths and weights are scaled so that doubles hold sixth powers of the edges: tetrahedra with an edge beyond 2^-80
+ *  or 2^80, or with a facet whose corners are on a line up to rounding, get infinite bounds.
  *  Cost: about 20 ns for a tetrahedron, more where its centre needs pairs of doubles. */
 void brio_shares(const brio_share_batch *b);
 

@@ -17,6 +17,13 @@ enum { SLICE = 64, SLICES = 64, BATCHES_A_THREAD = 256, ROWS_A_THREAD = 1 << 14,
 /* Chosen: a thousandth of what users compare to. The bound is generous: errors are 1e-15 of ordinary cells. */
 static const double MOST_ERROR = 0x1p-36;
 
+/* Returns whether the volume of a rank is known well enough. A sum of n shares is off by at most n u times their sizes,
+ * and a bound is at least 40 u times the size of its share. Half of each bound is for this sum (share_lanes.h), so that
+ * those of more than 20 shares are too small. */
+static bool is_known(const brio_sweep *s, size_t r) {
+    return s->sum[r][1] * fmax(1, 0.5 + s->size[r] / 40.0) < MOST_ERROR * s->sum[r][0];
+}
+
 /* Frees what only the neighbours need. */
 static void free_tetrahedra(brio_sweep *s) {
     brio_release(s->ctx, s->id);
@@ -87,7 +94,10 @@ typedef struct {
 void brio_sweep_leave(brio_sweep *s, const uint32_t *id, int count) {
     for (int i = 0; i < count; i++) {
         uint32_t r = id[i];
-        if (r >= s->task.num_sites) r = s->rank[s->task.owner[s->order[r] - s->task.num_sites]];
+        if (r >= s->task.num_sites) {
+            if (!s->task.owner) continue; /* its cell is another part's */
+            r = s->rank[s->task.owner[s->order[r] - s->task.num_sites]];
+        }
         __atomic_store_n(&s->left[r], 1, __ATOMIC_RELAXED);
     }
 }
@@ -186,7 +196,7 @@ brio_status brio_sweep_fill(brio_context *ctx, const brio_sweep_task *task, brio
         brio_sweep_leave(s, (const uint32_t[]){s->rank[v[0]], s->rank[v[1]], s->rank[v[2]]}, 3);
     }
     for (size_t r = 0; r < s->num_ranks; r++)
-        if (!(s->sum[r][1] <= MOST_ERROR * s->sum[r][0])) s->left[r] = 1;
+        if (!is_known(s, r)) s->left[r] = 1;
     if (task->neighbours)
         BRIO_FORWARD(brio_sweep_find_ties(s));
     else

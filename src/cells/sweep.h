@@ -13,13 +13,13 @@
 
 /** The tetrahedra of the sites. */
 typedef struct brio_sweep_task {
-    const brio_tetrahedron *tet; /* finite ones first; mates across facets */
+    const brio_tetrahedron *tet; /* finite ones first; mates across facets, or the facet itself */
     size_t num_finite, count;
     const uint32_t (*more)[4]; /* further finite ones: translates of some of them, without mates; or NULL */
     size_t num_more;
     const double *at, *square; /* #rows by 3; #rows, or NULL: positions and weights */
     size_t num_rows, num_sites;
-    const uint32_t *owner; /* #rows - num_sites: of which site each other row is a translate */
+    const uint32_t *owner; /* #rows - num_sites: of which site each other row is a translate; NULL: of none */
     const brio_region *region;
     bool neighbours; /* whether neighbours are asked for */
 } brio_sweep_task;

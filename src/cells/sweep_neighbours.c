@@ -82,7 +82,7 @@ static void look_at(const tie_search *s, uint32_t t, bool later) {
     const double *key = w->key;
     for (int i = 0; i < 4; i++) {
         uint32_t mate = w->task.tet[t].mate[i], u = mate >> 2;
-        if ((later && u < t) || u >= w->task.num_finite) continue;
+        if ((later && u < t) || u == t || u >= w->task.num_finite) continue;
         bool apart = s->inside && !(s->inside[t] && s->inside[u]);
         double way = key[t] - key[u];
         if (apart) way -= corner_of(w, t, i, 0) - corner_of(w, u, (int)(mate & 3), 0);
@@ -180,12 +180,13 @@ static brio_status list_stars(search *h) {
 
 /* --- neighbours --- */
 
+/* Compares positions; then ranks, for scaling can make 0 of distinct positions. */
 static int compare_positions(uint32_t a, uint32_t b, const void *user) {
     const brio_sweep *s = user;
     const double *x = s->ranked + 3 * (size_t)a, *y = s->ranked + 3 * (size_t)b;
     for (int k = 0; k < 3; k++)
         if (x[k] != y[k]) return x[k] < y[k] ? -1 : 1;
-    return 0;
+    return a < b ? -1 : a > b;
 }
 
 /* Writes the vertices of a star but rank r to `met`, once each unless two have one place in the table.

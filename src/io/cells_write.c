@@ -96,6 +96,8 @@ static brio_status check(brio_context *ctx, const char *path, const brio_cells *
                 "%s: the cells have no areas, centroids or faces: brio_cells_options asks for them", path);
     BRIO_EXPECT(ctx, format != BRIO_CELLS_FORMAT_FACES_CSV || cells->face_neighbours || !cells->num_cells,
                 BRIO_ERR_ARGUMENT, "%s: the cells have the number of their faces alone", path);
+    BRIO_EXPECT(ctx, format != BRIO_CELLS_FORMAT_FACES_CSV || cells->face_areas || !cells->num_cells, BRIO_ERR_ARGUMENT,
+                "%s: the cells have no sizes of faces: brio_cells_options asks for them", path);
     BRIO_EXPECT(ctx, format != BRIO_CELLS_FORMAT_VTU || cells->corner_offsets, BRIO_ERR_ARGUMENT,
                 "%s: the cells have no vertices: brio_cells_options asks for them", path);
     return BRIO_OK;

@@ -33,8 +33,9 @@ typedef struct {
 
 typedef struct {
     brio_tiles *t;
-    bool areas, centroids, counts, faces; /* counts: the number of faces of each cell; faces: the faces themselves */
-    uint64_t share;                       /* sites of a part */
+    bool areas, centroids, sizes;
+    bool counts, faces; /* counts: the number of faces of each cell; faces: the faces themselves */
+    uint64_t share;     /* sites of a part */
     size_t num_parts;
     tray *cells_of, *faces_of; /* of each part */
 } ordering;
@@ -64,8 +65,11 @@ static brio_status put_cell(ordering *o, const brio_cells *cells, size_t c, uint
     if (o->counts) row.faces = (uint32_t)(cells->face_offsets[c + 1] - cells->face_offsets[c]);
     if (!o->faces) return put(&o->cells_of[part], &row, sizeof row);
     for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
-        face_row face = {.neighbour = cells->face_neighbours[f], .area = cells->face_areas[f]};
-        memcpy(face.normal, cells->face_normals + 3 * f, sizeof face.normal);
+        face_row face = {.neighbour = cells->face_neighbours[f]};
+        if (o->sizes) {
+            face.area = cells->face_areas[f];
+            memcpy(face.normal, cells->face_normals + 3 * f, sizeof face.normal);
+        }
         BRIO_FORWARD(put(&o->faces_of[part], &face, sizeof face));
     }
     return put(&o->cells_of[part], &row, sizeof row);
@@ -202,6 +206,7 @@ static brio_status make_cells(ordering *o, size_t n, size_t faces, brio_cells **
     if (o->counts) BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_offsets, n + 1));
     if (!o->faces) return BRIO_OK;
     BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_neighbours, faces + 1));
+    if (!o->sizes) return BRIO_OK;
     BRIO_FORWARD(BRIO_ALLOC(ctx, cells->face_areas, faces + 1));
     return BRIO_ALLOC(ctx, cells->face_normals, 3 * faces + 1);
 }
@@ -224,6 +229,7 @@ static void fill_cells(const ordering *o, const rows *r, size_t first, brio_cell
         const face_row *face = r->face + r->begin[r->order[first + c]];
         for (uint32_t f = 0; f < row->faces; f++, next++) {
             cells->face_neighbours[next] = face[f].neighbour;
+            if (!o->sizes) continue;
             cells->face_areas[next] = face[f].area;
             memcpy(cells->face_normals + 3 * next, face[f].normal, sizeof face->normal);
         }
@@ -277,6 +283,7 @@ brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options
                   .centroids = !options->no_centroids,
                   .counts = !options->no_faces,
                   .faces = with_faces && !options->no_faces,
+                  .sizes = !options->no_face_sizes,
                   .num_parts = (size_t)PARTS * t->num_tiles};
     brio_status status = BRIO_OK;
     o.share = t->stats.points / o.num_parts + 1;

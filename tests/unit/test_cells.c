@@ -394,8 +394,32 @@ static void shares_are_within_their_bounds(void) {
     }
     EXPECT(few > 600 && fine > 150, "%zu bounds, %zu below 1e-10", few, fine);
 }
+/* Bounds of small tetrahedra, edges of 2^-98, were 0: their products are below what doubles hold. */
+static void bounds_of_small_tetrahedra_were_0(void) {
+    brio_rng rng = brio_rng_new(78);
+    size_t few = 0;
+    for (int trial = 0; trial < 600; trial++) {
+        double p[4][3], w[4], centre[1][3], error[1], share[1][4], bound[1];
+        static const uint32_t vertex[1][4] = {{0, 1, 2, 3}};
+        quad exact[4];
+        if (!hostile_tetrahedron(&rng, p, w)) continue;
+        for (int i = 0; i < 12; i++) p[i / 3][i % 3] = ldexp(p[i / 3][i % 3], trial % 2 ? -98 : -70);
+        shares_in_quads((const double(*)[3])p, NULL, exact);
+        brio_shares(&(brio_share_batch){p[0], NULL, vertex, 1, centre, error, share, bound});
+        if (!(bound[0] < INFINITY)) continue;
+        few++;
+        for (int i = 0; i < 4; i++) {
+            double off = fabs(share[0][i] - (double)exact[i]);
+            EXPECT(bound[0] > 0 && off <= bound[0], "%d: %g is more than %g", trial, off, bound[0]);
+        }
+    }
+    EXPECT(few > 200, "%zu bounds", few);
+}
 #else
 static void shares_are_within_their_bounds(void) {
+    printf("skipped: the compiler has no numbers of 113 bits\n");
+}
+static void bounds_of_small_tetrahedra_were_0(void) {
     printf("skipped: the compiler has no numbers of 113 bits\n");
 }
 #endif
@@ -958,6 +982,7 @@ SUITE(test_cells) {
     RUN(cells_of_the_hull_are_unbounded);
     RUN(flat_points_have_cells);
     RUN(shares_are_within_their_bounds);
+    RUN(bounds_of_small_tetrahedra_were_0);
     RUN(neighbours_alone_are_those_of_whole_cells);
     RUN(volumes_alone_equal_those_with_faces);
     RUN(volumes_alone_have_the_same_bits_with_threads);

@@ -301,6 +301,18 @@ static void vertices_beyond_doubles_are_no_part_of_files(void) {
     brio_cells_free(cells);
 }
 
+/* A table of faces without their sizes was read from nowhere. */
+static void faces_without_sizes_were_written(void) {
+    static const double points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 2, 2};
+    brio_cells_options o = {.size = sizeof o, .no_face_sizes = 1};
+    brio_cells *cells = NULL;
+    EXPECT(brio_voronoi_cells(io_ctx, NULL, points, NULL, 5, &o, &cells) == BRIO_OK, "%s", brio_message(io_ctx));
+    const char *path = io_path("faces.csv");
+    EXPECT(brio_cells_write(io_ctx, path, cells, BRIO_CELLS_FORMAT_FACES_CSV, NULL) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_cells_write(io_ctx, path, cells, BRIO_CELLS_FORMAT_CSV, NULL) == BRIO_OK, "%s", brio_message(io_ctx));
+    brio_cells_free(cells);
+}
+
 /* A wall between two cells is a face of each; what the file says of a cell, its faces have. */
 static void cells_read_back_as_their_faces(void) {
     enum { POINTS = 40 };
@@ -344,5 +356,6 @@ SUITE(test_io_vtk) {
     RUN(names_of_control_characters_stay_distinct);
     RUN(vertices_beyond_doubles_are_no_part_of_files);
     RUN(cells_read_back_as_their_faces);
+    RUN(faces_without_sizes_were_written);
     return io_end();
 }

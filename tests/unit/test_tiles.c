@@ -369,6 +369,45 @@ static void compare_all_cells(uint64_t seed, size_t n, int kind, bool weighted, 
     brio_context_free(ctx);
 }
 
+static int compare_neighbours(const brio_cells *cells, const uint64_t *site, void *user) {
+    cell_comparison *c = user;
+    for (size_t i = 0; i < cells->num_cells; i++) {
+        size_t at = 0;
+        while (at + 1 < c->whole->num_cells && c->whole->site[at] != site[i]) at++;
+        double volume = c->whole->volume[at], off = cells->volume[i] - volume;
+        c->differ += volume < INFINITY ? !(fabs(off) <= 1e-9 * volume) : cells->volume[i] != volume;
+        c->seen++;
+        if (!cells->face_offsets) continue;
+        uint64_t f = cells->face_offsets[i], n = cells->face_offsets[i + 1] - f, g = c->whole->face_offsets[at];
+        c->differ += cells->face_areas || cells->face_normals || c->whole->face_offsets[at + 1] - g != n;
+        if (!cells->face_neighbours || c->differ) continue;
+        c->differ += memcmp(&cells->face_neighbours[f], &c->whole->face_neighbours[g], n * sizeof(int64_t)) != 0;
+    }
+    return 0;
+}
+
+/* Sweeps of tiles took points of other tiles for translates; and in order, sizes of faces that were not there. */
+static void tiles_read_what_was_left_out(void) {
+    for (int i = 0; i < 16; i++) {
+        brio_context *ctx = new_context();
+        size_t n = make_points((uint64_t)i, 200, i / 4);
+        brio_cells_options o = {.size = sizeof o, .no_areas = 1, .no_centroids = 1, .no_face_sizes = 1};
+        brio_cells *whole = NULL;
+        o.no_faces = i % 4 == 3;
+        brio_tiles *t = tiles_of(ctx, 3, n, false, 0);
+        brio_status status = brio_voronoi_cells(ctx, NULL, points, NULL, n, NULL, &whole);
+        if (brio_tiles_run(ctx, t) == BRIO_OK && brio_tiles_facts(t)->dimension == 3 && status == BRIO_OK) {
+            cell_comparison c = {.whole = whole};
+            EXPECT(brio_tiles_cells(ctx, t, &o, i % 3, compare_neighbours, &c) == BRIO_OK, "%s", brio_message(ctx));
+            EXPECT(c.seen == whole->num_cells && c.differ == 0, "%d: %llu of %zu cells, %llu differ", i,
+                   (unsigned long long)c.seen, whole->num_cells, (unsigned long long)c.differ);
+        }
+        brio_cells_free(whole);
+        brio_tiles_free(t);
+        brio_context_free(ctx);
+    }
+}
+
 static void cells_are_those_of_the_whole(void) {
     static const uint32_t tiles[] = {1, 2, 3, 7};
     brio_rng rng = brio_rng_new(11);
@@ -562,6 +601,7 @@ SUITE(test_tiles) {
     RUN(a_tile_with_one_tetrahedron_many_times_is_refused);
     RUN(vertices_of_cells_do_not_depend_on_threads);
     RUN(cells_are_those_of_the_whole);
+    RUN(tiles_read_what_was_left_out);
     RUN(wrong_calls_for_cells_are_refused);
     RUN(wrong_calls_are_refused);
     RUN(flat_points);
