@@ -3,9 +3,11 @@
  *
  * The promise: after any sequence of changes the triangulation is the one that brio_delaunay_periodic makes of the
  * points that are left, on the same grid, ties included. The grid is chosen when the triangulation is made, and stays:
- * brio_dynamic_periodic_points writes the positions on it, and brio_dynamic_periodic_stats has the `reach` that gives a
- * fresh build the same grid where fewer than three directions repeat. A change that fails, for want of memory, by a bad
- * argument, or since the caller cancelled, leaves everything as it was.
+ * brio_dynamic_periodic_points writes positions that a fresh build puts on the same places of it, and
+ * brio_dynamic_periodic_stats has the `reach` that gives one the same grid where fewer than three directions repeat.
+ * Farther than 8 longest vectors of the reduced lattice from the origin of space, doubles are coarser than the grid:
+ * rounding may break ties there in other ways, as brio_delaunay_periodic says of origins. A change that fails, for want
+ * of memory, by a bad argument, or since the caller cancelled, leaves everything as it was.
  */
 #ifndef BRIO_DYNAMIC_PERIODIC_H
 #define BRIO_DYNAMIC_PERIODIC_H
@@ -42,9 +44,10 @@ typedef struct brio_dynamic_periodic_stats {
 /** Makes a triangulation of points.
  *  points   #P by 3; none at all are allowed.   weights  #P, or NULL. With weights, or with `weighted` of the options,
  *           points have weights, those without one 0.
- *  options  with the cell, as of brio_delaunay_periodic. With fewer than three directions points may be half of `reach`
- *           away from the least of these, in coordinates in which vectors of the cell go anywhere. 0 is at least four
- *           times as far as these points reach, and as the longest vector. The grid is as much coarser.
+ *  options  with the cell, as of brio_delaunay_periodic. With fewer than three directions points may be half of
+ *           `reach`, less the vectors of the reduced cell, away from the least of these, in coordinates in which such
+ *           vectors go anywhere. It is made at least eight times as far as these points reach, and as the longest
+ *           vector. The grid is as much coarser.
  *  out      owned by the caller, freed with brio_dynamic_periodic_free before the context; NULL on error. All later
  *           calls work with this context.
  *  Memory: that of a brio_dynamic of the points and the translates within 2.5 spacings of the domain, and 12 bytes for
@@ -90,8 +93,8 @@ BRIO_API brio_status brio_dynamic_periodic_facts(const brio_dynamic_periodic *d,
  *  record  receives its position, as brio_dynamic_periodic_points writes it, and its weight; may be NULL. */
 BRIO_API int brio_dynamic_periodic_point(const brio_dynamic_periodic *d, uint32_t index, double record[4]);
 
-/** Writes the points that are there, by ascending index, `points` of the stats in number: on the grid, in the cell in
- *  which they were given.
+/** Writes the points that are there, by ascending index, `points` of the stats in number: in the cell in which they
+ *  were given, and where they were given, up to the grid. A fresh build puts these on the same places.
  *  indices  #P, or NULL.   points  #P by 3, or NULL.   weights  #P, or NULL. */
 BRIO_API void brio_dynamic_periodic_points(const brio_dynamic_periodic *d, uint32_t *indices, double *points,
                                            double *weights);

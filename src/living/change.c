@@ -10,8 +10,9 @@
 #include "living/living.h"
 #include <string.h>
 
-/* How much farther than the first points later ones may be: twice, to both sides. */
-static const double ROOM = 4;
+/* For how much farther than the first points, and than the vectors, the grid is made. A point in the domain is no more
+ * than 3 of these away, with vectors of up to 2 off a half of the grid (brio_lattice_reaches). */
+static const double ROOM = 8;
 
 void brio_wrapped_forget(brio_dynamic_periodic *d) {
     brio_periodic_locator_free(d->locator);
@@ -153,18 +154,18 @@ brio_status brio_dynamic_periodic_reweight(brio_dynamic_periodic *d, const uint3
 
 /* --- a new one --- */
 
-/* Makes the grid. With open directions it is made for points that will go farther than these. */
+/* Makes the grid. With open directions it is made for points that will go farther than these, and `reach` alone gives
+ * it again. */
 static brio_status make_grid(brio_dynamic_periodic *d, const double *points, size_t n,
                              const brio_periodic_options *options) {
     brio_periodic_options o = *options;
+    double most = 0;
+    o.reach = 0;
     BRIO_FORWARD(brio_lattice_new(d->ctx, &o, points, n, &d->lattice));
     if (d->lattice.rank == 3) return BRIO_OK;
-    double most = 0;
     for (int k = 0; k < 3; k++) most = fmax(most, brio_lattice_size(&d->lattice, k));
-    if (!(o.reach > 0)) o.reach = ROOM * most;
-    BRIO_FORWARD(brio_lattice_new(d->ctx, &o, points, n, &d->lattice));
-    d->reach = o.reach;
-    return BRIO_OK;
+    d->reach = o.reach = fmax(options->reach, ROOM * most);
+    return brio_lattice_new(d->ctx, &o, points, n, &d->lattice);
 }
 
 brio_status brio_dynamic_periodic_new(brio_context *ctx, const double *points, const double *weights, size_t num_points,

@@ -350,15 +350,22 @@ double brio_lattice_size(const brio_lattice *l, int k) {
 }
 
 bool brio_lattice_reaches(const brio_lattice *l, const double *x) {
-    for (int k = 0; k < 3 && l->rank < 3; k++)
-        if (!(fabs(x[k] + l->corner[k]) <= brio_lattice_size(l, k) / 2) && l->unit[k] > 0) return false;
+    for (int k = 0; k < 3 && l->rank < 3; k++) {
+        double cells = 0; /* by which the coordinate may differ where the domain begins elsewhere */
+        for (int i = 0; i < l->rank; i++) cells += fabs(l->basis[i][k]);
+        if (!(fabs(x[k] + l->corner[k]) <= (brio_lattice_size(l, k) - cells) / 2) && l->unit[k] > 0) return false;
+    }
     return true;
 }
 
 void brio_lattice_given(const brio_lattice *l, const double *x, const int32_t shift[3], double *out) {
+    double whole[3], share[3];
+    for (int k = 0; k < 3; k++) whole[k] = x[k] + l->corner[k]; /* exact: both are on the grid */
+    for (int i = 0; i < l->rank; i++) share[i] = brio_lattice_share(l, i, whole);
     for (int k = 0; k < 3; k++) {
-        double high = x[k] + l->corner[k], low = 0; /* exact: both are on the grid */
+        double high = whole[k], low = 0;
         add_product(&high, &low, 1, l->origin[k]);
+        for (int i = 0; i < l->rank; i++) add_product(&high, &low, -share[i], l->basis[i][k] - l->near[i][k]);
         for (int j = 0; j < l->rank; j++) add_product(&high, &low, -shift[j], l->given[j][k]);
         out[k] = high + low + 0.0;
     }

@@ -51,12 +51,14 @@ bool brio_lattice_home(const brio_lattice *lattice, const double *point, brio_ho
 /** Returns how far points may reach in coordinate k with the grid that there is; 0 where nothing is rounded. */
 double brio_lattice_size(const brio_lattice *lattice, int k);
 
-/** Returns whether a position in the domain is no farther than half of what the grid is made for: then any origin among
- *  such positions gives the same grid. */
+/** Returns whether a position in the domain is no farther than half of what the grid is made for, less the vectors:
+ *  then any origin among such positions gives the same grid. */
 bool brio_lattice_reaches(const brio_lattice *lattice, const double *x);
 
 /** Writes the position of which x is the translate in the domain, by `shift` of the vectors that were given, in the
- *  caller's space: rounded to doubles once. */
+ *  caller's space: rounded to doubles once. Its coordinates in the vectors that were given are those of x in the basis.
+ *  So another lattice, of these vectors and of any such position as origin, brings it to the same place of the grid,
+ *  if doubles there are finer than the grid: within 8 longest vectors of the space's origin. */
 void brio_lattice_given(const brio_lattice *lattice, const double *x, const int32_t shift[3], double *out);
 
 /** Writes a position moved by shift[i] basis[i]: exact (I2). */

@@ -99,7 +99,8 @@ static inline unsigned stand(moved_tets *m, const moved_row *e, const bool weigh
     lane_mask worse = greater(rate * m->below, m->above * det);
     m->above = choose(worse, rate, m->above);
     m->below = choose(worse, det, m->below);
-    m->least = choose(greater(m->least, det), det, m->least);
+    m->least =
+        choose(greater(m->least, det), det, m->least) + (det - det); /* no number where det is none or infinite */
     lengthen(m, e, weighted);
     return bits_of(none);
 }

@@ -121,6 +121,67 @@ static void points_at_one_place_have_one_vertex(void) {
     wrapped_free(&w);
 }
 
+/* The vectors of a cell whose lengths are no sums of few powers of 2 were rounded to the grid. Positions were written
+ * as they are in these vectors, and were moved by that once more by who built anew: ties were others then. */
+static void positions_in_a_cell_off_the_grid_come_back(void) {
+    static wish v;
+    for (int cell = 0; cell < 2; cell++)
+        for (int open = 0; open < 5; open += 4) {
+            wrapped w = wrapped_new(GRID, 0, cell, open, 400);
+            for (int k = 0; k < 9; k++) w.cell[k] *= 0.7e-3;
+            wrapped_start(&w);
+            fill_wrapped(&w, 30);
+            for (int i = 0; i < 3; i++) {
+                draw_wish(&w, i == 2 ? 0 : 1, 8, 1, &v); /* the origin is one of those that go */
+                EXPECT(make_wish(&w, &v) == BRIO_OK, "%s", brio_message(w.ctx));
+                note_wish(&w, &v);
+                EXPECT(is_as_fresh(&w), "cell %d, open %d, change %d", cell, open, i);
+            }
+            EXPECT(are_in_place(&w));
+            wrapped_free(&w);
+        }
+}
+
+/* A slab whose first points are in one cell, which is another one than that in which they are near their origin: the
+ * grid did not reach these. */
+static void the_first_points_are_not_too_far_for_their_grid(void) {
+    static const double CELL[9] = {1, 1, 1, -1, 1, 1},
+                        POINTS[6] = {0, 0, 0, 0.26358238452267102, -1.0952636551093196, -2.1502671300587517};
+    wrapped w = wrapped_new(UNIFORM, 0, 0, 4, 8);
+    memcpy(w.cell, CELL, sizeof CELL);
+    for (int small = 0; small < 2; small++) {
+        brio_dynamic_periodic *d;
+        w.options.cell = w.cell, w.options.reach = small ? 1e-3 : 0;
+        EXPECT(brio_dynamic_periodic_new(w.ctx, POINTS, NULL, 2, &w.options, &d) == BRIO_OK, "%s", brio_message(w.ctx));
+        brio_dynamic_periodic_free(d);
+    }
+    wrapped_free(&w);
+}
+
+/* Two points at both ends of what the grid reaches, after the one between them, its origin, went: a fresh build found
+ * them a vector too far from each other, and took a coarser grid. */
+static void points_at_the_ends_of_the_reach_have_the_same_grid(void) {
+    static const double CELL[9] = {-1, 0.8, 0}, FIRST[3] = {0, 0, 0};
+    wrapped w = wrapped_new(UNIFORM, 0, 0, 6, 8);
+    uint32_t none = 0;
+    memcpy(w.cell, CELL, sizeof CELL);
+    w.options.reach = 64;
+    wrapped_start(&w);
+    EXPECT(brio_dynamic_periodic_insert(w.d, FIRST, NULL, 1, NULL) == BRIO_OK);
+    for (int end = -1; end < 2; end += 2)
+        for (double far = 33; far > 28; far -= 0.125) { /* the farthest that is taken */
+            double share = end < 0 ? 0.9 : 0.05;
+            double p[3] = {0.8 * end * far - share, end * far + 0.8 * share, 0};
+            if (brio_dynamic_periodic_insert(w.d, p, NULL, 1, NULL) == BRIO_OK) break;
+        }
+    EXPECT(brio_dynamic_periodic_remove(w.d, &none, 1) == BRIO_OK);
+    w.num_indices = 3, w.num_points = 2;
+    brio_periodic *fresh = build_fresh(&w);
+    for (int k = 0; k < 3; k++) EXPECT(fresh->lattice.unit[k] == w.d->lattice.unit[k], "coordinate %d", k);
+    brio_periodic_free(fresh);
+    wrapped_free(&w);
+}
+
 /* --- failures --- */
 
 /* All points move together, and memory runs out when some translates come and go: their records were written without
@@ -346,6 +407,9 @@ SUITE(test_dynamic_periodic) {
     RUN(points_drift_round_the_box);
     RUN(translates_that_come_and_go_need_no_room);
     RUN(points_at_one_place_have_one_vertex);
+    RUN(positions_in_a_cell_off_the_grid_come_back);
+    RUN(the_first_points_are_not_too_far_for_their_grid);
+    RUN(points_at_the_ends_of_the_reach_have_the_same_grid);
     RUN(failures_after_a_move_of_all_leave_all);
     RUN(failures_leave_all);
     RUN(memory_that_runs_out_is_reported);

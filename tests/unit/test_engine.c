@@ -194,8 +194,33 @@ static void no_move_within_the_slack_breaks_a_star(void) {
                 hold_slacks(brio_engine_choose(weighted), weighted, wide);
 }
 
+/* A vertex behind the first facet whose lift is no number: infinity less infinity. It left no trace in what was found
+ * of the other facets, and a tetrahedron in conflict was told to be sound. */
+static void a_lift_that_is_no_number_is_not_sound(void) {
+    static brio_record record[SOUND_ROWS];
+    static brio_tetrahedron tets[5 * BRIO_BATCH];
+    brio_tetrahedra t = {.tet = tets, .count = 5 * BRIO_BATCH, .infinite = INFINITE_ROW, .record = record};
+    brio_rng rng = brio_rng_new(5);
+    for (int set = 0; set < BRIO_INSTRUCTION_SETS; set++)
+        for (uint32_t facet = 0; facet < 4 && use_set(set); facet++) {
+            uint32_t which[BRIO_BATCH];
+            double slack[BRIO_BATCH];
+            brio_filter filter;
+            draw_stars(&rng, true, record, tets);
+            for (uint32_t i = 0; i < BRIO_BATCH; i++) {
+                double *far = record[8 * i + 4 + facet];
+                which[i] = i;
+                for (int v = 0; v < 8; v++) record[8 * i + (uint32_t)v][3] = -1.7e308;
+                far[0] = 1.4e154, far[1] = far[2] = 0, far[3] = 1.7e308;
+            }
+            brio_filter_for(&filter, (const brio_record *)record, INFINITE_ROW, true);
+            EXPECT(brio_engine_choose(true)->sound(&t, &filter, which, slack) == 0, "facet %u", facet);
+        }
+}
+
 SUITE(test_engine) {
     RUN(exactly_cospherical_points_are_ties_in_lanes_too);
     RUN(no_move_within_the_slack_breaks_a_star);
+    RUN(a_lift_that_is_no_number_is_not_sound);
     return harness_end();
 }

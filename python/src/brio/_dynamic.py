@@ -189,8 +189,8 @@ class PeriodicDynamicDelaunay(DynamicDelaunay):
     periodic : str or three truth values
         The directions that repeat: "xy" is a slab.
     reach : float, optional
-        Where not all directions repeat: points may be half of it away from the first ones, in coordinates in which
-        vectors of the cell go anywhere. The grid is as much coarser.
+        Where not all directions repeat: points may be half of it, less the vectors of the cell, away from the first
+        ones, in coordinates in which vectors of the cell go anywhere. The grid is as much coarser.
 
     Attributes
     ----------
