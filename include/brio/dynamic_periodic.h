@@ -51,7 +51,7 @@ typedef struct brio_dynamic_periodic_stats {
  *  out      owned by the caller, freed with brio_dynamic_periodic_free before the context; NULL on error. All later
  *           calls work with this context.
  *  Memory: that of a brio_dynamic of the points and the translates within 2.5 spacings of the domain, and 12 bytes for
- *  each of these and 48 for each index.
+ *  each of these and 48 for each index; while a snapshot answers questions, it and 16 bytes a tetrahedron.
  *  Returns BRIO_OK, and as brio_delaunay_periodic. */
 BRIO_API brio_status brio_dynamic_periodic_new(brio_context *ctx, const double *points, const double *weights,
                                                size_t num_points, const brio_periodic_options *options,

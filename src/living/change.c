@@ -19,7 +19,9 @@ void brio_wrapped_forget(brio_dynamic_periodic *d) {
     brio_periodic_free(d->snapshot);
     brio_release(d->ctx, d->place);
     brio_release(d->ctx, d->index);
-    d->locator = NULL, d->snapshot = NULL, d->place = d->index = NULL;
+    brio_release(d->ctx, d->star_begin);
+    brio_release(d->ctx, d->star);
+    d->locator = NULL, d->snapshot = NULL, d->place = d->index = d->star = NULL, d->star_begin = NULL;
 }
 
 void brio_wrapped_clear(brio_dynamic_periodic *d) {

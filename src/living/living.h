@@ -44,6 +44,8 @@ struct brio_dynamic_periodic {
     brio_periodic *snapshot;                      /* for questions; NULL where there is none */
     brio_periodic_locator *locator;
     uint32_t *place, *index; /* of the snapshot: the place of each index, and the index of each place */
+    size_t *star_begin;      /* of the snapshot: where the corners of each place begin in `star` */
+    uint32_t *star;          /* 4 tetrahedron + vertex */
     brio_image *list;        /* what neighbours were listed last */
     size_t list_capacity;
 };

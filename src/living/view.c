@@ -239,6 +239,19 @@ static bool are_proven(const brio_dynamic_periodic *d, const uint32_t *tets, siz
     return true;
 }
 
+/* Lists the corners of tetrahedra of the snapshot by the places of their points. */
+static brio_status list_stars(brio_dynamic_periodic *d) {
+    const brio_periodic *t = d->snapshot;
+    size_t corners = 4 * t->stats.tetrahedra;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(d->ctx, d->star_begin, d->alive + 2));
+    BRIO_FORWARD(BRIO_ALLOC(d->ctx, d->star, corners + 1));
+    for (size_t i = 0; i < corners; i++) d->star_begin[t->shown[t->tet[i / 4].vertex[i % 4]].point + 2]++;
+    for (size_t p = 0; p < d->alive; p++) d->star_begin[p + 2] += d->star_begin[p + 1];
+    for (size_t i = 0; i < corners; i++)
+        d->star[d->star_begin[t->shown[t->tet[i / 4].vertex[i % 4]].point + 1]++] = (uint32_t)i;
+    return BRIO_OK;
+}
+
 /* Makes the snapshot for questions, where there is none. */
 static brio_status need_snapshot(brio_dynamic_periodic *d) {
     brio_status status = BRIO_OK;
@@ -247,6 +260,7 @@ static brio_status need_snapshot(brio_dynamic_periodic *d) {
     BRIO_TRY(brio_periodic_locator_new(d->ctx, d->snapshot, &d->locator));
     BRIO_TRY(BRIO_ALLOC(d->ctx, d->place, d->num_points + 1));
     for (uint32_t p = 0; p < d->alive; p++) d->place[d->index[p]] = p;
+    BRIO_TRY(list_stars(d));
     d->snapshots++;
 done:
     if (status != BRIO_OK) brio_wrapped_forget(d);
@@ -316,10 +330,11 @@ static brio_status list_from_snapshot(brio_dynamic_periodic *d, uint32_t index, 
     const brio_periodic *t = d->snapshot;
     uint32_t place = d->place[index];
     size_t kept = 0;
-    for (size_t i = 0; i < 16 * t->stats.tetrahedra; i++) {
-        const uint32_t *v = t->tet[i / 16].vertex;
-        const brio_image *own = &t->shown[v[i / 4 % 4]], *other = &t->shown[v[i % 4]];
-        if (own->point != place || i / 4 % 4 == i % 4) continue;
+    for (size_t i = 4 * d->star_begin[place]; i < 4 * d->star_begin[place + 1]; i++) {
+        uint32_t corner = d->star[i / 4];
+        const uint32_t *v = t->tet[corner / 4].vertex;
+        const brio_image *own = &t->shown[v[corner % 4]], *other = &t->shown[v[i % 4]];
+        if (corner % 4 == i % 4) continue;
         brio_image image = {.point = d->index[other->point]};
         for (int k = 0; k < 3; k++) image.shift[k] = other->shift[k] - own->shift[k];
         BRIO_FORWARD(list_one(d, count, &image));

@@ -357,7 +357,7 @@ static int holds(const wrapped *w, const brio_image v[4], const double *x) {
 
 static void questions_are_answered_between_changes(void) {
     for (int turn = 0; turn < (SHORT_TESTS ? 6 : 12); turn++) {
-        int open = turn % 4 == 3 ? 4 : 0, few = turn % 3 == 2;
+        int open = turn % 4 == 3 || turn == 5 ? 4 : 0, few = turn % 3 == 2;
         wrapped w = wrapped_new(turn % 5 == 4 ? GRID : UNIFORM, turn % 2, turn / 2 % 2, open, 3000);
         wrapped_start(&w);
         fill_wrapped(&w, few ? 1 + (size_t)turn % 3 : 250);
@@ -381,6 +381,23 @@ static void questions_are_answered_between_changes(void) {
         brio_periodic_free(fresh);
         wrapped_free(&w);
     }
+}
+
+/* At the hull of a slab each question read all tetrahedra of the snapshot. */
+static void a_question_reads_the_star_of_its_point(void) {
+    wrapped w = wrapped_new(UNIFORM, 0, 0, 4, 200);
+    const brio_image *neighbours;
+    size_t count, wrong = 0;
+    wrapped_start(&w);
+    fill_wrapped(&w, 200);
+    for (uint32_t i = 0; i < 200; i++) EXPECT(brio_dynamic_periodic_neighbours(w.d, i, &neighbours, &count) == BRIO_OK);
+    const brio_periodic *t = w.d->snapshot;
+    EXPECT(t && w.d->snapshots == 1 && w.d->star_begin[200] == 4 * t->stats.tetrahedra);
+    for (uint32_t p = 0; t && p < 200; p++)
+        for (size_t i = w.d->star_begin[p]; i < w.d->star_begin[p + 1]; i++)
+            wrong += t->shown[t->tet[w.d->star[i] / 4].vertex[w.d->star[i] % 4]].point != p;
+    EXPECT(wrong == 0, "%zu corners", wrong);
+    wrapped_free(&w);
 }
 
 /* In uniform points nearly all questions are answered without a snapshot. */
@@ -415,6 +432,7 @@ SUITE(test_dynamic_periodic) {
     RUN(memory_that_runs_out_is_reported);
     RUN(wrong_arguments_are_refused);
     RUN(questions_are_answered_between_changes);
+    RUN(a_question_reads_the_star_of_its_point);
     RUN(few_questions_need_a_snapshot);
     return harness_end();
 }
