@@ -5,7 +5,6 @@ import json
 import os
 import resource
 import subprocess
-import time
 
 from brio_cli import BRIO, CliTest, CUBE, main
 
@@ -26,10 +25,9 @@ class Memory(CliTest):
 
     def test_estimate_over_the_limit_is_refused_before_the_start(self):
         points = self.cloud("a.ply", 200000)
-        start = time.monotonic()
-        run = self.expect(4, "delaunay", points, "--max-memory", "20M")
+        run = self.expect(4, "delaunay", points, "--max-memory", "20M", "--progress")
         self.assertRegex(run.err, "about .* needed")
-        self.assertLess(time.monotonic() - start, 2)
+        self.assertNotIn("insert", run.err)
 
     def assert_estimated(self, estimate, *arguments):
         peak = self.facts(*arguments)["peak_bytes"]
