@@ -76,7 +76,8 @@ typedef struct brio_cells {
  *  Cost: linear in the tetrahedra, beside brio_delaunay; about 52 bytes a tetrahedron, 110 a cell, 24 a point (32 with
  *  weights), and for faces 130 a face, 70 more with vertices. Least without areas, centroids and faces, or with faces
  *  but without their sizes: then a sweep over the tetrahedra gives the volumes, and one over the stars the neighbours,
- *  in less time than brio_delaunay takes. Cells for which the bound of the sweep's error is more than 2^-36 of the
+ *  in less time than brio_delaunay takes and, of evenly spread points, about 390 bytes a point, 940 with neighbours.
+ *  Cells for which the bound of the sweep's error is more than 2^-36 of the
  *  volume, clipped ones and those with ties are computed as the others.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (t has another number of points; the region is empty, too flat, unbounded, or too
  *  small or, 2^600 times, too large beside the points), BRIO_ERR_NO_ANSWER (see Accuracy), and as brio_delaunay.

@@ -529,6 +529,30 @@ static void volumes_alone_equal_those_with_faces(void) {
     brio_context_free(ctx);
 }
 
+/* What brio/cells.h says of the memory of a sweep holds. */
+static void sweeps_take_the_memory_that_is_told(void) {
+    enum { POINTS = 20000 };
+    static const double TOLD[2] = {390, 940};
+    static double many[3 * POINTS];
+    brio_rng rng = brio_rng_new(12);
+    for (size_t i = 0; i < 3 * POINTS; i++) many[i] = brio_rng_double(&rng);
+    for (int faces = 0; faces < 2; faces++) {
+        brio_cells_options o = {.size = sizeof o, .no_areas = 1, .no_centroids = 1, .no_face_sizes = 1};
+        brio_context *ctx = new_context();
+        brio_triangulation *t = NULL;
+        brio_cells *cells = NULL;
+        o.no_faces = !faces;
+        EXPECT(brio_delaunay(ctx, many, NULL, POINTS, NULL, &t) == BRIO_OK);
+        size_t held = brio_context_memory(ctx);
+        EXPECT(brio_voronoi_cells(ctx, t, many, NULL, POINTS, &o, &cells) == BRIO_OK);
+        double taken = (double)(brio_context_memory_peak(ctx) - held) / POINTS;
+        EXPECT(fabs(taken / TOLD[faces] - 1) <= 0.15, "%d: %g bytes a point", faces, taken);
+        brio_cells_free(cells);
+        brio_triangulation_free(t);
+        brio_context_free(ctx);
+    }
+}
+
 static void volumes_alone_have_the_same_bits_with_threads(void) {
     enum { N = BRIEF_TESTS ? 10000 : 30000 };
     brio_context *ctx = new_context();
@@ -985,6 +1009,7 @@ SUITE(test_cells) {
     RUN(bounds_of_small_tetrahedra_were_0);
     RUN(neighbours_alone_are_those_of_whole_cells);
     RUN(volumes_alone_equal_those_with_faces);
+    RUN(sweeps_take_the_memory_that_is_told);
     RUN(volumes_alone_have_the_same_bits_with_threads);
     RUN(an_offset_moves_the_cells);
     RUN(threads_give_the_same_bits);
