@@ -236,3 +236,19 @@ def test_what_fails_in_space_that_repeats_changes_nothing():
         brio.DynamicDelaunay([[0, 0, 0]], cell=[1, 1])
     assert tri.snapshot().checksum == before and len(tri) == 1
     assert len(brio.DynamicDelaunay(cell=[1, 1, 1])) == 0
+
+
+def test_derived_classes_of_space_that_repeats_are_made_whole():
+    """One of DynamicDelaunay got an object that was never initialized, one of PeriodicDynamicDelaunay not its own class."""
+    class Gas(brio.PeriodicDynamicDelaunay):
+        pass
+
+    class Open(brio.DynamicDelaunay):
+        pass
+
+    points = np.random.default_rng(3).random((20, 3))
+    gas = Gas(points, cell=[1, 1, 1])
+    assert type(gas) is Gas and gas.snapshot().checksum == brio.Delaunay(points, cell=[1, 1, 1]).checksum
+    assert type(Open(points)) is Open
+    with pytest.raises(TypeError, match="derived from PeriodicDynamicDelaunay"):
+        Open(points, cell=[1, 1, 1])

@@ -65,7 +65,11 @@ class DynamicDelaunay:
     """
 
     def __new__(cls, points: Any = None, weights: Any = None, *, cell: Any = None, **options: Any) -> Any:
-        return object.__new__(cls if cell is None else PeriodicDynamicDelaunay)
+        if cell is None or issubclass(cls, PeriodicDynamicDelaunay):
+            return object.__new__(cls)
+        if cls is not DynamicDelaunay:
+            raise TypeError("%s with cell=: a class for space that repeats is derived from PeriodicDynamicDelaunay" % cls.__name__)
+        return object.__new__(PeriodicDynamicDelaunay)
 
     def __init__(self, points: Any = None, weights: Any = None, *, cell: Any = None, weighted: bool = False, threads: int = 0,
                  progress: bool | Progress | None = None) -> None:
