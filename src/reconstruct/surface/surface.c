@@ -84,11 +84,12 @@ static void drop_explanation(const brio_surface_options *o) {
     *o->explanation = NULL;
 }
 
-/* Estimates how many positions points have: counts those whose hash is a multiple of a number. With over KEPT of them
- * in the sample, all points have positions of their own, as far as that matters. */
-static double count_positions(const double *points, size_t num_points) {
-    enum { ROOM = 1 << 11, KEPT = ROOM / 4 * 3 };
-    uint64_t seen[ROOM] = {0}, step = num_points / (KEPT / 2) + 1;
+/* Of a sample of positions. With over KEPT all points count as if they had positions of their own. */
+enum { ROOM = 1 << 11, KEPT = ROOM / 4 * 3 };
+
+/* Estimates how many positions points have: counts those whose hash is a multiple of a number.   seen  ROOM zeros. */
+static double count_positions(const double *points, size_t num_points, uint64_t *seen) {
+    uint64_t step = num_points / (KEPT / 2) + 1;
     size_t count = 0;
     for (size_t i = 0; i < num_points; i++) {
         uint64_t hash = brio_position_hash(points + 3 * i), at = brio_mix(hash) % ROOM;
@@ -109,10 +110,12 @@ static double disk_bytes(double num_points, const brio_surface_options *o) {
  * given twice need it once; they are looked for only where it matters. */
 static brio_status require_disk(brio_context *ctx, const double *points, size_t num_points,
                                 const brio_surface_options *o) {
-    uint64_t room;
+    uint64_t room, *seen; /* not on the stack, of which callers may have 64 KiB */
     double need = disk_bytes((double)num_points, o);
     if (!brio_scratch_room(ctx, &room) || SURE * need <= (double)room) return BRIO_OK;
-    need = disk_bytes(count_positions(points, num_points), o);
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, seen, ROOM));
+    need = disk_bytes(count_positions(points, num_points, seen), o);
+    brio_release(ctx, seen);
     BRIO_EXPECT(ctx, SURE * need <= (double)room, BRIO_ERR_NO_MEMORY,
                 "%s: %zu points need about %.0f MB of scratch files, and this disk has room for %.0f MB", ctx->scratch,
                 num_points, need / 1e6, (double)room / 1e6);
