@@ -162,22 +162,31 @@ brio_status brio_dynamic_insert(brio_dynamic *d, const double *points, const dou
 
 /* --- remove --- */
 
-/* Checks that each index is that of a point that is there, and none is twice. */
-static brio_status check_indices(brio_dynamic *d, const uint32_t *indices, size_t n) {
+brio_status brio_live_check_indices(brio_context *ctx, const uint32_t *indices, size_t n, size_t num_names,
+                                    bool (*there)(const void *user, uint32_t index), const void *user) {
     uint64_t *seen = NULL;
     brio_status status = BRIO_OK;
-    if (n > 1) BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, seen, d->num_names / 64 + 1));
+    if (n > 1) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, seen, num_names / 64 + 1));
     for (size_t i = 0; i < n; i++) {
-        BRIO_REQUIRE(d->ctx, indices[i] < d->num_names && d->row_of[indices[i]] != BRIO_NONE, BRIO_ERR_ARGUMENT,
+        BRIO_REQUIRE(ctx, indices[i] < num_names && there(user, indices[i]), BRIO_ERR_ARGUMENT,
                      "index %zu: there is no point %u", i, indices[i]);
         if (!seen) continue;
         uint64_t bit = UINT64_C(1) << indices[i] % 64, *word = &seen[indices[i] / 64];
-        BRIO_REQUIRE(d->ctx, !(*word & bit), BRIO_ERR_ARGUMENT, "index %zu: point %u is there twice", i, indices[i]);
+        BRIO_REQUIRE(ctx, !(*word & bit), BRIO_ERR_ARGUMENT, "index %zu: point %u is there twice", i, indices[i]);
         *word |= bit;
     }
 done:
-    brio_release(d->ctx, seen);
+    brio_release(ctx, seen);
     return status;
+}
+
+static bool is_there(const void *user, uint32_t index) {
+    const brio_dynamic *d = user;
+    return d->row_of[index] != BRIO_NONE;
+}
+
+static brio_status check_indices(brio_dynamic *d, const uint32_t *indices, size_t n) {
+    return brio_live_check_indices(d->ctx, indices, n, d->num_names, is_there, d);
 }
 
 static brio_status remove_anew(brio_dynamic *d, const uint32_t *indices, size_t n) {

@@ -243,6 +243,10 @@ static inline bool brio_in_hole(const brio_dynamic *d, uint32_t slot) {
 
 /* --- store.c --- */
 
+/** Checks the indices of a call: each is below `num_names` and that of a point that is there, and none is twice.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY. */
+brio_status brio_live_check_indices(brio_context *ctx, const uint32_t *indices, size_t n, size_t num_names,
+                                    bool (*there)(const void *user, uint32_t index), const void *user);
 /** Makes an empty one. */
 brio_status brio_live_new(brio_context *ctx, bool weighted, brio_dynamic **out);
 /** Makes room for more rows, names, slots, tetrahedra of the hole: a number of each. */

@@ -62,22 +62,13 @@ static brio_status wrap(brio_dynamic_periodic *d, const double *point, size_t i,
 
 /* --- edits --- */
 
-/* Checks that each index is that of a point that is there, and none is twice. */
+static bool is_there(const void *user, uint32_t index) {
+    const brio_dynamic_periodic *d = user;
+    return d->point[index].first != BRIO_NONE;
+}
+
 static brio_status check_indices(brio_dynamic_periodic *d, const uint32_t *indices, size_t n) {
-    uint64_t *seen = NULL;
-    brio_status status = BRIO_OK;
-    if (n > 1) BRIO_TRY(BRIO_ALLOC_ZERO(d->ctx, seen, d->num_points / 64 + 1));
-    for (size_t i = 0; i < n; i++) {
-        BRIO_REQUIRE(d->ctx, indices[i] < d->num_points && d->point[indices[i]].first != BRIO_NONE, BRIO_ERR_ARGUMENT,
-                     "index %zu: there is no point %u", i, indices[i]);
-        if (!seen) continue;
-        uint64_t bit = UINT64_C(1) << indices[i] % 64, *word = &seen[indices[i] / 64];
-        BRIO_REQUIRE(d->ctx, !(*word & bit), BRIO_ERR_ARGUMENT, "index %zu: point %u is there twice", i, indices[i]);
-        *word |= bit;
-    }
-done:
-    brio_release(d->ctx, seen);
-    return status;
+    return brio_live_check_indices(d->ctx, indices, n, d->num_points, is_there, d);
 }
 
 brio_status brio_dynamic_periodic_insert(brio_dynamic_periodic *d, const double *points, const double *weights,

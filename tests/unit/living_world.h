@@ -143,16 +143,21 @@ static inline void insert_some(world *w, size_t n) {
     for (size_t i = 0; i < n; i++) enter(w, w->num_indices++, p + 3 * i, weight[i]);
 }
 
-/* Draws indices of different points that are there; returns how many, at most n. */
-static inline size_t draw_indices(const world *w, size_t n, uint32_t *index) {
+/* Draws n different indices of points that are alive, where there are as many; returns how many. */
+static inline size_t draw_alive(const uint8_t *alive, size_t num_points, size_t num_indices, size_t n,
+                                uint32_t *index) {
     size_t count = 0;
-    for (size_t tries = 0; tries < 40 * n && count < n && w->num_points > 0; tries++) {
-        uint32_t i = (uint32_t)draw_below(w->num_indices);
-        int twice = !w->alive[i];
+    for (size_t tries = 0; tries < 40 * n && count < n && num_points > 0; tries++) {
+        uint32_t i = (uint32_t)draw_below(num_indices);
+        int twice = !alive[i];
         for (size_t k = 0; k < count; k++) twice |= index[k] == i;
         if (!twice) index[count++] = i;
     }
     return count;
+}
+
+static inline size_t draw_indices(const world *w, size_t n, uint32_t *index) {
+    return draw_alive(w->alive, w->num_points, w->num_indices, n, index);
 }
 
 static inline void remove_some(world *w, size_t n) {

@@ -65,18 +65,6 @@ static inline void draw_wrapped(const wrapped *w, double p[4]) {
     p[3] = w->weighted ? draw_weight(w->shape) : 0;
 }
 
-/* Lists indices of points that are there, each once; returns how many, at most n. */
-static inline size_t draw_wrapped_indices(const wrapped *w, size_t n, uint32_t *index) {
-    size_t count = 0;
-    for (size_t tries = 0; tries < 40 * n && count < n && w->num_points > 0; tries++) {
-        uint32_t i = (uint32_t)draw_below(w->num_indices);
-        int twice = !w->alive[i];
-        for (size_t k = 0; k < count; k++) twice |= index[k] == i;
-        if (!twice) index[count++] = i;
-    }
-    return count;
-}
-
 /* What a change is to be: points in rows of 3, weights, indices. */
 typedef struct {
     int kind; /* 0 insert, 1 remove, 2 move, 3 reweight */
@@ -87,7 +75,7 @@ typedef struct {
 
 static inline void draw_wish(const wrapped *w, int kind, size_t n, double step, wish *out) {
     *out = (wish){.kind = kind, .count = n};
-    if (kind > 0) out->count = draw_wrapped_indices(w, n, out->index);
+    if (kind > 0) out->count = draw_alive(w->alive, w->num_points, w->num_indices, n, out->index);
     for (size_t i = 0; i < out->count; i++) {
         double p[4];
         draw_wrapped(w, p);

@@ -12,6 +12,7 @@
 #include "reconstruct/labels/label.h"
 #include "triangulation/ring.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct {
@@ -103,18 +104,15 @@ static brio_status list_opposites(work *w) {
     return BRIO_OK;
 }
 
+static int compare_keys(const void *p, const void *q) {
+    uint64_t a = *(const uint64_t *)p, b = *(const uint64_t *)q;
+    return (a > b) - (a < b);
+}
+
 /* Returns whether the surface has the triangle of the sample, a and b. */
 static bool is_taken(const work *w, uint32_t a, uint32_t b) {
     uint64_t key = edge_key(a, b);
-    size_t low = 0, high = w->opposites;
-    while (low < high) {
-        size_t middle = (low + high) / 2;
-        if (w->opposite[middle] < key)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low < w->opposites && w->opposite[low] == key;
+    return w->opposites > 0 && bsearch(&key, w->opposite, w->opposites, sizeof key, compare_keys) != NULL;
 }
 
 /* Returns the row of a sample among the vertices of the sample at work; adds it if it is not there. */

@@ -25,7 +25,7 @@ typedef struct {
     size_t num_border;
     brio_tet_flow flow;
     int32_t *wanted; /* #nodes: the weight of what wants an open tetrahedron outer, less of what wants it inner, in the
-                        last cut, but for the border */
+                        last cut, without the border */
 } brio_vote_cut;
 
 /** Makes room for cuts of a graph.
