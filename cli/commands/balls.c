@@ -5,8 +5,8 @@
 #include "cli/steps/certificate.h"
 #include "cli/steps/estimate.h"
 #include "cli/steps/weights.h"
-#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct arguments {
     weights_options weights;
@@ -47,29 +47,22 @@ static void report(run *r, const brio_ball_union_stats *s, const brio_mesh *mesh
     cli_fact_count(f, "faces", mesh->num_faces);
 }
 
-/* Returns what brings colours to 0 to 255, as pages and pictures take them: parts of 1, and numbers of 16 bits, too. */
-static double scale_of(const brio_property *const colour[3], size_t count) {
-    double most = 0;
-    for (int k = 0; k < 3; k++)
-        for (size_t i = 0; i < count; i++) most = fmax(most, brio_property_value(colour[k], i));
-    bool real = colour[0]->type == BRIO_SCALAR_FLOAT32 || colour[0]->type == BRIO_SCALAR_FLOAT64;
-    return real && most <= 1 ? 255 : most > 255 ? 255 / 65535.0 : 1;
-}
-
-/* Gives faces the colours of their balls, where these have some. */
+/* Gives faces the colours of their balls, where these have some, in their type: what writes or shows them knows the
+ * depths of all types. */
 static brio_status colour_faces(run *r, const brio_mesh *input, brio_mesh *mesh) {
     static const char *const names[] = {"red", "green", "blue"};
-    const brio_property *from[3];
-    for (int k = 0; k < 3; k++) from[k] = brio_mesh_property(input, names[k]);
-    if (!from[0] || !from[1] || !from[2]) return BRIO_OK;
-    double scale = scale_of(from, input->num_vertices);
+    const brio_metadata *depth = brio_mesh_metadata(input, "colour.depth");
+    if (depth) FORWARD(brio_mesh_set_metadata(mesh, depth->name, depth->bytes, depth->size));
     for (int k = 0; k < 3; k++) {
+        const brio_property *from = brio_mesh_property(input, names[k]);
         uint8_t *to;
-        FORWARD(brio_mesh_add_face_property(mesh, names[k], BRIO_SCALAR_UINT8, (void **)&to));
+        if (!from) continue;
+        FORWARD(brio_mesh_add_face_property(mesh, names[k], from->type, (void **)&to));
         const brio_property *ball = brio_mesh_face_property(mesh, "ball");
+        size_t size = brio_scalar_size(from->type);
         for (size_t f = 0; f < mesh->num_faces; f++) {
-            double value = rint(scale * brio_property_value(from[k], (size_t)brio_property_value(ball, f)));
-            to[f] = (uint8_t)(value > 255 ? 255 : value > 0 ? value : 0);
+            size_t row = (size_t)brio_property_value(ball, f);
+            memcpy(to + size * f, (const uint8_t *)from->data + size * row, size);
         }
     }
     return cli_check_interrupt(r);

@@ -31,14 +31,15 @@ class Balls(CliTest):
         self.assertEqual({tuple(f[4:]) for f in faces}, {("0", "200", "10", "30"), ("1", "0", "90", "255")})
 
     def test_colours_of_16_bits_were_white_and_parts_of_1_black(self):
+        """Faces take colours as they are; how deep these are, the writer tells: PLY has bytes."""
         out = self.path("out.ply")
-        for rows, seen in (("0,0,0,1,0.5,0,1\n1,0,0,1,nan,-1,0.2\n", {("0", "128", "0", "255"), ("1", "0", "0", "51")}),
-                           ("0,0,0,1,65535,257,0\n1,0,0,1,25700,0,514\n", {("0", "255", "1", "0"), ("1", "100", "0", "2")})):
+        for rows, seen in (("0,0,0,1,0.5,0,1\n1,0,0,1,0.25,0,0.5\n", {(0, 128, 0, 255), (1, 64, 0, 128)}),
+                           ("0,0,0,1,65535,257,0\n1,0,0,1,25700,0,514\n", {(0, 255, 1, 0), (1, 100, 0, 2)})):
             self.expect(0, "balls", self.file("a.csv", "x,y,z,radius,red,green,blue\n" + rows), "-o", out, "--error", "0.1", "--ascii", "--quiet")
             with open(out, encoding="ascii") as f:
                 text = f.read()
             faces = text.splitlines()[-int(re.search(r"element face (\d+)", text).group(1)):]
-            self.assertEqual({tuple(row.split()[4:]) for row in faces}, seen)
+            self.assertEqual({tuple(map(float, row.split()[4:])) for row in faces}, seen)
 
     def test_weights_are_squares_and_may_be_in_a_file(self):
         points, weights = self.xyz("a.xyz", [(0, 0, 0), (5, 0, 0)]), self.file("w.txt", "4\n1\n")

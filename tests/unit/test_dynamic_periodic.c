@@ -277,12 +277,17 @@ static void wrong_arguments_are_refused(void) {
     wrapped w = wrapped_new(UNIFORM, 0, 2, 4, 8);
     wrapped_start(&w);
     brio_dynamic_periodic *other;
+    const uint32_t gone = 1;
     EXPECT(brio_dynamic_periodic_insert(w.d, P, NULL, 1, NULL) == BRIO_OK);
     EXPECT(brio_dynamic_periodic_insert(w.d, FAR, NULL, 1, NULL) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_dynamic_periodic_insert(w.d, P, WEIGHT, 1, NULL) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_dynamic_periodic_insert(w.d, (double[3]){NAN, 0, 0}, NULL, 1, NULL) == BRIO_ERR_NOT_FINITE);
     EXPECT(brio_dynamic_periodic_remove(w.d, twice, 2) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_dynamic_periodic_remove(w.d, &none, 1) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_periodic_insert(w.d, P, NULL, 1, NULL) == BRIO_OK);
+    EXPECT(brio_dynamic_periodic_remove(w.d, &gone, 1) == BRIO_OK);
+    EXPECT(brio_dynamic_periodic_remove(w.d, &gone, 1) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_dynamic_periodic_move(w.d, &gone, P, NULL, 1) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_dynamic_periodic_move(w.d, NULL, P, NULL, 2) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_dynamic_periodic_reweight(w.d, twice, WEIGHT, 1) == BRIO_ERR_ARGUMENT);
     EXPECT(brio_dynamic_periodic_new(w.ctx, NULL, NULL, 0, &(brio_periodic_options){0}, &other) == BRIO_ERR_ARGUMENT);
