@@ -119,10 +119,11 @@ static brio_status find_cells(thinning *t, double spacing) {
     return BRIO_OK;
 }
 
-/* Returns the number of a point's cell along an axis. A point that left the box during the call has some cell. */
-static inline uint64_t cell_of(const thinning *t, const double *p, int axis) {
-    double place = place_of(t, p, axis);
-    return (uint64_t)(int64_t)(place > 0 ? fmin(place, 0x1p42) : 0) + 1;
+/* Returns the number of a point's cell along the k-th axis. A point that left the box during the call has a cell at an
+ * end of it, so that the number never has more bits than are sorted. */
+static inline uint64_t cell_of(const thinning *t, const double *p, int k) {
+    double place = place_of(t, p, t->axes[k]), last = (double)((INT64_C(1) << t->bits[k]) - 2);
+    return (uint64_t)(int64_t)(place > 0 ? fmin(place, last) : 0) + 1;
 }
 
 static void find_keys(void *user, size_t begin, size_t end, int thread) {
@@ -130,7 +131,7 @@ static void find_keys(void *user, size_t begin, size_t end, int thread) {
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         uint64_t key = 0;
-        for (int k = 0; k < 3; k++) key |= cell_of(t, t->points + 3 * i, t->axes[k]) << t->shift[k];
+        for (int k = 0; k < 3; k++) key |= cell_of(t, t->points + 3 * i, k) << t->shift[k];
         t->keys[i] = key;
         t->order[i] = (uint32_t)i;
     }

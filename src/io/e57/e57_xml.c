@@ -9,7 +9,10 @@
  * Based on: ASTM E2807-11, 8 (XML section). */
 #include "base/memory.h"
 #include "io/e57/e57.h"
+
+#ifdef BRIO_HAS_EXPAT
 #include "io/number.h"
+#include <expat.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -108,10 +111,6 @@ static bool e57_field_read(brio_e57_field *field, const char *const *attributes,
 }
 
 /* --- the parser --- */
-
-#ifdef BRIO_HAS_EXPAT
-
-#include <expat.h>
 
 /* PART: bytes given to expat at a time. LONGEST: bytes of a section. TAG: bytes of a tag or a comment, which expat goes
  * through again with each part. NESTED: elements that are open below those that matter; expat keeps all. TEXT: bytes of

@@ -4,10 +4,37 @@
  * Based on: The Khronos Group. glTF 2.0 specification. ISO/IEC 12113, 2022. */
 #include "base/memory.h"
 #include "io/glb/glb.h"
+
+void brio_glb_scene_free(brio_context *ctx, brio_glb_scene *scene) {
+    for (size_t i = 0; i < scene->num_buffers; i++) brio_release(ctx, scene->buffers[i].bytes);
+    brio_release(ctx, scene->buffers);
+    brio_release(ctx, scene->views);
+    brio_release(ctx, scene->accessors);
+    brio_release(ctx, scene->attributes);
+    brio_release(ctx, scene->primitives);
+    brio_release(ctx, scene->meshes);
+    brio_release(ctx, scene->nodes);
+    brio_release(ctx, scene->children);
+    brio_release(ctx, scene->roots);
+    *scene = (brio_glb_scene){.num_roots = 0};
+}
+
+#ifndef BRIO_HAS_CJSON
+
+brio_status brio_glb_scene_read(brio_builder *b, bool on_disk, const char *text, size_t size, brio_glb_scene *scene) {
+    (void)on_disk, (void)text, (void)size, (void)scene;
+    return brio_fail(b->ctx, BRIO_ERR_FORMAT, "%s: this brio was built without cJSON, which reads glTF files", b->name);
+}
+
+#else
+#include "io/base64.h"
+#include "io/glb/json.h"
+#include "io/limits.h"
 #include "io/textrow.h"
 #include "platform/file.h"
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 /* --- buffers in other files --- */
@@ -81,9 +108,8 @@ static brio_status read_all(brio_context *ctx, int file, const char *name, char 
     return BRIO_OK;
 }
 
-/* Reads the file that a buffer names, whole. The name is a relative URI: it may be in a folder below that of the glTF
- * file,
- *  and nowhere else.
+/* Reads the file that a buffer names, whole. The name is a relative URI: it may be in a folder below that of the
+ * glTF file, and nowhere else.
  *  path     of the glTF file, for messages, too.   on_disk  whether it is a file with a folder.
  *  number   of the buffer, for messages.
  *  buffer   its size is what the JSON says; receives the bytes.
@@ -116,34 +142,6 @@ done:
 }
 
 /* --- the JSON of a file --- */
-
-void brio_glb_scene_free(brio_context *ctx, brio_glb_scene *scene) {
-    for (size_t i = 0; i < scene->num_buffers; i++) brio_release(ctx, scene->buffers[i].bytes);
-    brio_release(ctx, scene->buffers);
-    brio_release(ctx, scene->views);
-    brio_release(ctx, scene->accessors);
-    brio_release(ctx, scene->attributes);
-    brio_release(ctx, scene->primitives);
-    brio_release(ctx, scene->meshes);
-    brio_release(ctx, scene->nodes);
-    brio_release(ctx, scene->children);
-    brio_release(ctx, scene->roots);
-    *scene = (brio_glb_scene){.num_roots = 0};
-}
-
-#ifndef BRIO_HAS_CJSON
-
-brio_status brio_glb_scene_read(brio_builder *b, bool on_disk, const char *text, size_t size, brio_glb_scene *scene) {
-    (void)on_disk, (void)text, (void)size, (void)scene;
-    return brio_fail(b->ctx, BRIO_ERR_FORMAT, "%s: this brio was built without cJSON, which reads glTF files", b->name);
-}
-
-#else
-#include "io/base64.h"
-#include "io/glb/json.h"
-#include "io/limits.h"
-#include <math.h>
-#include <string.h>
 
 /* Whole numbers up to this are doubles. */
 #define MOST_WHOLE 0x1p53
