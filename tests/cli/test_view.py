@@ -400,8 +400,6 @@ class Command(ViewTest):
         self.usage("--view and the input name the same file|a page is .html", "hull", p, "--view", p)
         self.usage("--view has no meaning for check", "check", p, "--view", self.path("v.html"))
         self.usage("--view has no meaning for convert", "convert", p, self.path("q.ply"), "--view", self.path("v.html"))
-        for given in (["--tiles", 2, "--scratch", self.folder], ["--cell", "2,2,2"]):  # before the work
-            self.usage("--view: not with " + given[0], "delaunay", self.path("missing.xyz"), *given, "--view", self.path("v.html"))
         self.usage("name the same file", "hull", p, "-o", self.path("v.html"), "--view", self.path("v.html"), "--format", "ply")
         self.usage("--ascii has no meaning here", "view", p, "-o", self.path("page.html"), "--ascii")
         self.usage("too many: '13'", "view", *range(1, 14), "-o", self.path("page.html"))

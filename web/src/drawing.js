@@ -202,13 +202,12 @@ export class Drawing {
         this.values = null;
         this.expanded = false;
         if (s.source === "colours" || byFace) {
-            const list = l.colours(byFace || "v"), count = byFace ? l.meta.faces : l.meta.vertices;
-            const channels = [];
-            for (const p of list) channels.push(await l.property(byFace || "v", p));
-            const most = channels.reduce((m, c) => c.reduce((a, x) => Math.max(a, x), m), 0);
-            const real = ["float32", "float64"].includes(list[0].type), scale = real && most <= 1 ? 255 : most > 255 ? 255 / 65535 : 1;
+            const { white, channels } = l.colours(byFace || "v"), count = byFace ? l.meta.faces : l.meta.vertices;
             const rgba = new Uint8ClampedArray(4 * count).fill(255); // wrong colours do not wrap
-            channels.forEach((c, k) => { for (let i = 0; i < count; i++) rgba[4 * i + k] = c[i] * scale; });
+            for (let k = 0; k < 3; k++) {
+                const c = await l.property(byFace || "v", channels[k]);
+                for (let i = 0; i < count; i++) rgba[4 * i + k] = white === 65535 ? Math.floor(c[i] / 256) : c[i] / white * 255;
+            }
             this.mode = 1;
             this.rows = { rgba, where: byFace || "v" };
             if (byFace) await this.expand("rgba", rgba, 4);

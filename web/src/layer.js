@@ -213,11 +213,10 @@ export class Layer {
             list.push({ id: p.block, label: `${p.name} of faces`, where: "f", values: () => this.property("f", p) });
         return list;
     }
-    /** The properties that are colours, of the vertices or of the faces: three of them, or null. */
+    /** The properties that are colours, of the vertices or of the faces, and what white is in them (src/io/colour.h); or null. */
     colours(where) {
-        const list = where === "v" ? this.meta.properties : this.meta.face_properties;
-        const found = ["red", "green", "blue"].map(name => list.find(p => p.name === name));
-        return found.every(Boolean) ? found : null;
+        const [list, white] = where === "v" ? [this.meta.properties, this.meta.white] : [this.meta.face_properties, this.meta.face_white];
+        return white ? { white, channels: ["red", "green", "blue"].map(name => list.find(p => p.name === name)) } : null;
     }
 
     /** What is known of a vertex: its number in the file, its coordinates, and its properties, each with its value. */
