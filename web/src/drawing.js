@@ -5,14 +5,17 @@ import { colourOf, pictureOf } from "./explanation.js";
 
 const NOTHING = 3.4e38; // a value that is no number
 
-/** How a layer is shown, at first. */
-export function defaultState(layer) {
+/** How large the points of a cloud are at first: about three times as far as they are apart, if they fill half of the picture. */
+const sizeOf = (points, pixels) => Math.max(2, Math.min(8, Math.round(3 * Math.sqrt(0.5 * pixels / Math.max(1, points)))));
+
+/** How a layer is shown, at first, in a picture of so many pixels. */
+export function defaultState(layer, pixels) {
     const m = layer.meta, colours = layer.colours("v");
     const few = edges => Math.max(edges, m.nonmanifold) < Math.max(1000, 0.1 * m.triangles); // more would hide the faces
     const state = {
         visible: true, faces: m.triangles > 0 || m.hull > 0, points: layer.kind === "cloud", wire: false, edges: m.edges > 0,
         boundary: few(m.boundary), nonmanifold: few(m.nonmanifold), flipped: few(m.flipped), crossing: true, bridges: false,
-        flat: layer.sharp > 0.12, opacity: 1, pointSize: m.vertices < 5000 ? 6 : m.vertices < 100000 ? 4 : 3,
+        flat: layer.sharp > 0.12, opacity: 1, pointSize: layer.kind === "cloud" ? sizeOf(m.vertices, pixels) : m.vertices < 5000 ? 6 : m.vertices < 100000 ? 4 : 3,
         source: "plain", map: "viridis", low: 0, high: 1, alpha: 0.3, explode: 0, balls: false,
     };
     if (m.explanation) Object.assign(state, { explain: -1, cell: true, polar: true, cocone: true, labels: false, taken: true, power: true });
@@ -317,7 +320,7 @@ export class Drawing {
         if (this.told && b.placeC) this.toldItems(put, colours);
         if (s.points) {
             const all = l.meta.vertices, count = moving ? Math.min(all, 2 * budget) : all;
-            put("points", { count, primitive: gl.POINTS, size: s.pointSize, pick: "point" });
+            put("points", { count, primitive: gl.POINTS, size: s.pointSize, pick: "point", deep: l.kind === "cloud" && !l.normals });
         }
         return out;
     }

@@ -5,6 +5,8 @@
 import { Explanation } from "./explanation.js";
 import { bytesOf, differences, inParts, reals, trianglesOf, valuesOf } from "./decode.js";
 
+const CREASED = 0.03; // share of corners from which on a mesh has creases, not noise: chosen
+
 export class Layer {
     constructor(meta, blocks, number) {
         this.meta = meta;
@@ -172,15 +174,28 @@ export class Layer {
         });
         const step = 3 * Math.max(1, Math.floor(triangles.length / 3 / 20000));
         let far = 0, all = 0;
-        for (let t = 0; t < triangles.length; t += step) {
+        // Bit k: the face is far from the normal at its corner k.
+        const bends = t => {
+            let out = 0;
             face(t);
-            const l = Math.hypot(...normal);
-            for (let k = 0; k < 3 && l > 0; k++, all++) {
+            const l = Math.hypot(normal[0], normal[1], normal[2]);
+            for (let k = 0; k < 3 && l > 0; k++) {
                 const v = 4 * triangles[t + k];
-                far += (normal[0] * this.normals[v] + normal[1] * this.normals[v + 1] + normal[2] * this.normals[v + 2]) < 0.8 * 127 * l;
+                if (normal[0] * this.normals[v] + normal[1] * this.normals[v + 1] + normal[2] * this.normals[v + 2] < 0.8 * 127 * l) out |= 1 << k;
             }
-        }
+            return out;
+        };
+        for (let t = 0; t < triangles.length; t += step, all += 3) for (let k = 0, b = bends(t); k < 3; k++) far += b >> k & 1;
         this.sharp = all ? far / all : 0;
+        if (this.sharp > CREASED) await this.dropNormals(triangles, bends);
+    }
+    /** Leaves vertices at creases without normals: the shades of a face are its own there. */
+    async dropNormals(triangles, bends) {
+        const at = new Uint8Array(this.meta.vertices);
+        await inParts(triangles.length / 3, (from, to) => {
+            for (let t = 3 * from; t < 3 * to; t += 3) for (let k = 0, b = bends(t); b >> k; k++) if (b >> k & 1) at[triangles[t + k]] = 1;
+        });
+        await inParts(at.length, (from, to) => { for (let v = from; v < to; v++) if (at[v]) this.normals.fill(0, 4 * v, 4 * v + 3); });
     }
     async takeNormals() {
         const list = ["nx", "ny", "nz"].map(name => this.meta.properties.find(p => p.name === name));

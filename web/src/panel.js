@@ -135,7 +135,7 @@ export function layerPanel(drawing, app) {
         shown.draw();
         range.append(labelled("Colour map", map), shown.canvas, make("div", { className: "pair" }, number("low", "from"), number("high", "to")));
     };
-    const sources = [["plain", "one colour"], layer.colours("v") && ["colours", "colours of the file"], layer.colours("f") && ["face-colours", "colours of the faces"],
+    const sources = [["plain", "one colour"], layer.colours("v") && ["colours", "colours of the file"], layer.colours("f") && ["face-colours", "colours of faces"],
         ...layer.sources().map(s => [s.id, s.label])].filter(Boolean);
     const source = make("select", {
         onchange: async e => { state.source = e.target.value; await app.recolour(drawing); refresh(); app.redraw(); },
