@@ -94,7 +94,8 @@ static bool is_speck(const facet *f, double area) {
     double longest = 0;
     for (int k = 0; k < 3; k++) {
         const double *a = f->p[k], *b = f->p[(k + 1) % 3];
-        longest = fmax(longest, (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+        longest = fmax(longest,
+                       (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
     }
     return area < THIN * longest && longest < SHORT * SHORT * BRIO_SAMPLES * BRIO_SAMPLES;
 }
