@@ -51,7 +51,7 @@ export class App {
     async show(source) {
         const metas = [...source.querySelectorAll("script.layer")].map(e => JSON.parse(e.textContent, plain));
         if (!globalThis.DecompressionStream && source.querySelector('script[data-packed="1"]')) throw new Error("This browser is too old for the page: it cannot decompress (DecompressionStream). Browsers of 2023 and later can.");
-        document.title = at("title").textContent = this.title || metas.map(m => m.name || "layer").join(", ");
+        document.title = at("title").textContent = this.title || metas.map(m => m.name).filter(Boolean).join(", ") || "brio";
         const layers = [];
         for (const [i, meta] of metas.entries()) {
             this.say(`Reading ${meta.name || `layer ${i + 1}`}`);

@@ -15,6 +15,7 @@ export class Layer {
         this.cache = new Map();
         this.kind = meta.tetrahedra ? "tetrahedra" : meta.triangles ? "mesh" : meta.edges ? "edges" : "cloud";
     }
+    get name() { return this.meta.name || `layer ${this.number + 1}`; }
     has(name) { return name in this.blocks; }
 
     /** Coordinate k of a step, in halves: boxes may be wider than the largest double. */

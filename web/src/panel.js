@@ -101,7 +101,7 @@ function explanationPanel(drawing, app, tick) {
 
 /** The part of the panel about one layer.   app  has redraw() and recolour(drawing). */
 export function layerPanel(drawing, app) {
-    const { layer, state } = drawing, m = layer.meta, name = m.name || `layer ${layer.number + 1}`;
+    const { layer, state } = drawing, m = layer.meta, name = layer.name;
     const tick = (key, words, there, then = () => {}) => there ? labelled(words, make("input", {
         type: "checkbox", checked: state[key], onchange: async e => { state[key] = e.target.checked; await then(); app.redraw(); },
     })) : null;
