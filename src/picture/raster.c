@@ -15,7 +15,7 @@
 enum { ROWS = 16, MOST_ROWS = 64, BANDS = 64 };
 
 /* Lines: half their width, by how much they are nearer than what they lie on; both in pixels. */
-static const double LINE = 0.75, EDGE_LINE = 0.55, MARK = 1.25, NEARER = 1.5;
+static const double LINE = 0.75, LINE_ON_FACES = 0.4, EDGE_LINE = 0.55, MARK = 1.25, NEARER = 1.5;
 
 static const brio_rgb KINDS[] = {[BRIO_LINE_BOUNDARY] = {{26, 158, 255}},
                                  [BRIO_LINE_NONMANIFOLD] = {{255, 61, 166}},
@@ -211,7 +211,8 @@ static void draw_triangle(band *b, const brio_drawn_mesh *d, size_t t) {
 static void draw_line(band *b, const brio_drawn_mesh *d, size_t i) {
     const double *p = d->place[d->shapes.end[i][0]], *q = d->place[d->shapes.end[i][1]];
     brio_line_kind kind = (brio_line_kind)d->shapes.kind[i];
-    const double half = BRIO_SAMPLES * (kind == BRIO_LINE_EDGE ? LINE : MARK), dx = q[0] - p[0], dy = q[1] - p[1];
+    const double line = d->shapes.num_triangles ? LINE_ON_FACES : LINE;
+    const double half = BRIO_SAMPLES * (kind == BRIO_LINE_EDGE ? line : MARK), dx = q[0] - p[0], dy = q[1] - p[1];
     const double square = dx * dx + dy * dy;
     double ends[2][3];
     float colour[2][3];

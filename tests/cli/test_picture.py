@@ -210,6 +210,12 @@ class Shows(PictureTest):
         self.assertGreater(sum(p != BACKGROUND for row in rows for p in row), 4000)
         self.assertGreater(len({p for row in rows for p in row}), 40, "facets of many directions, not one side of a cube")
 
+    def test_a_complex_was_hidden_by_marks_of_faults_that_are_none(self):
+        rows, _ = self.picture(self.cloud("scan.ply", 300, "scan"), command="medial", size="180x120")
+        colours = {p for row in rows for p in row}
+        self.assertFalse(colours & {BOUNDARY, (255, 61, 166), (242, 217, 26)}, "marks")
+        self.assertFalse(any(r > b + 30 for r, g, b in colours), "another side")
+
     def test_edges_are_lines(self):
         rows, _ = self.picture(self.cloud("c.xyz", 50), command="tree", size="160x120")
         dark = sum(max(p) < 160 for row in rows for p in row)

@@ -11,7 +11,7 @@ const sizeOf = (points, pixels) => Math.max(2, Math.min(8, Math.round(3 * Math.s
 /** How a layer is shown, at first, in a picture of so many pixels. */
 export function defaultState(layer, pixels) {
     const m = layer.meta, colours = layer.colours("v");
-    const few = edges => Math.max(edges, m.nonmanifold) < Math.max(1000, 0.1 * m.triangles); // more would hide the faces
+    const few = edges => edges < layer.many && layer.sided; // more would hide the faces
     const state = {
         visible: true, faces: m.triangles > 0 || m.hull > 0, points: layer.kind === "cloud", wire: false, edges: m.edges > 0,
         boundary: few(m.boundary), nonmanifold: few(m.nonmanifold), flipped: few(m.flipped), crossing: true, bridges: false,
@@ -291,7 +291,9 @@ export class Drawing {
         if (!s.visible) return out;
         const put = (program, more) => out.push({ drawing: this, program, set: "", index: null, primitive: gl.TRIANGLES, mode: single,
             colour: this.colour, size: 1, lit: true, back: true, opacity: s.opacity, ...more });
+        const stroke = colours.background[0] > 0.5 ? this.colour.map(c => 0.55 * c) : this.colour; // lines of one colour stand out from the background
         const thin = this.told ? { veil: true, opacity: Math.min(s.opacity, 0.22) } : {}; // so that what is told of a sample is seen
+        const back = l.sided; // of faces without sides both look alike
         const solid = l.triangles.length ? "triangles" : "hull", apart = s.explode > 0 && b.placeE;
         if (s.faces && l.filtration) {
             if (b.shape.count) put("faces", { index: "shape", pick: "shape", mode: this.expanded ? 0 : this.mode });
@@ -299,9 +301,9 @@ export class Drawing {
             if (s.wire && b.shapeWire.count) put("lines", { index: "shapeWire", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, opacity: 0.55 });
         } else if (s.faces && apart) put("faces", { set: "E", mode: b.valueE || b.rgbaE ? this.mode : 0, count: b.placeE.count / 3, pick: "piece", uncut: true });
         else if (s.faces && b[solid]) {
-            if (moving && b.coarse) put("faces", { index: "coarse", pick: false, ...thin });
-            else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner", ...thin });
-            else put("faces", { index: solid, pick: "triangle", ...thin });
+            if (moving && b.coarse) put("faces", { index: "coarse", pick: false, back, ...thin });
+            else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner", back, ...thin });
+            else put("faces", { index: solid, pick: "triangle", back, ...thin });
         }
         if (s.balls && b.spheres) put("balls", { spheres: "spheres", count: b.spheres.count / 4, mode: 0, back: false });
         const small = (!moving || !b.coarse) && !apart;
@@ -312,8 +314,8 @@ export class Drawing {
             if (!moving || b.linesS.count < 2e5) put("lines", { set: "S", index: "linesS", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, uncut: true, opacity: this.section.of.length > 10000 ? 0.35 : 0.75 });
         }
         if (s.wire && b.wire && small) put("lines", { index: "wire", primitive: gl.LINES, mode: s.faces ? 0 : single, colour: s.faces ? colours.line : this.colour, lit: false, opacity: s.faces ? 0.55 : 1 });
-        if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, lit: false, pick: "edge", opacity: 1 });
-        if (s.edges && b.edgesWide && single === 0) put("wide", { wide: "edgesWide", count: b.edgesWide.count / 6, size: 1.8, lit: false, opacity: 1 });
+        if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, colour: stroke, lit: false, pick: "edge", opacity: s.faces && b[solid] ? 0.5 : 1 });
+        if (s.edges && b.edgesWide && single === 0 && !(s.faces && b[solid])) put("wide", { wide: "edgesWide", count: b.edgesWide.count / 6, colour: stroke, size: 1.8, lit: false, opacity: 1 });
         const wides = { boundary: [0.1, 0.62, 1], nonmanifold: [1, 0.24, 0.65], flipped: [0.95, 0.85, 0.1] };
         for (const [name, colour] of Object.entries(wides))
             if (s[name] && b[name] && s.faces && !apart) put("wide", { wide: name, count: b[name].count / 6, mode: 0, colour, size: 2.5, lit: false, opacity: 1 });

@@ -16,6 +16,10 @@ export class Layer {
         this.kind = meta.tetrahedra ? "tetrahedra" : meta.triangles ? "mesh" : meta.edges ? "edges" : "cloud";
     }
     get name() { return this.meta.name || `layer ${this.number + 1}`; }
+    /** How many edges of a kind are too many to be marked. */
+    get many() { return Math.max(1000, 0.1 * this.meta.triangles); }
+    /** Whether faces have sides: not in a complex, where many edges have more than two faces. */
+    get sided() { return this.meta.nonmanifold < this.many; }
     has(name) { return name in this.blocks; }
 
     /** Coordinate k of a step, in halves: boxes may be wider than the largest double. */
