@@ -116,7 +116,11 @@ brio_status brio_paint_find(brio_context *ctx, const brio_mesh *m, size_t layer,
     }
     BRIO_FORWARD(take_colours(ctx, m, false, out));
     if (!out->rgb) BRIO_FORWARD(take_colours(ctx, m, true, out));
-    if (out->rgb || m->num_faces || m->num_tetrahedra || m->num_edges) return BRIO_OK;
+    if (out->rgb) return BRIO_OK;
+    if (m->num_faces || m->num_tetrahedra || m->num_edges) {
+        if (find(m, "distance", false)) take_property(m, "distance", out); /* of brio compare */
+        return BRIO_OK;
+    }
     const char *name = "z";
     for (size_t i = sizeof TELLING / sizeof *TELLING; i-- > 0;)
         if (find(m, TELLING[i], false)) name = TELLING[i];

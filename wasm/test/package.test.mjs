@@ -162,12 +162,6 @@ test('what is written is read', () => {
   ok(brio.reads.includes('.laz') && brio.writes.includes('.glb') && !brio.writesFaces.includes('.laz'));
 });
 
-/* Points spread evenly on a ball. */
-const sphere = (n) => Float64Array.from({ length: 3 * n }, (_, i) => {
-  const k = Math.floor(i / 3), z = 1 - (2 * k + 1) / n, turn = Math.PI * (1 + Math.sqrt(5)) * k, r = Math.sqrt(1 - z * z);
-  return [r * Math.cos(turn), r * Math.sin(turn), z][i % 3];
-});
-
 test('a surface tells how it came to be, and a page shows it', () => {
   const told = surface(sphere(300), { explain: true }), text = new TextDecoder().decode(page([{ mesh: told, explanation: told.explanation }]));
   strictEqual(told.explanation.samples, 300);

@@ -29,6 +29,8 @@ export function defaultState(layer, pixels) {
         const value = m.properties.find(p => ["confidence", "distance", "intensity", "value", "radius"].includes(p.name));
         state.source = value ? value.block : "z";
     }
+    const distance = m.properties.find(p => p.name === "distance"); // of brio compare
+    if (distance && state.source === "plain") state.source = distance.block;
     return state;
 }
 
