@@ -5,8 +5,8 @@ import { colourOf, pictureOf } from "./explanation.js";
 
 const NOTHING = 3.4e38; // a value that is no number
 
-/** How large the points of a cloud are at first: about three times as far as they are apart, if they fill half of the picture. */
-const sizeOf = (points, pixels) => Math.max(2, Math.min(8, Math.round(3 * Math.sqrt(0.5 * pixels / Math.max(1, points)))));
+/** How large the points of a cloud are at first: between three and four times as far as they are apart, if they fill half of the picture. */
+const sizeOf = (points, pixels) => Math.max(2, Math.min(8, Math.round(3.6 * Math.sqrt(0.5 * pixels / Math.max(1, points)))));
 
 /** How a layer is shown, at first, in a picture of so many pixels. */
 export function defaultState(layer, pixels) {
