@@ -29,4 +29,5 @@ shown=$(grep -oh 'images/gallery/[a-z_-]*' docs/*.md docs/start/*.md | sed 's|.*
 [ "${PICTURES:-}" != 1 ] || node scripts/pictures.mjs "$BRIO_GALLERY" docs/images/gallery $shown
 "$environment/bin/mkdocs" build -q
 doxygen docs/Doxyfile
+/usr/bin/python3 scripts/site_links.py out/site
 echo "Written: out/site; open out/site/index.html in a browser"
