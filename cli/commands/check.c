@@ -8,6 +8,7 @@
 #include "cli/steps/hints.h"
 #include "cli/steps/weights.h"
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct arguments {
     weights_options weights;
@@ -96,6 +97,19 @@ static brio_status judge(run *r, const arguments *a, const brio_mesh *mesh) {
     return status;
 }
 
+/* Shows the mesh, right or wrong. The sentence of the failure is what was found of it, or why it cannot be shown. */
+static brio_status show(run *r, brio_status judged, const brio_mesh *mesh) {
+    const brio_failure why = r->failure;
+    char found[sizeof r->message];
+    if (judged != BRIO_OK && judged != BRIO_ERR_CHECK) return judged;
+    memcpy(found, r->message, sizeof found);
+    r->message[0] = 0;
+    FORWARD(cli_show(r, mesh));
+    memcpy(r->message, found, sizeof found);
+    r->failure = why;
+    return judged;
+}
+
 static brio_status check(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *mesh = NULL;
@@ -113,10 +127,9 @@ static brio_status check(run *r) {
     cli_fact_count(&r->facts, "faces", mesh->num_faces);
     cli_fact_count(&r->facts, "tetrahedra", mesh->num_tetrahedra);
     if (curves) cli_fact_count(&r->facts, "edges", mesh->num_edges);
-    brio_status judged = judge(r, a, mesh);
-    cli_examine(r, judged, mesh);
-    if (judged == BRIO_OK || judged == BRIO_ERR_CHECK) TRY(cli_show(r, mesh));
-    status = judged;
+    status = judge(r, a, mesh);
+    cli_examine(r, status, mesh);
+    status = show(r, status, mesh);
 done:
     brio_mesh_free(mesh);
     return status;

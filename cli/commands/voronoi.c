@@ -383,6 +383,7 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     if (out.cells) TRY(brio_cells_table_finish(r->ctx, out.cells));
     if (out.faces) TRY(brio_cells_table_finish(r->ctx, out.faces));
     cli_lap(r, "write");
+    cli_interrupt_writing(false);
     status = show_tiles(r, t, o);
 done:
     brio_cells_table_free(out.cells);

@@ -35,11 +35,11 @@ def mesh_of(value: Any) -> Mesh:
         number[value.vertices] = np.arange(len(value.vertices))
         return Mesh(places, number[value.simplices]) if value.ndim == 3 else Mesh(places, edges=number[value.simplices])
     if isinstance(value, Voronoi):
-        near = _is_near(value.points, value.vertices) if value.box is None else np.isfinite(value.vertices).all(axis=1)
+        near = _is_near(value.vertices, value.points if value.box is None else None)
         return _of_regions(value, near) if value.ndim == 2 else _of_cells(value.cells, near)
     if isinstance(value, PeriodicVoronoi):
         cells = value._compute(True, False, None)
-        return _of_cells(cells, np.isfinite(cells["vertices"]).all(axis=1))
+        return _of_cells(cells, _is_near(cells["vertices"]))
     return Mesh(value)
 
 
@@ -52,11 +52,16 @@ def _evenly(shown: NDArray[np.int64]) -> NDArray[np.int64]:
     return shown if len(shown) <= MOST_CELLS else shown[np.arange(MOST_CELLS) * len(shown) // MOST_CELLS]
 
 
-def _is_near(points: Floats, vertices: Floats) -> NDArray[np.bool_]:
-    """Whether vertices are in the box of the points, or beyond it by at most a part of its longest side."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    beyond = BEYOND * (high - low).max()
-    return ((vertices >= low - beyond) & (vertices <= high + beyond)).all(axis=1)
+def _is_near(vertices: Floats, points: Floats | None = None) -> NDArray[np.bool_]:
+    """Whether vertices are finite, and not beyond the box of the points by more than a part of its longest side."""
+    inside = np.isfinite(vertices)
+    if points is not None:
+        low, high = points.min(axis=0, initial=np.inf), points.max(axis=0, initial=-np.inf)
+        with np.errstate(over="ignore"):
+            beyond = BEYOND * (high - low).max()
+            inside &= (vertices >= low - beyond) & (vertices <= high + beyond)
+    near: NDArray[np.bool_] = np.logical_and.reduce(inside, axis=1)
+    return near
 
 
 def _of_regions(voronoi: Voronoi, near: NDArray[np.bool_]) -> Mesh:
@@ -74,7 +79,7 @@ def _of_regions(voronoi: Voronoi, near: NDArray[np.bool_]) -> Mesh:
 
 
 def _of_cells(cells: dict[str, Any], near: NDArray[np.bool_]) -> Mesh:
-    """The bounded cells of space whose vertices are near, each a closed solid of its own, as brio_cells_mesh makes them."""
+    """The bounded cells of space whose vertices are near, each a closed solid, as brio_cells_mesh makes them."""
     vertices, corner = cells["vertices"], cells["face_vertices"].astype(np.int64)
     of_face = np.repeat(np.arange(len(cells["site"])), np.diff(cells["face_offsets"]).astype(np.int64))
     sizes = np.diff(cells["corner_offsets"]).astype(np.int64)
