@@ -111,6 +111,11 @@ static brio_status check(run *r) {
         status = judged;
     }
     cli_examine(r, status, mesh);
+    if (status == BRIO_OK || status == BRIO_ERR_CHECK) {
+        brio_status judged = status;
+        TRY(cli_show(r, mesh));
+        status = judged;
+    }
 done:
     brio_mesh_free(mesh);
     return status;
@@ -126,7 +131,9 @@ const command cli_check = {
     .examples = "brio check surface.ply\nclosed, manifold, oriented?\n"
                 "brio check surface.ply --self-intersections\ndo faces run through each other, too?\n"
                 "brio check surface.ply --open --samples scan.ply\nwhat of it did the scan see?\n"
+                "brio check surface.ply --self-intersections --view flaws.html\na page that shows where it fails\n"
                 "brio check tetrahedra.vtu\nare the tetrahedra Delaunay?\n",
+    .shown = true,
     .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,

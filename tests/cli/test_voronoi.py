@@ -153,7 +153,6 @@ class Voronoi(CliTest):
             self.assertGreater(os.path.getsize(self.path("p.png")), 1000)
         run = self.expect(3, "voronoi", self.xyz("b.xyz", CUBE), "--view", self.path("q.html"))
         self.assertIn("nothing to show", run.err)
-        self.expect(1, "voronoi", points, "--tiles", "2", "--scratch", self.path("."), "--view", self.path("q.html"), "-o", self.path("c.csv"))
 
     def test_faces(self):
         points, out = self.xyz("a.xyz", LATTICE), self.path("faces.csv")
