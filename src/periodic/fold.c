@@ -43,9 +43,9 @@ typedef struct {
 typedef struct {
     brio_context *ctx;
     brio_stars *s;
-    brio_tetrahedron *tet; /* of s->t, then of the classes */
+    brio_tetrahedron *tet;   /* of s->t, then of the classes */
     size_t num_known, count; /* tetrahedra of s->t, and classes */
-    uint32_t *class_of; /* of each tetrahedron of s->t: its class, or NO_CLASS */
+    uint32_t *class_of;      /* of each tetrahedron of s->t: its class, or NO_CLASS */
     run finite, infinite;
     run *at; /* the run that the threads work on */
     numbers border, open;
