@@ -17,7 +17,7 @@
 #include <assert.h>
 #include <string.h>
 
-enum { NO_CLASS = UINT32_MAX, TETRAHEDRA_A_THREAD = 1 << 14 };
+enum { NO_CLASS = UINT32_MAX, TETRAHEDRA_A_THREAD = 1 << 14, FACETS_A_THREAD = 1 << 12 };
 
 /* A list of classes or facets that grows. */
 typedef struct {
@@ -268,42 +268,83 @@ static brio_status collect(folding *f, const run *r) {
     return BRIO_OK;
 }
 
-/* Finds the mate of a facet among those that wait for theirs, or lets it wait. */
-static void find_mate(folding *f, uint32_t *slot, size_t size, uint32_t facet, size_t *waiting) {
-    const brio_images *m = &f->s->images;
-    brio_tetrahedron *t = &f->tet[facet >> 2];
-    facet_key key = key_of(m, t->vertex, (int)(facet & 3));
-    size_t at = hash_of(&key) & (size - 1);
+/* Open facets that find each other. Each thread joins those whose hashes are its own. */
+typedef struct {
+    folding *f;
+    uint64_t *hash; /* of each open facet */
+    int threads;
+    size_t waiting; /* facets without a mate; atomic */
+    brio_status status;
+} joining;
+
+static void hash_some(void *user, size_t from, size_t to, int thread) {
+    const joining *j = user;
+    (void)thread;
+    for (size_t n = from; n < to; n++) {
+        uint32_t facet = j->f->open.list[n];
+        facet_key key = key_of(&j->f->s->images, j->f->tet[facet >> 2].vertex, (int)(facet & 3));
+        j->hash[n] = hash_of(&key);
+    }
+}
+
+/* Returns whether two open facets are one, up to a translation. */
+static bool are_mates(const joining *j, uint32_t n, uint32_t other) {
+    const uint32_t *open = j->f->open.list;
+    if (j->hash[n] != j->hash[other]) return false;
+    facet_key a = key_of(&j->f->s->images, j->f->tet[open[n] >> 2].vertex, (int)(open[n] & 3));
+    facet_key b = key_of(&j->f->s->images, j->f->tet[open[other] >> 2].vertex, (int)(open[other] & 3));
+    return memcmp(&a, &b, sizeof a) == 0;
+}
+
+/* Finds the mate of open facet n among those that wait for theirs, or lets it wait.   slot  `size` of them. */
+static void find_mate(const joining *j, uint32_t *slot, size_t size, uint32_t n, size_t *waiting) {
+    const uint32_t *open = j->f->open.list;
+    brio_tetrahedron *tet = j->f->tet;
+    size_t at = j->hash[n] & (size - 1);
     for (; slot[at] != UINT32_MAX; at = (at + 1) & (size - 1)) {
-        brio_tetrahedron *u = &f->tet[slot[at] >> 2];
-        if (u->mate[slot[at] & 3] != UINT32_MAX) continue; /* has found its mate */
-        facet_key other = key_of(m, u->vertex, (int)(slot[at] & 3));
-        if (memcmp(&key, &other, sizeof key) != 0) continue;
-        t->mate[facet & 3] = slot[at];
-        u->mate[slot[at] & 3] = facet;
+        uint32_t facet = open[n], other = open[slot[at]];
+        if (tet[other >> 2].mate[other & 3] != UINT32_MAX || !are_mates(j, n, slot[at])) continue;
+        tet[facet >> 2].mate[facet & 3] = other;
+        tet[other >> 2].mate[other & 3] = facet;
         --*waiting;
         return;
     }
-    slot[at] = facet;
+    slot[at] = n;
     ++*waiting;
+}
+
+static inline bool is_own(const joining *j, size_t n, int thread) {
+    return (j->hash[n] >> 32) % (unsigned)j->threads == (unsigned)thread;
+}
+
+static void join_own(void *user, size_t from, size_t to, int thread) {
+    joining *j = user;
+    uint32_t *slot = NULL;
+    size_t size = 64, own = 0, waiting = 0, count = j->f->open.count;
+    (void)from, (void)to;
+    for (size_t n = 0; n < count; n++) own += is_own(j, n, thread);
+    while (size < 2 * own) size *= 2;
+    brio_report(&j->status, BRIO_ALLOC(j->f->ctx, slot, size));
+    if (!slot) return;
+    memset(slot, 0xff, size * sizeof *slot);
+    for (size_t n = 0; n < count; n++)
+        if (is_own(j, n, thread)) find_mate(j, slot, size, (uint32_t)n, &waiting);
+    __atomic_add_fetch(&j->waiting, waiting, __ATOMIC_RELAXED);
+    brio_release(j->f->ctx, slot);
 }
 
 /* Finds the mates of facets that have none. */
 static brio_status link_open(folding *f) {
     brio_status status = BRIO_OK;
-    uint32_t *slot = NULL;
-    size_t size = 64, waiting = 0;
-    while (size < 2 * f->open.count) size *= 2;
-    BRIO_TRY(BRIO_ALLOC(f->ctx, slot, size));
-    memset(slot, 0xff, size * sizeof *slot);
-    for (size_t n = 0; n < f->open.count; n++) {
-        find_mate(f, slot, size, f->open.list[n], &waiting);
-        BRIO_TRY(brio_look(f->ctx, 1));
-    }
-    BRIO_REQUIRE(f->ctx, waiting == 0, BRIO_ERR_INTERNAL, "%zu facets of a periodic triangulation have no mates",
-                 waiting);
+    joining j = {.f = f, .threads = brio_threads(f->ctx, f->open.count, FACETS_A_THREAD)};
+    BRIO_TRY(BRIO_ALLOC(f->ctx, j.hash, f->open.count + 1));
+    BRIO_TRY(brio_for(f->ctx, j.threads, f->open.count, hash_some, &j));
+    BRIO_TRY(brio_for_parts(f->ctx, j.threads, (size_t)j.threads, join_own, &j));
+    BRIO_TRY(j.status);
+    BRIO_REQUIRE(f->ctx, j.waiting == 0, BRIO_ERR_INTERNAL, "%zu facets of a periodic triangulation have no mates",
+                 j.waiting);
 done:
-    brio_release(f->ctx, slot);
+    brio_release(f->ctx, j.hash);
     return status;
 }
 
