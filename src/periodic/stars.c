@@ -293,28 +293,41 @@ done:
 
 /* --- points that are redone --- */
 
+typedef struct {
+    const layer *y;
+    uint8_t *needed; /* #images; atomic */
+} needing;
+
+/* Marks the vertices of tetrahedra with redone points. */
+static void need_some(void *user, size_t from, size_t to, int thread) {
+    const needing *h = user;
+    const uint8_t *is_redone = h->y->s->redone;
+    size_t points = h->y->num_points;
+    (void)thread;
+    for (size_t t = from; t < to; t++) {
+        const uint32_t *v = h->y->tet[t].vertex;
+        bool redone = false;
+        for (int k = 0; k < 4; k++) redone |= v[k] < points && is_redone[v[k]];
+        for (int k = 0; k < 4 && redone; k++)
+            if (v[k] != BRIO_INFINITE) __atomic_store_n(&h->needed[v[k]], 1, __ATOMIC_RELAXED);
+    }
+}
+
 /* Lists the redone points, and the vertices of their tetrahedra. */
 static brio_status list_points(const layer *y, brio_set_point **out, size_t *num_own, size_t *num_all) {
     const brio_images *m = &y->s->images;
     brio_status status = BRIO_OK;
-    uint8_t *needed = NULL;
+    needing h = {.y = y};
     brio_set_point *list = NULL;
     size_t n = 0, count = 0;
-    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, needed, m->count + 1));
-    for (size_t t = 0; t < y->num_tets; t++) {
-        const uint32_t *v = y->tet[t].vertex;
-        bool redone = false;
-        for (int k = 0; k < 4; k++) redone |= v[k] < y->num_points && y->s->redone[v[k]];
-        for (int k = 0; k < 4 && redone; k++)
-            if (v[k] != BRIO_INFINITE) needed[v[k]] = 1;
-        BRIO_TRY(brio_look(y->ctx, 1));
-    }
-    for (size_t i = 0; i < m->count; i++) count += needed[i] != 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, h.needed, m->count + 1));
+    BRIO_TRY(brio_for(y->ctx, brio_threads(y->ctx, y->num_tets, POINTS_A_THREAD), y->num_tets, need_some, &h));
+    for (size_t i = 0; i < m->count; i++) count += h.needed[i] != 0;
     BRIO_TRY(BRIO_ALLOC(y->ctx, list, count + 1));
     for (int own = 1; own >= 0; own--)
         for (size_t i = 0; i < m->count; i++) {
             bool is_redone = i < y->num_points && y->s->redone[i];
-            if (!needed[i] || is_redone != (own == 1)) continue;
+            if (!h.needed[i] || is_redone != (own == 1)) continue;
             brio_set_point *p = &list[n++];
             memcpy(p->record, m->x[i], 3 * sizeof(double));
             p->record[3] = m->weight ? m->weight[i] : 0;
@@ -325,7 +338,7 @@ static brio_status list_points(const layer *y, brio_set_point **out, size_t *num
     *out = list;
     list = NULL;
 done:
-    brio_release(y->ctx, needed);
+    brio_release(y->ctx, h.needed);
     brio_release(y->ctx, list);
     return status;
 }
