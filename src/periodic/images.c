@@ -6,12 +6,19 @@
 #include <assert.h>
 #include <string.h>
 
+/* Makes room for `count` images. */
+static brio_status reserve(brio_images *m, size_t count, bool weighted) {
+    BRIO_FORWARD(BRIO_RESIZE(m->ctx, m->list, count));
+    BRIO_FORWARD(BRIO_RESIZE(m->ctx, m->x, count));
+    if (weighted) BRIO_FORWARD(BRIO_RESIZE(m->ctx, m->weight, count));
+    m->capacity = count;
+    return BRIO_OK;
+}
+
 brio_status brio_images_new(brio_context *ctx, const brio_lattice *lattice, const double (*home)[3],
                             const double *weights, size_t n, brio_images *m) {
     *m = (brio_images){.ctx = ctx, .lattice = lattice, .num_points = n};
-    BRIO_FORWARD(BRIO_RESERVE(ctx, m->list, m->capacity, n));
-    BRIO_FORWARD(BRIO_RESERVE(ctx, m->x, m->x_capacity, n));
-    if (weights) BRIO_FORWARD(BRIO_RESERVE(ctx, m->weight, m->weight_capacity, n + 1));
+    BRIO_FORWARD(reserve(m, n + 1, weights != NULL));
     for (size_t p = 0; p < n; p++) m->list[p] = (brio_image){.point = (uint32_t)p};
     if (n) memcpy(m->x, home, n * sizeof *m->x);
     if (n && weights) memcpy(m->weight, weights, n * sizeof *weights);
@@ -32,9 +39,7 @@ brio_status brio_images_extend(brio_images *m, size_t more) {
     size_t count = m->count + more;
     BRIO_EXPECT(m->ctx, count <= BRIO_INFINITE - 16, BRIO_ERR_TOO_LARGE,
                 "the points and the translates about them are 2^32 - 17 or more");
-    BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->list, m->capacity, count));
-    BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->x, m->x_capacity, count));
-    if (m->weight) BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->weight, m->weight_capacity, count));
+    if (count > m->capacity) BRIO_FORWARD(reserve(m, count + count / 8 + 16, m->weight != NULL));
     m->count = count;
     return BRIO_OK;
 }

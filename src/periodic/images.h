@@ -10,7 +10,7 @@
 typedef struct brio_images {
     brio_context *ctx;
     const brio_lattice *lattice;
-    size_t num_points, count, capacity, x_capacity, weight_capacity;
+    size_t num_points, count, capacity;
     brio_image *list; /* I1, I2 */
     double (*x)[3];   /* #count: positions, relative to the lattice's origin */
     double *weight;   /* #count, or NULL */
