@@ -274,8 +274,8 @@ static brio_status take_step(layer *y, int threads) {
 static brio_status search_layer(layer *y) {
     brio_status status = BRIO_OK;
     int most = brio_threads(y->ctx, y->num_tets, BALLS_A_THREAD);
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(y->ctx, y->seen, y->num_tets + 1));
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(y->ctx, y->searcher, (size_t)most));
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, y->seen, y->num_tets + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, y->searcher, (size_t)most));
     for (int i = 0; i < most; i++) y->searcher[i].filter = y->translates.filter;
     for (size_t t = y->num_finite; t < y->num_tets; t++) BRIO_TRY(push(y, &y->searcher[0], t));
     BRIO_TRY(take_step(y, 1));
@@ -287,7 +287,7 @@ static brio_status search_layer(layer *y) {
     }
     for (size_t p = 0; p < y->num_points; p++) y->s->num_redone += y->s->redone[p];
 done:
-    for (int i = 0; i < most; i++) brio_release(y->ctx, y->searcher[i].met);
+    for (int i = 0; y->searcher && i < most; i++) brio_release(y->ctx, y->searcher[i].met);
     return status;
 }
 
