@@ -16,7 +16,8 @@
 #include <string.h>
 
 /* LANE: a multiple of what vector registers compare at once. TABLE: places in the table. MOST_MET: a star with more
- * vertices is sorted. AHEAD: tetrahedra are fetched this number of ranks before they are read. SLICE: tetrahedra between two looks. All chosen. */
+ * vertices is sorted. AHEAD: tetrahedra are fetched this number of ranks before they are read. SLICE: tetrahedra between
+ * two looks. All chosen. */
 enum {
     LANE = 8,
     TABLE = 1 << 11,
@@ -149,8 +150,8 @@ typedef struct {
     brio_status status;
 } search;
 
-/* Lists the tetrahedra of the slice at the ranks [from, to), which one thread owns: additions by several threads at once
- * would take longer than what each reads in vain. */
+/* Lists the tetrahedra of the slice at the ranks [from, to), which one thread owns: additions by several threads at
+ * once would take longer than what each reads in vain. */
 static void list_some(void *user, size_t from, size_t to, int thread) {
     const search *h = user;
     const brio_sweep *s = h->s;
