@@ -16,8 +16,8 @@
 #include <string.h>
 
 /* LANE: a multiple of what vector registers compare at once. TABLE: places in the table. MOST_MET: a star with more
- * vertices is sorted. AHEAD: tetrahedra are fetched this number of ranks before they are read. SLICE: tetrahedra between
- * two looks. All chosen. */
+ * vertices is sorted. AHEAD: tetrahedra are fetched this number of ranks before they are read. SLICE: tetrahedra
+ * between two looks. All chosen. */
 enum {
     LANE = 8,
     TABLE = 1 << 11,
