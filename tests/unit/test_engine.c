@@ -173,7 +173,7 @@ static void hold_slacks(const brio_engine *engine, bool weighted, bool wide) {
         brio_filter_for(&filter, (const brio_record *)record, INFINITE_ROW, weighted);
         if (wide) brio_filter_set(&filter, (double[3]){1e6, 1e6, 1e6}, 1, weighted);
         for (uint32_t i = 0; i < BRIO_BATCH; i++) which[i] = i;
-        unsigned bits = engine->sound(&t, &filter, which, slack);
+        uint64_t bits = engine->sound(&t, &filter, which, BRIO_BATCH, slack);
         for (uint32_t i = 0; i < BRIO_BATCH; i++) {
             if (!(bits >> i & 1) || !(slack[i] > 0)) continue;
             sound++;
@@ -214,7 +214,7 @@ static void a_lift_that_is_no_number_is_not_sound(void) {
                 far[0] = 1.4e154, far[1] = far[2] = 0, far[3] = 1.7e308;
             }
             brio_filter_for(&filter, (const brio_record *)record, INFINITE_ROW, true);
-            EXPECT(brio_engine_choose(true)->sound(&t, &filter, which, slack) == 0, "facet %u", facet);
+            EXPECT(brio_engine_choose(true)->sound(&t, &filter, which, BRIO_BATCH, slack) == 0, "facet %u", facet);
         }
 }
 
