@@ -316,12 +316,13 @@ static brio_status move_back_again(sweep *s) {
     return BRIO_OK;
 }
 
-/* Exchanges the records of all rows and another array of them. */
+/* Exchanges the records of all rows and another array of them, which has room for no more. */
 static void exchange(brio_dynamic *d, brio_record **record) {
     brio_record *other = *record;
     *record = d->record;
     d->record = other;
     d->t.record = other;
+    d->row_capacity = d->num_rows;
 }
 
 /* Ends the time of the stars of rows that go further than the step, and lets time go on by that. */

@@ -141,7 +141,7 @@ brio_status brio_paths_new(brio_dynamic *d, const brio_moves *m, brio_paths *out
     uint32_t *names = NULL;
     writing w = {.d = d, .m = m};
     brio_paths p = {0};
-    BRIO_TRY(BRIO_ALLOC(d->ctx, p.record, d->row_capacity));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, p.record, d->num_rows));
     if (!m->indices) BRIO_TRY(list_names(d, &names));
     w.names = m->indices ? m->indices : names;
     w.record = p.record;

@@ -95,6 +95,7 @@ static float not_below(double time) {
 
 static brio_status test_slots(test_pass *own, size_t begin, size_t end, int thread) {
     brio_dynamic *d = own->d;
+    enum { AHEAD = 128 }; /* slots whose tetrahedra are called for */
     queue q = {.count = 0};
     float now = not_below(d->travelled);
     for (size_t slot = begin; slot < end; slot++) {
@@ -103,6 +104,7 @@ static brio_status test_slots(test_pass *own, size_t begin, size_t end, int thre
             continue;
         }
         if (d->until[slot] >= now || d->state[slot] & SLOT_UNUSED) continue;
+        if (slot + AHEAD < end) __builtin_prefetch(&d->t.tet[slot + AHEAD]);
         if (brio_is_infinite(&d->t, (uint32_t)slot)) {
             BRIO_FORWARD(list(d->ctx, &own->infinite[thread], (uint32_t)slot));
             continue;

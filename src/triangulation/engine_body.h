@@ -121,7 +121,7 @@ static inline __attribute__((always_inline)) uint64_t batch_sound(const brio_tet
         star_rows *r = &near[i / LANES];
         FIND_ROWS(t, tets + i, r);
         for (int s = 0; s < 4; s++)
-            for (int k = 0; k < LANES; k++) __builtin_prefetch(r->apex[s][k]);
+            for (int k = 0; k < LANES; k++) __builtin_prefetch(r->apex[s][k]), __builtin_prefetch(r->vertex[s][k]);
     }
     for (size_t i = 0; i < count; i += LANES)
         sound |= (uint64_t)lanes_sound(&near[i / LANES], f, slack + i, weighted) << i;

@@ -119,7 +119,7 @@ static inline void tets_set(moved_tets *m, const moved_row *b, const moved_row *
 static inline unsigned stand(moved_tets *m, const moved_row *e, const bool weighted) {
     lanes b = dot(e->v, m->b_normal), c = dot(e->v, m->c_normal), d = dot(e->v, m->d_normal);
     lanes volumes = magnitude(b) + magnitude(c) + magnitude(d) + magnitude(m->volume - b - c - d);
-    lanes rate = m->most * volumes + m->volume * (weighted ? root(square_reach(m, e)) : m->most);
+    lanes rate = weighted ? m->most * volumes + m->volume * root(square_reach(m, e)) : m->most * (volumes + m->volume);
     lane_mask none = equal(e->square, all(0));
     lanes det = choose(none, all(1e200), multiply_subtract(e->v[3], m->volume, dot(e->v, m->x)));
     lane_mask worse = greater(rate * m->below, m->above * det);
