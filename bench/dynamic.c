@@ -177,7 +177,7 @@ static void move_in_a_box(brio_context *ctx, const double *points, size_t n, dou
 }
 
 int main(int argc, char **argv) {
-    static const double SHARE[] = {1e-4, 1e-3, 5e-3, 1e-2, 2e-2, 5e-2, 0.1, 0.5, 5};
+    static const double SHARE[] = {1e-4, 1e-3, 5e-3, 1e-2, 2e-2, 3e-2, 5e-2, 0.1, 0.5, 5};
     size_t n = argc > 1 ? (size_t)atoll(argv[1]) : 100000, changes = argc > 2 ? (size_t)atoll(argv[2]) : n / 10;
     const char *parts = argc > 4 ? argv[4] : "obmp";
     double *points = malloc(3 * n * sizeof *points);
