@@ -234,7 +234,7 @@ static brio_status begin(brio_tile_work *w, const brio_found *more) {
     BRIO_TRY(brio_store_append(&w->out, &none, sizeof none));
     w->out.hashes = t->key != 0;
     if (t->stars) BRIO_TRY(begin_border(w));
-    BRIO_TRY(brio_tile_source_new(t, w->tile, (uint32_t)t->num_nodes - 1, &w->source));
+    BRIO_TRY(brio_tile_source_new(t, w->tile, (uint32_t)t->num_nodes - 1, &w->seen, &w->source));
     BRIO_TRY(list_known(w, more, &list));
     w->num_known = list.count;
     brio_completion_task task = {.points = list.point,

@@ -162,8 +162,11 @@ void brio_tiles_filter(const brio_tiles *t, brio_filter *f);
 /** Points of other tiles that a tile asks for: reads their blocks, and keeps those that it read. */
 typedef struct brio_tile_source brio_tile_source;
 
-/** Makes a source.   root  the node below which it searches. */
-brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, brio_tile_source **out);
+/** Makes a source.
+ *  root  the node below which it searches.
+ *  seen  NULL, or a box all of whose points who asks knows: blocks in it are not searched. */
+brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, const brio_ball_box *seen,
+                                 brio_tile_source **out);
 void brio_tile_source_free(brio_tile_source *s);
 /** Notes that a round of the completion begins, which knows all that was added before. */
 void brio_tile_source_round(brio_tile_source *s);
