@@ -39,7 +39,7 @@ enum { BLOCK_NEW, BLOCK_ADDED, BLOCK_KNOWN }; /* ADDED: in this round; the compl
 
 typedef struct {
     double x[TILE_BLOCK], y[TILE_BLOCK], z[TILE_BLOCK]; /* behind the points: INFINITY, which is near nothing */
-    double w[TILE_BLOCK];
+    double w[TILE_BLOCK], heaviest;
     uint64_t place;
     uint32_t points;
     uint32_t wasted; /* comparisons; atomic */
@@ -172,6 +172,7 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
     block *b = *out;
     b->place = node->place;
     b->points = node->points;
+    b->heaviest = node->box.weight;
     b->wasted = 0;
     b->state = BLOCK_NEW;
     brio_status status = brio_store_read(&s->points, (node->place - s->t->first_place) * sizeof *some, some,
@@ -219,27 +220,26 @@ static lanes load(const double *from) {
     return v;
 }
 
-/* Returns whether a ball may take one of the points of a group.   limit  of its square. */
-static bool is_group_near(const double *centre, double limit, const block *b, uint32_t first) {
+/* Returns whether one of the points of a group is at most that far from a centre, squared. */
+static bool is_group_near(const double *centre, double square, const block *b, uint32_t first) {
     lane_bits near = {0};
     for (uint32_t i = first; i < first + GROUP; i += LANES) {
         lanes x = load(b->x + i) - centre[0], y = load(b->y + i) - centre[1], z = load(b->z + i) - centre[2];
-        lanes w = load(b->w + i), size = (lanes)((lane_bits)w & INT64_MAX);
-        near |= ~((x * x + y * y + z * z) * (1 - SLACK) > limit + w + size * SLACK);
+        near |= x * x + y * y + z * z <= square;
     }
     return (near[0] | near[1]) != 0;
 }
 
 /* Lists the points that a ball may take. Returns their number. */
 static uint32_t list_near(const brio_ball *ball, const block *b, uint32_t list[TILE_BLOCK]) {
-    double limit = ball->square + fabs(ball->square) * SLACK;
+    double most = ball->square + b->heaviest, square = most + 4 * SLACK * (fabs(ball->square) + fabs(b->heaviest));
     uint32_t n = 0;
-    if (ball->infinite || !(ball->square < INFINITY)) {
+    if (ball->infinite || !(square < INFINITY)) {
         for (uint32_t i = 0; i < b->points; i++) list[i] = i;
         return b->points;
     }
     for (uint32_t first = 0; first < b->points; first += GROUP) {
-        if (!is_group_near(ball->centre, limit, b, first)) continue;
+        if (!is_group_near(ball->centre, square, b, first)) continue;
         for (uint32_t i = first; i < first + GROUP && i < b->points; i++) {
             double record[4] = {b->x[i], b->y[i], b->z[i], b->w[i]};
             list[n] = i;
