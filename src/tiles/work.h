@@ -56,7 +56,7 @@ struct brio_tiles {
     brio_store_folder folder;
     brio_tiles_stats stats;
     brio_tiles_cells_stats cells;
-    bool weighted, has_points, has_result, has_ranks, stars;
+    bool weighted, has_points, has_result, has_ranks, has_neighbours, stars;
     bool sorts_cells, sorts_faces; /* cells will be asked for in order, and their faces */
     bool torn;                     /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
