@@ -21,6 +21,7 @@ struct brio_ranks {
     int rank, ranks;
     brio_tiles_stats facts;     /* of all ranks */
     brio_ranks_traffic traffic; /* the same */
+    brio_tiles_cells_stats cells;
     uint32_t own_root;          /* node over this rank's tiles; TILE_NONE if there are no points */
     double (*splitter)[3];      /* ranks - 1, ascending: where lists of positions are divided among ranks */
     brio_found *sample;         /* of each own tile, the points of other ranks that it begins with */

@@ -396,6 +396,21 @@ done:
     return status;
 }
 
+brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, uint64_t *halo) {
+    const brio_tile *facts = &t->tile[tile];
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    char name[32];
+    if (!facts->halo) return BRIO_OK;
+    snprintf(name, sizeof name, "tile-%u", tile);
+    BRIO_TRY(brio_store_open(&t->folder, name, &f));
+    status = brio_store_read(&f, sizeof(tile_head) + facts->tetrahedra * 4 * sizeof(uint32_t), halo,
+                             facts->halo * sizeof *halo);
+done:
+    brio_store_close(&f);
+    return status;
+}
+
 brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]) {
     const brio_tile *facts = &t->tile[tile];
     brio_store_file f = {.file = -1};

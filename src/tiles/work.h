@@ -222,16 +222,21 @@ typedef struct {
 /** Reads it.   wants_all  false: only which points are vertices. */
 brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, brio_tile_result *out);
 void brio_tile_result_free(brio_tiles *t, brio_tile_result *r);
+/** Reads the places of the halo of a tile, as many as its facts say. */
+brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, uint64_t *halo);
 /** Reads the border of a tile.   border  as many rows as the tile's facts say. */
 brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]);
-/** Reads the points of a tile, and behind them those of its halo. Names become indices.
- *  points  as many as the tile's facts say, both. */
-brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *halo, brio_set_point *points);
-
 /** A function that reads the points of a halo, in its order. */
 typedef brio_status (*brio_halo_fn)(void *user, const uint64_t *halo, size_t n, brio_set_point *points);
+/** Such a function, and what it is called with. */
+typedef struct {
+    brio_halo_fn read;
+    void *user;
+} brio_halo_reader;
+/** Returns the reader of tiles whose points are all of this process. */
+brio_halo_reader brio_tile_own_halo(brio_tiles *t);
 /** Makes the part of a tile, as brio_tiles_part. */
-brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn read_halo, void *user, brio_tile_part *p);
+brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, const brio_halo_reader *halo, brio_tile_part *p);
 
 /** Sums the hashes of all tetrahedra: the checksum. */
 brio_status brio_tiles_sum(brio_tiles *t, uint64_t *checksum);
