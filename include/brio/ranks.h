@@ -117,8 +117,8 @@ BRIO_API brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t 
 BRIO_API brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const brio_cells_options *options,
                                       brio_tile_cells_fn take, void *user);
 
-/** Returns the facts of the cells of all ranks. volume_sum is the exact sum of the volumes of all bounded cells, rounded
- *  once: the same for every number of ranks and tiles. The view is valid until brio_ranks_free. */
+/** Returns the facts of the cells of all ranks. volume_sum is the exact sum of the volumes of all bounded cells,
+ *  rounded once: the same for every number of ranks and tiles. The view is valid until brio_ranks_free. */
 BRIO_API const brio_tiles_cells_stats *brio_ranks_cells_facts(const brio_ranks *r);
 
 /** Frees everything, and removes this rank's files, unless the run has a key and failed after the points were divided:

@@ -124,8 +124,9 @@ typedef struct brio_tile_neighbour {
  *  The rows are those of brio_tiles_part, which are the same in every call and for every number of threads.
  *  part  of the tile, as brio_tiles_part made it.
  *  neighbours  #T by 4, the caller's: entry i receives the neighbour across the facet opposite to vertex i.
- *  Cost: the first call reads the parts of all tiles, and writes 44 bytes for each facet between two tiles. Each call
- *  sorts the facets of its tile. Memory: 16 bytes a tetrahedron of a tile; in the first call a part and 48.
+ *  Cost: the first call reads the parts of all tiles, and writes 88 bytes for each facet between two tiles, 32 for one
+ *  of the hull. Each call sorts the facets of its tile. Memory: 16 bytes a tetrahedron of a tile; in the first call a
+ *  part, and 48.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_WRITE, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Aggarwal Vitter 1988]. */
 BRIO_API brio_status brio_tiles_neighbours(brio_context *ctx, brio_tiles *t, uint32_t tile, const brio_tile_part *part,

@@ -1,8 +1,8 @@
 /* Cells by ranks: each rank computes those of its tiles, whose stars are final. Of other ranks it needs the points of
  * its halos, and the sums.
  *
- * The volume of all cells is summed exactly, as a whole number of 2^-1074, and rounded once. So it is the same for every
- * number of ranks and tiles.
+ * The volume of all cells is summed exactly, as a whole number of 2^-1074, and rounded once. So it is the same for
+ * every number of ranks and tiles.
  *
  * Based on: Kulisch, Miranker. The arithmetic of the digital computer: a new approach. SIAM Review 1986 (one long
  *           accumulator). */

@@ -19,8 +19,10 @@ static brio_status agree_on_points(brio_ranks *r) {
 }
 
 static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *o) {
-    brio_tiles_options of_tiles = {
-        .size = sizeof of_tiles, .scratch = o->scratch, .tiles = o->tiles ? o->tiles : TILES, .stars = o->stars ? 2 : 0};
+    brio_tiles_options of_tiles = {.size = sizeof of_tiles,
+                                   .scratch = o->scratch,
+                                   .tiles = o->tiles ? o->tiles : TILES,
+                                   .stars = o->stars ? 2 : 0};
     BRIO_EXPECT(r->ctx, of_tiles.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles of a rank; at most %d", o->tiles,
                 MOST_TILES);
     if (o->key) of_tiles.key = brio_hash(brio_hash(o->key, (uint64_t)r->ranks), (uint64_t)r->rank) | 1;
