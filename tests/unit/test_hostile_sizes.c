@@ -145,14 +145,16 @@ static const struct {
     {"set_edges", set_edges, 8},
 };
 
-/* An array has no more bytes: half of the addresses, of which processors have 2^48. */
-static const uint64_t MOST_BYTES = SIZE_MAX > UINT32_MAX ? UINT64_C(1) << 47 : SIZE_MAX / 2;
+/* Whether there may be an array of n rows after all, in half of the addresses of 32 bits. */
+static bool may_be(size_t n, size_t row) {
+    return SIZE_MAX == UINT32_MAX && n <= SIZE_MAX / 2 / row;
+}
 
 /* The power crust and the co-cone read all points for their scale before they held the number against the limit. */
 static void counts_that_no_array_has_are_refused(void) {
     for (size_t c = 0; c < sizeof CALLS / sizeof *CALLS; c++) {
         for (size_t i = 0; i < sizeof COUNTS / sizeof *COUNTS; i++) {
-            if (COUNTS[i] <= MOST_BYTES / CALLS[c].row) continue;
+            if (may_be(COUNTS[i], CALLS[c].row)) continue;
             brio_status status = CALLS[c].run(COUNTS[i]);
             EXPECT(status == BRIO_ERR_TOO_LARGE || status == BRIO_ERR_NO_MEMORY, "%s of %zu: %s", CALLS[c].name,
                    COUNTS[i], brio_status_string(status));
