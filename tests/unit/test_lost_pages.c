@@ -28,14 +28,22 @@ int sync_file_range(int file, off_t offset, off_t size, unsigned flags) {
     return -1;
 }
 
-/* The system's, except that the disk may have another number of blocks free, or may not count any. By the kernel's call: a
- * static C library may bring its own statvfs along with what is like it. */
+/* A static C library has these in one part with statvfs, and would bring its own statvfs along with them. */
+int statfs(const char *path, struct statfs *out) {
+    return (int)syscall(SYS_statfs, path, out);
+}
+
+int fstatfs(int file, struct statfs *out) {
+    return (int)syscall(SYS_fstatfs, file, out);
+}
+
+/* The system's, except that the disk may have another number of blocks free, or may not count any. */
 static uint64_t blocks_free;
 static bool says_other, counts_none;
 
 int statvfs(const char *restrict path, struct statvfs *restrict out) {
     struct statfs facts = {0};
-    if (syscall(SYS_statfs, path, &facts) != 0) return -1;
+    if (statfs(path, &facts) != 0) return -1;
     *out = (struct statvfs){.f_bsize = (unsigned long)facts.f_bsize, .f_frsize = (unsigned long)facts.f_bsize};
     if (!counts_none) out->f_blocks = facts.f_blocks, out->f_bfree = facts.f_bfree, out->f_bavail = facts.f_bavail;
     if (says_other) out->f_bavail = blocks_free, out->f_frsize = 4096;
