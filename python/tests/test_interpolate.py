@@ -139,17 +139,6 @@ def test_places_on_the_sides_of_a_turned_grid(interpolator, d):
         assert np.allclose(filled(sides), sides @ slope, rtol=0, atol=1e-12) and filled(np.full(d, 99.0)) == -99
 
 
-@pytest.mark.parametrize("d", [2, 3])
-def test_natural_neighbours_at_the_sides_of_many_turned_grids(d):
-    """Where the neighbours with a share were in a plane up to rounding, shares passed that did not reproduce the place."""
-    generator = np.random.default_rng(1)
-    slope = np.arange(1.0, d + 1)
-    for n in [2, 3, 4, 5] * 20:
-        points, sides = turned_grid(n, d, generator)
-        height = brio.NaturalNeighbourInterpolator(points, points @ slope)
-        assert np.allclose(height(sides), sides @ slope, rtol=0, atol=1e-11)
-
-
 @pytest.mark.parametrize("tol", [-1, np.nan, "x"])
 def test_tolerances_that_are_none(tol):
     with pytest.raises(brio.ArgumentError, match="tol"):
