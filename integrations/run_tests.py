@@ -173,7 +173,8 @@ class Blender(unittest.TestCase):
         python = HERE.parent / "out/blender-env/bin/python"
         if not python.exists() or subprocess.run([python, "-c", "import bpy"], capture_output=True, timeout=300).returncode:
             self.skipTest("no bpy in out/blender-env: sh scripts/setup.sh blender")
-        done = subprocess.run([python, HERE / "blender/try_in_blender.py"], capture_output=True, text=True, timeout=600)
+        environment = {**os.environ, "PYTHONPATH": os.environ.get("BRIO_PYTHON", "")}
+        done = subprocess.run([python, HERE / "blender/try_in_blender.py"], capture_output=True, text=True, env=environment, timeout=600)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("surface closed", done.stdout)
 
