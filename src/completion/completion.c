@@ -16,6 +16,7 @@
  * Differs from the papers: what is asked for is points in conflict, a bounded number at a time, with exact ties and
  * weights; half-spaces are asked for, too; later rounds triangulate the borders only. */
 #include "completion/completion.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
@@ -486,7 +487,7 @@ done:
 static brio_status set_up(completion *c) {
     const brio_completion_task *task = &c->task;
     size_t n = task->num_points;
-    BRIO_EXPECT(c->ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points at a time; at most 2^32 - 17", n);
+    BRIO_FORWARD(brio_refuse_many(c->ctx, n));
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->known, n + 1));
     c->capacity = n + 1;
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->local, n + 1));

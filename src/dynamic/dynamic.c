@@ -71,7 +71,7 @@ done:
 
 static brio_status check_points(brio_dynamic *d, const double *points, const double *weights, size_t n) {
     BRIO_EXPECT(d->ctx, d->weighted || !weights, BRIO_ERR_ARGUMENT, "weights for a triangulation without weights");
-    BRIO_EXPECT(d->ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
+    BRIO_FORWARD(brio_refuse_many(d->ctx, n));
     return brio_refuse_not_finite(d->ctx, points, weights, n, NULL);
 }
 
