@@ -10,7 +10,6 @@ import pathlib
 import shutil
 import subprocess
 import sys
-import tarfile
 
 # platform: what a wheel for Python says of the system, or None where there is no wheel
 Target = collections.namedtuple('Target', 'name triple system processor platform')
@@ -71,8 +70,7 @@ def unpack(root, library):
     if not folder.is_dir():
         fresh = folder.with_suffix('.new')
         shutil.rmtree(fresh, ignore_errors=True)
-        with tarfile.open(archives[-1]) as archive:
-            archive.extractall(fresh, filter='data')
+        shutil.unpack_archive(archives[-1], fresh)
         fresh.rename(folder)
     return next(p for p in folder.iterdir() if p.is_dir())
 

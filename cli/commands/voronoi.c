@@ -29,13 +29,6 @@ typedef struct boxed_diagram {
     const brio_cells_options *options; /* with a box */
 } boxed_diagram;
 
-/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
-enum { LEAST_VOLUME = -900, MOST_VOLUME = 1020 };
-
-static bool is_held(double volume) {
-    return volume > 0 && isfinite(volume) && ilogb(volume) >= LEAST_VOLUME && ilogb(volume) <= MOST_VOLUME;
-}
-
 static double error_of(const brio_cells *cells) {
     return fabs(cells->volume_sum / cells->region_volume - 1);
 }
@@ -88,7 +81,7 @@ done:
  *  needs. */
 static brio_status cli_box_error(run *r, const boxed_diagram *d, const brio_cells *cells, double *error) {
     *error = NAN;
-    if (!is_held(cells->region_volume)) return scaled_error(r, d, error);
+    if (!cli_volume_is_held(cells->region_volume)) return scaled_error(r, d, error);
     *error = error_of(cells);
     return BRIO_OK;
 }
@@ -135,22 +128,6 @@ static brio_status require_output(run *r, brio_cells_format *format) {
         return cli_fail_output(r, "%s: a file of this format cannot hold cells, expected .vtu .npy or .csv", c->output);
     if (c->compress) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress: cells are written without compression");
     return strcmp(c->output, "-") ? cli_check_target(r, c->output) : BRIO_OK;
-}
-
-/* Reads six numbers with commas between them. */
-static brio_status read_box(run *r, const char *text, double box[6]) {
-    const char *rest = text;
-    for (int i = 0; i < 6; i++) {
-        char *end;
-        box[i] = strtod(rest, &end);
-        if (end == rest || !isfinite(box[i]) || *end != (i < 5 ? ',' : 0))
-            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: '%s' is not x0,y0,z0,x1,y1,z1", text);
-        rest = end + 1;
-    }
-    for (int k = 0; k < 3; k++)
-        if (!(box[k] < box[3 + k]))
-            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: %c from %g to %g is empty", "xyz"[k], box[k], box[3 + k]);
-    return BRIO_OK;
 }
 
 /* Refuses work over --max-memory. */
@@ -292,29 +269,6 @@ static brio_status check_tiles(run *r, brio_cells_format format) {
     return cli_check_tiles(r, &a->weights, a->tiles);
 }
 
-static void report_tiles(run *r, const brio_tiles_stats *s, const brio_tiles_cells_stats *cells) {
-    facts *f = &r->facts;
-    cli_fact_bool(f, "weighted", s->weighted);
-    cli_fact_count(f, "points", s->points);
-    cli_fact_count(f, "duplicates", s->duplicates);
-    cli_fact_count(f, "hidden", s->hidden);
-    cli_fact_integer(f, "dimension", s->dimension);
-    cli_fact_count(f, "cells", cells->cells);
-    cli_fact_count(f, "bounded", cells->bounded);
-    cli_fact_count(f, "faces", cells->faces);
-    cli_fact_real(f, "volume", cells->volume_sum);
-    if (isfinite(cells->region_volume)) {
-        double error = fabs(cells->volume_sum / cells->region_volume - 1);
-        if (cells->outside) cli_warn(r, WARNING_OUTSIDE, (size_t)cells->outside, (size_t)s->vertices, r->operands[0]);
-        cli_fact_real(f, "box_volume", cells->region_volume);
-        cli_fact_real(f, "box_error", is_held(cells->region_volume) ? error : NAN);
-    }
-    cli_fact_count(f, "tiles", s->tiles);
-    cli_fact_count(f, "resumed", s->resumed);
-    cli_fact_count(f, "largest_tile", s->most_points);
-    cli_fact_count(f, "scratch_bytes", s->scratch_bytes);
-}
-
 /* What takes the cells that are shown. */
 typedef struct {
     run *r;
@@ -378,7 +332,7 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     TRY(out.status); /* why the function ended it */
     TRY(ended);
     cli_lap(r, "cells");
-    report_tiles(r, brio_tiles_facts(t), brio_tiles_cells_facts(t));
+    cli_report_tile_cells(r, brio_tiles_facts(t), brio_tiles_cells_facts(t));
     TRY(cli_check_interrupt(r));
     if (out.cells) TRY(brio_cells_table_finish(r->ctx, out.cells));
     if (out.faces) TRY(brio_cells_table_finish(r->ctx, out.faces));
@@ -405,7 +359,7 @@ static brio_status voronoi(run *r) {
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(require_output(r, &format));
     TRY(cli_check_periodic(r, &a->periodic));
-    if (a->box) TRY(read_box(r, a->box, box));
+    if (a->box) TRY(cli_read_box(r, a->box, box));
     o.box = a->box ? box : NULL;
     if (a->tiles) {
         TRY(check_tiles(r, format));

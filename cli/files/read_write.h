@@ -89,4 +89,7 @@ brio_status cli_shown_cells_add(run *r, shown_cells *s, const brio_cells *cells,
 brio_status cli_shown_cells_show(run *r, const shown_cells *s);
 void cli_shown_cells_free(shown_cells *s);
 
+/** Shows the tetrahedra of all tiles, or of over 200,000 an even choice: one tile is in memory at a time. */
+brio_status cli_show_tiles(run *r, brio_tiles *t, uint32_t tiles);
+
 #endif

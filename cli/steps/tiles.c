@@ -32,10 +32,10 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     return BRIO_OK;
 }
 
-brio_status cli_check_tile_files(run *r) {
+brio_status cli_check_tile_files(run *r, const char *formats) {
     const char *output = r->common.output;
     if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
-        return cli_fail_output(r, "%s: --tiles writes .ply, and .pvtu with a file for each tile beside it", output);
+        return cli_fail_output(r, "%s: --tiles writes %s with a file for each tile beside it", output, formats);
     return output ? cli_new_folder_check(r, output, OF_TILES) : BRIO_OK;
 }
 
@@ -50,7 +50,7 @@ static brio_format merged_format(const run *r) {
 brio_status cli_check_tile_output(run *r) {
     const char *input = r->operands[0];
     brio_place_facts file;
-    if (merged_format(r) == BRIO_FORMAT_AUTO) return cli_check_tile_files(r);
+    if (merged_format(r) == BRIO_FORMAT_AUTO) return cli_check_tile_files(r, ".ply, and .pvtu");
     if (!strcmp(input, "-") || !brio_find_facts(input, &file) || file.kind != BRIO_IS_FILE)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "%s: for one output of all tiles the input is read twice, so it must be a file; .pvtu needs it "
@@ -173,6 +173,54 @@ static brio_status report(run *r, brio_tiles *t) {
     cli_lap(r, "checksum");
     cli_report_tiles(r, brio_tiles_facts(t), checksum);
     return BRIO_OK;
+}
+
+/* --- cells --- */
+
+/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
+enum { LEAST_VOLUME = -900, MOST_VOLUME = 1020 };
+
+bool cli_volume_is_held(double volume) {
+    return volume > 0 && isfinite(volume) && ilogb(volume) >= LEAST_VOLUME && ilogb(volume) <= MOST_VOLUME;
+}
+
+/* Reads six numbers with commas between them. */
+brio_status cli_read_box(run *r, const char *text, double box[6]) {
+    const char *rest = text;
+    for (int i = 0; i < 6; i++) {
+        char *end;
+        box[i] = strtod(rest, &end);
+        if (end == rest || !isfinite(box[i]) || *end != (i < 5 ? ',' : 0))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: '%s' is not x0,y0,z0,x1,y1,z1", text);
+        rest = end + 1;
+    }
+    for (int k = 0; k < 3; k++)
+        if (!(box[k] < box[3 + k]))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: %c from %g to %g is empty", "xyz"[k], box[k], box[3 + k]);
+    return BRIO_OK;
+}
+
+void cli_report_tile_cells(run *r, const brio_tiles_stats *s, const brio_tiles_cells_stats *cells) {
+    facts *f = &r->facts;
+    cli_fact_bool(f, "weighted", s->weighted);
+    cli_fact_count(f, "points", s->points);
+    cli_fact_count(f, "duplicates", s->duplicates);
+    cli_fact_count(f, "hidden", s->hidden);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "cells", cells->cells);
+    cli_fact_count(f, "bounded", cells->bounded);
+    cli_fact_count(f, "faces", cells->faces);
+    cli_fact_real(f, "volume", cells->volume_sum);
+    if (isfinite(cells->region_volume)) {
+        double error = fabs(cells->volume_sum / cells->region_volume - 1);
+        if (cells->outside) cli_warn(r, WARNING_OUTSIDE, (size_t)cells->outside, (size_t)s->vertices, r->operands[0]);
+        cli_fact_real(f, "box_volume", cells->region_volume);
+        cli_fact_real(f, "box_error", cli_volume_is_held(cells->region_volume) ? error : NAN);
+    }
+    cli_fact_count(f, "tiles", s->tiles);
+    cli_fact_count(f, "resumed", s->resumed);
+    cli_fact_count(f, "largest_tile", s->most_points);
+    cli_fact_count(f, "scratch_bytes", s->scratch_bytes);
 }
 
 /* --- output --- */
@@ -401,104 +449,6 @@ done:
     return status;
 }
 
-/* --- what is shown --- */
-
-/* Tetrahedra on a page or in a picture. Chosen: their corners are fewer than the vertices of a page with all digits. */
-enum { MOST_SHOWN = 200000 };
-
-/* A corner of a tetrahedron that is shown. */
-typedef struct {
-    uint64_t point; /* in the input */
-    size_t corner;
-    double place[3], weight;
-} shown_corner;
-
-/* The tetrahedra that are shown: all of them, or an even choice. */
-typedef struct {
-    uint64_t all, most, seen;
-    size_t count; /* of the corners so far */
-    shown_corner *corner;
-} showing;
-
-static void choose_tetrahedra(showing *s, const brio_tile_part *p) {
-    for (size_t i = 0; i < p->num_tetrahedra; i++, s->seen++) {
-        if (s->seen * s->most / s->all == (s->seen + 1) * s->most / s->all) continue;
-        for (int k = 0; k < 4; k++, s->count++) {
-            size_t v = p->tetrahedra[i][k];
-            shown_corner *c = &s->corner[s->count];
-            *c = (shown_corner){.point = p->index[v], .corner = s->count, .weight = p->weights ? p->weights[v] : 0};
-            memcpy(c->place, p->points + 3 * v, sizeof c->place);
-        }
-    }
-}
-
-static int compare_corners(const void *a, const void *b) {
-    const shown_corner *x = a, *y = b;
-    if (x->point != y->point) return x->point < y->point ? -1 : 1;
-    return x->corner < y->corner ? -1 : x->corner > y->corner;
-}
-
-/* Sorts the corners by their points, numbers the points, and keeps one corner of each. Returns the number of points. */
-static size_t number_points(showing *s, uint32_t *tetrahedra) {
-    size_t n = 0;
-    qsort(s->corner, s->count, sizeof *s->corner, compare_corners);
-    for (size_t i = 0; i < s->count; i++) {
-        shown_corner c = s->corner[i];
-        if (!n || c.point != s->corner[n - 1].point) s->corner[n++] = c;
-        tetrahedra[c.corner] = (uint32_t)(n - 1);
-    }
-    return n;
-}
-
-/* Makes the mesh of the tetrahedra that are shown. It has their vertices alone, as the files of tiles. */
-static brio_status fill_shown(run *r, showing *s, bool weighted, brio_mesh *mesh) {
-    brio_status status = BRIO_OK;
-    uint32_t *tetrahedra = malloc((s->count + 1) * sizeof *tetrahedra);
-    double *places = malloc((3 * s->count + 1) * sizeof *places);
-    void *data;
-    if (!tetrahedra || !places) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for what is shown");
-    size_t n = number_points(s, tetrahedra);
-    for (size_t i = 0; i < n; i++) memcpy(places + 3 * i, s->corner[i].place, sizeof s->corner[i].place);
-    TRY(brio_mesh_set_vertices(mesh, places, n));
-    TRY(brio_mesh_set_tetrahedra(mesh, tetrahedra, 4, s->count / 4));
-    TRY(brio_mesh_add_property(mesh, "point", BRIO_SCALAR_FLOAT64, &data));
-    for (size_t i = 0; i < n; i++) ((double *)data)[i] = (double)s->corner[i].point;
-    if (weighted) {
-        TRY(brio_mesh_add_property(mesh, "weight", BRIO_SCALAR_FLOAT64, &data));
-        for (size_t i = 0; i < n; i++) ((double *)data)[i] = s->corner[i].weight;
-    }
-done:
-    free(tetrahedra);
-    free(places);
-    return status;
-}
-
-/* Shows the tetrahedra of all tiles, or an even choice: one tile is in memory at a time. */
-static brio_status show_tiles(run *r, brio_tiles *t, uint32_t tiles) {
-    brio_status status = BRIO_OK;
-    showing s = {.all = brio_tiles_facts(t)->tetrahedra};
-    brio_mesh *mesh = NULL;
-    if (!cli_showing(r)) return BRIO_OK;
-    s.most = s.all < MOST_SHOWN ? s.all : MOST_SHOWN;
-    s.corner = malloc((4 * (size_t)s.most + 1) * sizeof *s.corner);
-    if (!s.corner) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for what is shown");
-    for (uint32_t i = 0; i < tiles; i++) {
-        brio_tile_part part = {.size = sizeof part};
-        TRY(brio_tiles_part(r->ctx, t, i, &part));
-        choose_tetrahedra(&s, &part);
-        brio_tile_part_free(r->ctx, &part);
-        TRY(cli_check_interrupt(r));
-    }
-    TRY(brio_mesh_new(r->ctx, &mesh));
-    TRY(fill_shown(r, &s, brio_tiles_facts(t)->weighted, mesh));
-    if (s.most < s.all) cli_warn(r, WARNING_CHOSEN, cli_showing(r), (size_t)s.most, (size_t)s.all);
-    status = cli_show(r, mesh);
-done:
-    brio_mesh_free(mesh);
-    free(s.corner);
-    return status;
-}
-
 /* --- the run --- */
 
 /* Reads the input, unless a run before has. */
@@ -540,7 +490,7 @@ brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
         TRY(write_merged(&m, t, (uint32_t)tiles));
     else if (r->common.output)
         TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
-    status = show_tiles(r, t, (uint32_t)tiles);
+    status = cli_show_tiles(r, t, (uint32_t)tiles);
 done:
     brio_tiles_free(t);
     return status;

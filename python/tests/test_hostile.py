@@ -9,6 +9,8 @@ import time
 
 import pytest
 
+posix = pytest.mark.skipif(os.name == "nt", reason="Windows has no fork, no timers by signals, no module resource")
+
 HOSTILE = r"""
 import random, sys, warnings
 import numpy as np
@@ -192,6 +194,7 @@ def test_hulls_of_points_that_another_thread_changes(alone):
     assert alone(CHANGED_HULL, CHANGED_SECONDS).split() == ["True", "True"]
 
 
+@posix
 def test_hulls_without_a_copy_of_the_points(alone):
     grown = alone(r"""
 import resource, numpy as np, brio
@@ -229,6 +232,7 @@ print(all(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0 for child in c
 """
 
 
+@posix
 def test_fork_while_a_call_runs(alone):
     assert alone(FORK, timeout=100).strip() == "True"
 
@@ -246,6 +250,7 @@ if __name__ == "__main__":
 """
 
 
+@posix
 def test_processes_of_multiprocessing(alone):
     assert alone(POOL).strip() == "True"
 
@@ -288,6 +293,7 @@ def test_other_interpreters(alone):
 INTERRUPT = pathlib.Path(__file__).parent.parent / "bench" / "interrupt.py"
 
 
+@posix
 @pytest.mark.parametrize("work", ["delaunay", "plane", "labeled-delaunay", "power-crust", "voronoi", "alpha", "locate",
                                   "natural", "natural2"])
 def test_interrupt(alone, work):
@@ -295,6 +301,22 @@ def test_interrupt(alone, work):
     assert alone(INTERRUPT.read_text(), work).startswith(work)
 
 
+def test_interrupt_by_a_thread(alone):
+    """What a session's button for it does on every system."""
+    assert alone(r"""
+import _thread, signal, threading, numpy as np, brio
+signal.signal(signal.SIGINT, signal.default_int_handler)
+points = np.random.default_rng(1).random((1_000_000, 3))
+try:
+    threading.Timer(0.3, _thread.interrupt_main).start()
+    brio.Delaunay(points, threads=1)
+    print("ended")
+except KeyboardInterrupt:
+    print("interrupted")
+""").strip() == "interrupted"
+
+
+@posix
 def test_ctrl_c():
     program = """
 import signal, numpy as np, brio
@@ -344,6 +366,7 @@ print((held() - before) / 2**20)
 """
 
 
+@posix
 def test_hundreds_of_builds_without_growth(alone):
     assert float(alone(MEMORY, timeout=300)) < 1.6
 

@@ -1,8 +1,17 @@
-/* Coordinates and weights that are no numbers, see finite.h. */
+/* Points that no caller can have, see finite.h. */
 #include "base/finite.h"
 #include <assert.h>
 #include <inttypes.h>
 #include <math.h>
+
+/* Indices have 32 bits, and 17 of their values at the end stand for other things. Where addresses have 32 bits, too,
+ * each point may take 64 bytes, so that no size in bytes wraps. */
+static const size_t MOST_POINTS = SIZE_MAX / 64 < UINT32_MAX - 17 ? SIZE_MAX / 64 : UINT32_MAX - 17;
+
+brio_status brio_refuse_many(brio_context *ctx, size_t num_points) {
+    BRIO_EXPECT(ctx, num_points <= MOST_POINTS, BRIO_ERR_TOO_LARGE, "%zu points; at most %zu", num_points, MOST_POINTS);
+    return BRIO_OK;
+}
 
 /* Copies the numbers of a point: what is judged and named is what was read once, since another thread of the caller may
  * write to them. */

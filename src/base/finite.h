@@ -1,10 +1,14 @@
-/* Coordinates and weights that are no numbers. */
+/* Points that no caller can have: too many of them, and coordinates and weights that are no numbers. */
 #ifndef BRIO_BASE_FINITE_H
 #define BRIO_BASE_FINITE_H
 
 #include "base/context.h"
 #include <stdbool.h>
 #include <stddef.h>
+
+/** Refuses a number of points that no array has, before anything is read by it.
+ *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE. */
+brio_status brio_refuse_many(brio_context *ctx, size_t num_points);
 
 /** Points that are no numbers, counted over the parts of an array. */
 typedef struct brio_not_finite {

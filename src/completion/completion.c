@@ -16,6 +16,7 @@
  * Differs from the papers: what is asked for is points in conflict, a bounded number at a time, with exact ties and
  * weights; half-spaces are asked for, too; later rounds triangulate the borders only. */
 #include "completion/completion.h"
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
@@ -168,8 +169,8 @@ static void judge_batch(completion *c, const uint32_t *tets, size_t n) {
     double centre[BRIO_CENTRE_BATCH][3], error[BRIO_CENTRE_BATCH];
     brio_ball ball;
     for (size_t i = 0; i < n; i++) memcpy(vertex[i], c->tet[tets[i]].vertex, sizeof *vertex);
-    brio_centres(&(brio_centre_batch){c->points, c->task.weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, n},
-                 *centre, error);
+    brio_centre_batch batch = {c->points, c->task.weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, n};
+    brio_near_centres(&batch, *centre, error);
     ball.infinite = false;
     for (size_t i = 0; i < n; i++) {
         memcpy(ball.vertex[0], c->points + 3 * (size_t)vertex[i][0], 3 * sizeof **ball.vertex);
@@ -370,8 +371,11 @@ static void list_finals(void *user, size_t begin, size_t end, int thread) {
         if (finite) any |= c->open[t->vertex[3]];
         c->stays[i] = any & OPEN;
         if (!(any & ENDS)) continue;
-        uint32_t leader = leader_of(c, t);
-        if (leader == BRIO_INFINITE || c->open[leader] != ENDS) continue;
+        unsigned all = c->open[t->vertex[0]] & c->open[t->vertex[1]] & c->open[t->vertex[2]];
+        if (!finite || !(all & c->open[t->vertex[3]] & ENDS)) { /* else it has own vertices alone, which all end */
+            uint32_t leader = leader_of(c, t);
+            if (leader == BRIO_INFINITE || c->open[leader] != ENDS) continue;
+        }
         uint32_t *row = s->row[begin + mine->count++];
         for (int k = 0; k < 4; k++) row[k] = t->vertex[k] == BRIO_INFINITE ? BRIO_INFINITE : c->local[t->vertex[k]];
         mine->finite += finite;
@@ -483,7 +487,7 @@ done:
 static brio_status set_up(completion *c) {
     const brio_completion_task *task = &c->task;
     size_t n = task->num_points;
-    BRIO_EXPECT(c->ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points at a time; at most 2^32 - 17", n);
+    BRIO_FORWARD(brio_refuse_many(c->ctx, n));
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->known, n + 1));
     c->capacity = n + 1;
     BRIO_FORWARD(BRIO_ALLOC(c->ctx, c->local, n + 1));

@@ -4,6 +4,9 @@
 #include "base/memory.h"
 #include "laboratory/blocks.h"
 
+/* Twice their number fits in 32 bits, and where addresses have 32 bits so do the bytes of what is made of them. */
+static const size_t MOST_EDGES = SIZE_MAX / 16 < INT32_MAX ? SIZE_MAX / 16 : INT32_MAX;
+
 static brio_status check(brio_context *ctx, const brio_laboratory_options *o) {
     BRIO_EXPECT(ctx, !ctx->experiment, BRIO_ERR_ARGUMENT, "the context has an experiment already");
     BRIO_EXPECT(ctx, (unsigned)o->locate < BRIO_LOCATION_END, BRIO_ERR_ARGUMENT, "no location strategy %d",
@@ -13,7 +16,8 @@ static brio_status check(brio_context *ctx, const brio_laboratory_options *o) {
                 (int)o->labeling);
     BRIO_EXPECT(ctx, (unsigned)o->extraction < BRIO_EXTRACTION_END, BRIO_ERR_ARGUMENT, "no such extraction: %d",
                 (int)o->extraction);
-    BRIO_EXPECT(ctx, o->num_edges <= INT32_MAX, BRIO_ERR_TOO_LARGE, "%zu edges; at most 2^31 - 1", o->num_edges);
+    BRIO_EXPECT(ctx, o->num_edges <= MOST_EDGES, BRIO_ERR_TOO_LARGE, "%zu edges; at most %zu", o->num_edges,
+                MOST_EDGES);
     BRIO_EXPECT(ctx, !(o->page_bytes & (o->page_bytes - 1)) && (!o->page_bytes || o->page_bytes >= 64),
                 BRIO_ERR_ARGUMENT, "pages of %llu bytes; their size is a power of two from 64 on",
                 (unsigned long long)o->page_bytes);

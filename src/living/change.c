@@ -42,6 +42,7 @@ void brio_dynamic_periodic_free(brio_dynamic_periodic *d) {
 
 static brio_status check_points(brio_dynamic_periodic *d, const double *points, const double *weights, size_t n) {
     BRIO_EXPECT(d->ctx, d->weighted || !weights, BRIO_ERR_ARGUMENT, "weights for a triangulation without weights");
+    BRIO_FORWARD(brio_refuse_many(d->ctx, n));
     BRIO_EXPECT(d->ctx, n < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", n);
     return brio_refuse_not_finite(d->ctx, points, weights, n, NULL);
 }

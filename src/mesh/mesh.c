@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Larger counts are refused, so that sizes in bytes cannot overflow. */
-static const uint64_t MOST = UINT64_C(1) << 48;
+static const uint64_t MOST = SIZE_MAX / 64 < UINT64_C(1) << 48 ? SIZE_MAX / 64 : UINT64_C(1) << 48;
 
 brio_status brio_mesh_new(brio_context *ctx, brio_mesh **out) {
     brio_status status = BRIO_ALLOC_ZERO(ctx, *out, 1);
@@ -39,8 +39,8 @@ brio_status brio_mesh_set_vertices(brio_mesh *mesh, const double *vertices, size
     double *copy = NULL;
     BRIO_EXPECT(ctx, !mesh->vertices, BRIO_ERR_ARGUMENT, "the mesh has vertices already");
     BRIO_EXPECT(ctx, !mesh->num_properties, BRIO_ERR_ARGUMENT, "the mesh has properties already: set vertices first");
-    BRIO_EXPECT(ctx, num_vertices <= UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu vertices; indices have 32 bits",
-                num_vertices);
+    BRIO_EXPECT(ctx, num_vertices <= UINT32_MAX && num_vertices < MOST, BRIO_ERR_TOO_LARGE,
+                "%zu vertices; indices have 32 bits", num_vertices);
     BRIO_FORWARD(vertices ? BRIO_ALLOC(ctx, copy, 3 * num_vertices) : BRIO_ALLOC_ZERO(ctx, copy, 3 * num_vertices));
     if (vertices && num_vertices) memcpy(copy, vertices, 3 * num_vertices * sizeof *copy);
     mesh->vertices = copy;

@@ -18,7 +18,7 @@
 enum { POINTS_A_THREAD = 1 << 12 };
 
 brio_status brio_refuse_points(brio_context *ctx, const double *points, size_t n) {
-    if (n >= UINT32_MAX - 16) return brio_fail(ctx, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
+    BRIO_FORWARD(brio_refuse_many(ctx, n));
     return brio_refuse_not_finite(ctx, points, NULL, n, NULL);
 }
 

@@ -290,6 +290,7 @@ brio_status brio_periodic_take(brio_context *ctx, const brio_periodic_options *o
 static brio_status begin(brio_context *ctx, const double *points, size_t n, const brio_periodic_options *options,
                          brio_periodic_options *o, brio_periodic **out) {
     BRIO_FORWARD(brio_periodic_take(ctx, options, o));
+    BRIO_FORWARD(brio_refuse_many(ctx, n));
     BRIO_EXPECT(ctx, n < UINT32_MAX / 2, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^31 - 1", n);
     BRIO_FORWARD(brio_refuse_not_finite(ctx, points, NULL, n, NULL));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, *out, 1));

@@ -107,7 +107,8 @@ typedef struct brio_folded {
     size_t num_border;
 } brio_folded;
 
-/** Makes the classes of stars.   out  its arrays are owned by the caller.
+/** Makes the classes of stars, of which the tetrahedra take the place of those of stars->t.
+ *  out  its arrays are owned by the caller.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, BRIO_ERR_TOO_LARGE, or BRIO_ERR_INTERNAL if facets have no
  *  mates. */
 brio_status brio_periodic_fold(brio_context *ctx, brio_stars *stars, brio_folded *out);

@@ -104,16 +104,11 @@ static void build(const void *user, size_t begin, size_t end, int depth) {
     build(t, middle + 1, end, depth + 1);
 }
 
-brio_status brio_point_tree_fits(brio_context *ctx, size_t count) {
-    if (count < UINT32_MAX) return BRIO_OK;
-    return brio_fail(ctx, BRIO_ERR_TOO_LARGE, "%zu points, the limit is 2^32 - 2", count);
-}
-
 brio_status brio_point_tree_scaled(brio_context *ctx, const double *points, size_t count, int exponent,
                                    brio_point_tree *out) {
     brio_status status = BRIO_OK;
     *out = (brio_point_tree){.count = count};
-    BRIO_TRY(brio_point_tree_fits(ctx, count));
+    BRIO_TRY(brio_refuse_many(ctx, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->point, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->index, count));
     BRIO_TRY(BRIO_ALLOC(ctx, out->axis, count));

@@ -16,11 +16,7 @@ typedef struct {
     uint8_t *axis;      /* axis along which a point cuts the range whose middle it is */
 } brio_point_tree;
 
-/** Refuses more points than a tree can have. Callers that read all points before they build a tree ask first.
- *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE. */
-brio_status brio_point_tree_fits(brio_context *ctx, size_t count);
-
-/** Builds a tree of at most 2^32 - 2 points, which it copies. The caller frees the tree, also after a failure.
+/** Builds a tree of points, which it copies. The caller frees the tree, also after a failure.
  *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 brio_status brio_point_tree_new(brio_context *ctx, const double *points, size_t count, brio_point_tree *out);
 

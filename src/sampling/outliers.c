@@ -16,6 +16,7 @@
  * Based on: Breunig Kriegel Ng Sander. LOF: identifying density-based local outliers. SIGMOD 2000.
  * Differs from the paper: mean distances instead of reachability distances, a quartile instead of a mean, and the
  * second rule. */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/scale.h"
@@ -186,7 +187,7 @@ brio_status brio_outliers(brio_context *ctx, const double *points, size_t num_po
     s.factor = o.factor;
     brio_progress_part(ctx, bar, 0, 0.2);
     BRIO_TRY(brio_progress(ctx, "outliers", 0));
-    BRIO_TRY(brio_point_tree_fits(ctx, num_points));
+    BRIO_TRY(brio_refuse_many(ctx, num_points));
     BRIO_TRY(brio_point_tree_scaled(ctx, points, num_points, scale_of(points, num_points), &s.tree));
     BRIO_TRY(BRIO_ALLOC(ctx, s.spacing, num_points + 1));
     brio_progress_part(ctx, bar, 0.2, 0.6);

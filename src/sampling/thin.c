@@ -315,8 +315,7 @@ brio_status brio_thin(brio_context *ctx, const double *points, size_t num_points
     thinning t = {.ctx = ctx, .points = points, .num_points = num_points, .chosen = chosen};
     BRIO_REQUIRE(ctx, spacing > 0 && isfinite(spacing), BRIO_ERR_ARGUMENT,
                  "a spacing of %g, expected a finite number above 0", spacing);
-    BRIO_REQUIRE(ctx, num_points < UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu points, the most are %u", num_points,
-                 UINT32_MAX - 1);
+    BRIO_TRY(brio_refuse_many(ctx, num_points));
     BRIO_TRY(brio_refuse_not_finite(ctx, points, NULL, num_points, NULL));
     if (num_points) {
         memset(chosen, 0, num_points);

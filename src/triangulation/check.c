@@ -54,6 +54,7 @@
  *           Devillers, Liotta, Preparata, Tamassia. Checking the convexity of polytopes and the planarity of
  *           subdivisions. CGTA 1998.
  *           Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/places.h"
@@ -393,7 +394,7 @@ brio_status brio_tetrahedra_check(brio_context *ctx, const double *points, const
     brio_tetrahedra t = {0};
     bool same = true;
     BRIO_REQUIRE(ctx, stride >= 4, BRIO_ERR_ARGUMENT, "a stride of %zu numbers for four vertices", stride);
-    BRIO_REQUIRE(ctx, num_points < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", num_points);
+    BRIO_TRY(brio_refuse_many(ctx, num_points));
     BRIO_TRY(brio_records_new(ctx, &(brio_input){points, weights, num_points}, NULL, 1, NULL, &record));
     if (num_tetrahedra == 0) {
         BRIO_REQUIRE(ctx, brio_dimension(record, num_points) < 3, BRIO_ERR_CHECK,

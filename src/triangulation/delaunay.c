@@ -2,6 +2,7 @@
  *
  * Based on: Amenta, Choi, Rote. Incremental constructions con BRIO. SoCG 2003.
  *           Devillers, Teillaud. Perturbations for Delaunay and weighted Delaunay 3D triangulations. CGTA 2011. */
+#include "base/finite.h"
 #include "base/float_state.h"
 #include "base/kept.h"
 #include "base/memory.h"
@@ -21,7 +22,7 @@
 enum { PROGRESS_EVERY = 8192, MOST_TETRAHEDRA = 1 << 30, NAMES_A_THREAD = 1 << 14 };
 
 static brio_status check_count(brio_context *ctx, size_t n) {
-    BRIO_EXPECT(ctx, n < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", n);
+    BRIO_FORWARD(brio_refuse_many(ctx, n));
     /* canonical_order.c numbers two buckets a record in 32 bits */
     BRIO_EXPECT(ctx, ctx->scratch || n < (UINT32_C(1) << 31) - 16, BRIO_ERR_TOO_LARGE,
                 "%zu points; at most 2^31 - 17 without a scratch folder", n);

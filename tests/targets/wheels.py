@@ -43,6 +43,8 @@ PLATFORMS = {
 OLDER = ['numpy==1.26.4', 'scipy==1.11.4']
 # scipy asks for ctypes, which CPython for musl lacks here.
 OTHERS = {'windows-x86_64': OLDER, 'linux-x86_64-musl': OLDER[:1], 'linux-aarch64-musl': OLDER[:1]}
+# Addresses of Python under wine, which refuses no memory, as Windows does beyond what there is: tests ask for 34 GB.
+MOST_ADDRESSES = 16 << 30
 FIRST = '''
 import time
 begin = time.perf_counter()
@@ -193,6 +195,10 @@ def hash_of_installed(root, wheel, packages):
     return targets.hash_of(sorted(p.name for p in packages.iterdir()), [wheel, *shared])
 
 
+def limit_addresses():
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_ADDRESSES, MOST_ADDRESSES))
+
+
 def run_tests(root, folder, python, environment, target, files, seconds, installed, facts, again):
     """Runs the package's tests, file by file; their sums go to the row's facts. Whether something is wrong. FOLDER/results.json has what
     came of each file: one that passed and met the same is not run again. What they print is in FOLDER/logs."""
@@ -207,7 +213,7 @@ def run_tests(root, folder, python, environment, target, files, seconds, install
         if results.get(file.name, {}).get('met') != met or results[file.name]['wrong']:
             try:
                 done, used = timed([*python, '-X', 'faulthandler', '-m', 'pytest', '-o', 'addopts=', '-q', '-rsfE', '-p', 'no:cacheprovider', seen_by(target, file)],
-                                   environment, seconds, cwd=root / 'python')
+                                   environment, seconds, cwd=root / 'python', preexec_fn=limit_addresses if target.system == 'Windows' else None)
             except subprocess.TimeoutExpired:
                 left_out.append('%s: over %d s' % (file.name, seconds))
                 continue

@@ -142,14 +142,23 @@ static void the_environment_lowers_the_set(void) {
     }
 }
 
-/* The programs and packages of the cross compiler used no instruction set but the plain one. */
-static void the_largest_set_is_that_which_the_system_lists(void) {
-    static char line[1 << 16];
-    FILE *facts = fopen("/proc/cpuinfo", "r");
+/* What the system lists of an x86 processor, or NULL. A program for another one may see this machine's list through its
+ * emulator. */
+static const char *listed_flags(void) {
     bool listed = false;
+    static char line[1 << 16];
+#ifdef __x86_64__
+    FILE *facts = fopen("/proc/cpuinfo", "r");
     while (facts && !listed && fgets(line, sizeof line, facts)) listed = !strncmp(line, "flags", 5);
     if (facts) fclose(facts);
-    if (!listed) {
+#endif
+    return listed ? line : NULL;
+}
+
+/* The programs and packages of the cross compiler used no instruction set but the plain one. */
+static void the_largest_set_is_that_which_the_system_lists(void) {
+    const char *line = listed_flags();
+    if (!line) {
         printf("skipped: no system lists here what an x86 processor has\n");
         return;
     }

@@ -7,6 +7,7 @@
  * Based on: Choi. Practical Delaunay triangulation algorithms ... 2003, section 3.3.4.
  * Differs from the paper: the bounding points are moved out by 4 |D|, so that no
  *                         outer ball through one vanishes. */
+#include "base/finite.h"
 #include "base/memory.h"
 #include "base/scale.h"
 #include "mesh/properties.h"
@@ -50,7 +51,7 @@ static brio_status find_balls(brio_labeled_poles *l, const double *points, size_
     const double distance = o->distance;
     brio_pole_request request;
     BRIO_REQUIRE(l->ctx, isfinite(distance), BRIO_ERR_ARGUMENT, "the distance of an offset is a finite number");
-    BRIO_REQUIRE(l->ctx, num_points < UINT32_MAX - 16, BRIO_ERR_TOO_LARGE, "%zu points; at most 2^32 - 17", num_points);
+    BRIO_TRY(brio_refuse_many(l->ctx, num_points));
     double most = fmin(brio_greatest(points, 3 * num_points), DBL_MAX * 0x1p-64);
     BRIO_REQUIRE(l->ctx, num_points == 0 || distance <= FARTHEST * most, BRIO_ERR_ARGUMENT,
                  "the distance %g of the offset is more than 2^60 times the greatest coordinate %g", distance, most);
