@@ -29,7 +29,6 @@ typedef struct boxed_diagram {
     const brio_cells_options *options; /* with a box */
 } boxed_diagram;
 
-/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
 static double error_of(const brio_cells *cells) {
     return fabs(cells->volume_sum / cells->region_volume - 1);
 }
@@ -195,30 +194,17 @@ done:
     return status;
 }
 
-/* What a page and a picture show: cells, and by how much each is smaller there, so that it can be told from others. */
-enum { MOST_SHOWN = 8000 };
-static const double SMALLER = 0.1;
-
-/* Shows cells: on a page, which moves them apart by itself, and in a picture, where they are smaller. */
-static brio_status show_meshes(run *r, const brio_mesh *whole, const brio_mesh *small, size_t left_out, size_t all) {
-    if (!whole->num_faces)
-        return cli_fail(r, BRIO_ERR_NO_ANSWER, "no cell ends: nothing to show; --box cuts cells off");
-    FORWARD(cli_show_both(r, whole, small, "volume"));
-    if (left_out) cli_warn(r, WARNING_CELLS, cli_showing(r), left_out, all);
-    return BRIO_OK;
-}
-
-static brio_status show(run *r, const brio_cells *cells) {
-    brio_mesh *whole = NULL, *small = NULL;
+static brio_status show(run *r, const brio_mesh *mesh, const brio_cells *cells) {
+    const arguments *a = r->arguments;
     brio_status status = BRIO_OK;
-    size_t left_out = 0;
+    shown_cells s = {.all = cells->num_cells, .has_sites = true};
+    bool open = !a->box && !cli_is_periodic(&a->periodic);
     if (!cli_showing(r)) return BRIO_OK;
-    TRY(brio_cells_mesh(r->ctx, cells, MOST_SHOWN, 0, &left_out, &whole));
-    if (r->common.picture) TRY(brio_cells_mesh(r->ctx, cells, MOST_SHOWN, SMALLER, NULL, &small));
-    status = show_meshes(r, whole, small, left_out, cells->num_cells);
+    if (open) cli_shown_cells_stay_near(&s, mesh->vertices, mesh->num_vertices);
+    TRY(cli_shown_cells_add(r, &s, cells, NULL));
+    status = cli_shown_cells_show(r, &s);
 done:
-    brio_mesh_free(whole);
-    brio_mesh_free(small);
+    cli_shown_cells_free(&s);
     return status;
 }
 
@@ -283,125 +269,49 @@ static brio_status check_tiles(run *r, brio_cells_format format) {
     return cli_check_tiles(r, &a->weights, a->tiles);
 }
 
-/* The cells of tiles that are shown, in meshes of some thousands: `whole` on a page, `small` in a picture. */
+/* What takes the cells that are shown. */
 typedef struct {
     run *r;
-    uint64_t all, seen;
-    size_t left_out, count;
-    brio_mesh **whole, **small; /* count */
+    shown_cells shown;
     brio_status status;
-} shown_tiles;
-
-/* Makes room for one more mesh in each list. */
-static brio_status grow(shown_tiles *s) {
-    if (s->count & (s->count - 1)) return BRIO_OK; /* it doubles at powers of two */
-    brio_mesh ***lists[] = {&s->whole, &s->small};
-    for (int i = 0; i < 2; i++) {
-        brio_mesh **list = realloc(*lists[i], 2 * (s->count + 1) * sizeof *list);
-        if (!list) return cli_fail(s->r, BRIO_ERR_NO_MEMORY, "out of memory for what is shown");
-        *lists[i] = list;
-    }
-    return BRIO_OK;
-}
-
-/* Keeps of some cells those that are shown: all, or their share of an even choice. */
-static brio_status keep_shown(shown_tiles *s, const brio_cells *cells, const uint64_t *site) {
-    run *r = s->r;
-    brio_status status = BRIO_OK;
-    if (!cells->num_cells) return BRIO_OK;
-    uint64_t most = s->all < MOST_SHOWN ? s->all : MOST_SHOWN, end = s->seen + cells->num_cells;
-    size_t here = (size_t)(end * most / s->all - s->seen * most / s->all), left_out = 0;
-    brio_cells named = *cells;
-    s->seen = end;
-    s->left_out += cells->num_cells;
-    if (!here) return BRIO_OK;
-    named.site = malloc(cells->num_cells * sizeof *named.site);
-    if (!named.site) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for what is shown");
-    for (size_t c = 0; c < cells->num_cells; c++) named.site[c] = (uint32_t)site[c];
-    TRY(grow(s));
-    s->whole[s->count] = s->small[s->count] = NULL;
-    s->count++;
-    TRY(brio_cells_mesh(r->ctx, &named, here, 0, &left_out, &s->whole[s->count - 1]));
-    if (r->common.picture) TRY(brio_cells_mesh(r->ctx, &named, here, SMALLER, NULL, &s->small[s->count - 1]));
-    s->left_out -= cells->num_cells - left_out;
-done:
-    free(named.site);
-    return status;
-}
+} showing;
 
 static int take_shown(const brio_cells *cells, const uint64_t *site, void *user) {
-    shown_tiles *s = user;
-    s->status = keep_shown(s, cells, site);
+    showing *s = user;
+    s->status = cli_shown_cells_add(s->r, &s->shown, cells, site);
     if (s->status != BRIO_OK) cli_keep_failure(s->r, s->status);
     return s->status != BRIO_OK;
 }
 
-/* Joins meshes of cells, with their sites and volumes. */
-static brio_status join(run *r, brio_mesh *const *parts, size_t count, brio_mesh **out) {
-    brio_status status = BRIO_OK;
-    size_t vertices = 0, faces = 0, corners = 0;
-    void *sites, *volumes;
-    for (size_t i = 0; i < count; i++) {
-        vertices += parts[i]->num_vertices;
-        faces += parts[i]->num_faces;
-        corners += (size_t)parts[i]->face_offsets[parts[i]->num_faces];
+/* Reads where the vertices of all tiles are: cells are shown near them. */
+static brio_status stay_near(run *r, brio_tiles *t, shown_cells *shown) {
+    const arguments *a = r->arguments;
+    for (uint32_t i = 0; i < a->tiles; i++) {
+        brio_tile_part part = {.size = sizeof part};
+        FORWARD(brio_tiles_part(r->ctx, t, i, &part));
+        cli_shown_cells_stay_near(shown, part.points, part.num_vertices);
+        brio_tile_part_free(r->ctx, &part);
+        FORWARD(cli_check_interrupt(r));
     }
-    double *places = malloc((3 * vertices + 1) * sizeof *places);
-    uint64_t *offsets = calloc(faces + 1, sizeof *offsets);
-    uint32_t *corner = malloc((corners + 1) * sizeof *corner);
-    if (!places || !offsets || !corner) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for what is shown");
-    TRY(brio_mesh_new(r->ctx, out));
-    vertices = faces = corners = 0;
-    for (size_t i = 0; i < count; i++) {
-        const brio_mesh *m = parts[i];
-        if (m->num_vertices) memcpy(places + 3 * vertices, m->vertices, 3 * m->num_vertices * sizeof *places);
-        for (uint64_t k = 0; k < m->face_offsets[m->num_faces]; k++)
-            corner[corners + k] = (uint32_t)vertices + m->face_vertices[k];
-        for (size_t f = 1; f <= m->num_faces; f++) offsets[faces + f] = corners + m->face_offsets[f];
-        vertices += m->num_vertices;
-        faces += m->num_faces;
-        corners = (size_t)offsets[faces];
-    }
-    TRY(brio_mesh_set_vertices(*out, places, vertices));
-    TRY(brio_mesh_set_faces(*out, offsets, corner, faces));
-    TRY(brio_mesh_add_face_property(*out, "site", BRIO_SCALAR_UINT32, &sites));
-    TRY(brio_mesh_add_face_property(*out, "volume", BRIO_SCALAR_FLOAT64, &volumes));
-    for (size_t i = 0, f = 0; i < count; f += parts[i++]->num_faces) {
-        if (!parts[i]->num_faces) continue;
-        const brio_mesh *m = parts[i];
-        memcpy((uint32_t *)sites + f, brio_mesh_face_property(m, "site")->data, m->num_faces * sizeof(uint32_t));
-        memcpy((double *)volumes + f, brio_mesh_face_property(m, "volume")->data, m->num_faces * sizeof(double));
-    }
-done:
-    free(places);
-    free(offsets);
-    free(corner);
-    return status;
+    return BRIO_OK;
 }
 
 /* Shows cells of all tiles, or an even choice. They are computed once more, with vertices, tile after tile. */
 static brio_status show_tiles(run *r, brio_tiles *t, const brio_cells_options *clipped) {
     brio_status status = BRIO_OK;
     brio_cells_options o = *clipped;
-    shown_tiles s = {.r = r, .all = brio_tiles_cells_facts(t)->cells};
-    brio_mesh *whole = NULL, *small = NULL;
+    showing s = {.r = r};
     if (!cli_showing(r)) return BRIO_OK;
+    s.shown.all = brio_tiles_cells_facts(t)->cells;
+    s.shown.has_sites = brio_tiles_facts(t)->points <= UINT32_MAX;
     o.vertices = 1;
+    if (!o.box) TRY(stay_near(r, t, &s.shown));
     brio_status ended = brio_tiles_cells(r->ctx, t, &o, 0, take_shown, &s);
     TRY(s.status); /* why the function ended it */
     TRY(ended);
-    TRY(join(r, s.whole, s.count, &whole));
-    if (r->common.picture) TRY(join(r, s.small, s.count, &small));
-    status = show_meshes(r, whole, small, s.left_out, (size_t)s.all);
+    status = cli_shown_cells_show(r, &s.shown);
 done:
-    for (size_t i = 0; i < s.count; i++) {
-        brio_mesh_free(s.whole[i]);
-        brio_mesh_free(s.small[i]);
-    }
-    free(s.whole);
-    free(s.small);
-    brio_mesh_free(whole);
-    brio_mesh_free(small);
+    cli_shown_cells_free(&s.shown);
     return status;
 }
 
@@ -427,6 +337,7 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     if (out.cells) TRY(brio_cells_table_finish(r->ctx, out.cells));
     if (out.faces) TRY(brio_cells_table_finish(r->ctx, out.faces));
     cli_lap(r, "write");
+    cli_interrupt_writing(false);
     status = show_tiles(r, t, o);
 done:
     brio_cells_table_free(out.cells);
@@ -469,7 +380,7 @@ static brio_status voronoi(run *r) {
     }
     TRY(write_file(r, r->common.output, cells, format));
     TRY(write_file(r, a->faces, cells, BRIO_CELLS_FORMAT_FACES_CSV));
-    TRY(show(r, cells));
+    TRY(show(r, mesh, cells));
 done:
     brio_cells_free(cells);
     brio_triangulation_free(t);

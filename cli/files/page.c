@@ -135,7 +135,7 @@ brio_status cli_show_both(run *r, const brio_mesh *mesh, const brio_mesh *pictur
     brio_status status = BRIO_OK;
     char *report = NULL;
     if (!cli_showing(r)) return BRIO_OK;
-    report = brio_program_text(write_report, r);
+    if (!r->facts.failed) report = brio_program_text(write_report, r);
     if (!report) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for the report on a page");
     const char *path = r->common.output ? r->common.output : r->operands[0];
     const brio_page_layer layer = {.size = sizeof layer,

@@ -417,6 +417,19 @@ class Command(ViewTest):
             self.assertEqual((0, "crossing") in page.blocks, count > 0)
             self.assertTrue(os.path.exists(self.path("flaws.png")))
 
+    def test_tetrahedra_that_fail_were_not_shown(self):
+        mesh = self.path("t.vtu")
+        self.expect(0, "delaunay", self.cloud("c.xyz", 50), "-o", mesh, "--quiet")
+        for more, code in ((), 0), (("--weights-mod", "3"), 5):
+            page = self.path("t%d.html" % code)
+            self.expect(code, "check", mesh, *more, "--view", page, "--quiet")
+            self.assertGreater(self.read("t%d.html" % code).layers[0]["tetrahedra"], 0)
+        if os.path.exists("/dev/full"):
+            os.symlink("/dev/full", self.path("full.html"))
+            run = self.expect(6, "check", mesh, "--weights-mod", "3", "--view", self.path("full.html"))
+            self.assertIn("full.html: ", run.err, "why there is no page was not said")
+            self.assertNotIn("inside the sphere", run.err)
+
     def test_names_are_not_taken_for_html(self):
         evil = "a<img src=x onerror=alert(1)>.xyz"
         self.xyz(evil, CUBE)

@@ -8,7 +8,7 @@ const NOTHING = 3.4e38; // a value that is no number
 /** How large the points of a cloud are at first: between three and four times as far as they are apart, if they fill half of the picture. */
 const sizeOf = (points, pixels) => Math.max(2, Math.min(8, Math.round(3.6 * Math.sqrt(0.5 * pixels / Math.max(1, points)))));
 
-/** How a layer is shown, at first, in a picture of so many pixels. */
+/** How a layer is shown, at first.   pixels  of the picture. */
 export function defaultState(layer, pixels) {
     const m = layer.meta, colours = layer.colours("v");
     const few = edges => edges < layer.many && layer.sided; // more would hide the faces

@@ -106,8 +106,8 @@ def picture(*meshes: Any, look: Any = None, colour_by: str | None = None, size: 
     Parameters
     ----------
     meshes : Mesh, Delaunay, Voronoi, ConvexHull, or array_like, shape (n, 3)
-        One to twelve: over each other, or side by side; of space that repeats and living ones, too. Of more than 8,000 cells
-        an even choice.
+        One to twelve: over each other, or side by side; of space that repeats and living ones, too. Cells are those that
+        end; without a box not those that reach beyond the points by over a quarter of their extent; of over 8,000 an even choice.
     look : array_like, shape (3,), optional
         The direction of the eye; by default, of some directions the one that shows most.
     colour_by : str, optional
@@ -157,7 +157,8 @@ def view(*meshes: Any, names: Sequence[str] | None = None, title: str | None = N
     Parameters
     ----------
     meshes : Mesh, Delaunay, Voronoi, ConvexHull, or array_like, shape (n, 3)
-        One to twelve: layers of one scene; of space that repeats and living ones, too. Of more than 8,000 cells an even choice.
+        One to twelve: layers of one scene; of space that repeats and living ones, too. Cells are those that end; without a
+        box not those that reach beyond the points by over a quarter of their extent; of over 8,000 an even choice.
     names : sequence of str, optional
         A name for each.
     title : str, optional
