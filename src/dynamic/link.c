@@ -90,9 +90,9 @@ static size_t find_conflicts(brio_dynamic *d, const brio_tetrahedra *t, uint32_t
         uint32_t facet[BRIO_BATCH], alive = l->alive[base / BRIO_BATCH];
         l->hit[base / BRIO_BATCH] = 0;
         if (!alive) continue;
-        uint32_t one = base + (uint32_t)__builtin_ctz(alive);
+        uint32_t one = base + (uint32_t)__builtin_ctz(alive), count = 32 - (uint32_t)__builtin_clz(alive);
         for (uint32_t i = 0; i < BRIO_BATCH; i++) facet[i] = brio_facet_of(alive >> i & 1 ? base + i : one, 0);
-        unsigned mask = d->engine->conflicts(t, &d->filter, facet, BRIO_BATCH, l->record[vertex]) & alive;
+        unsigned mask = d->engine->conflicts(t, &d->filter, facet, count, l->record[vertex]) & alive;
         l->hit[base / BRIO_BATCH] = (uint8_t)mask;
         for (; mask; mask &= mask - 1) l->in[n++] = base + (uint32_t)__builtin_ctz(mask);
     }

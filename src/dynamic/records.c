@@ -154,7 +154,7 @@ brio_status brio_paths_new(brio_dynamic *d, const brio_moves *m, brio_paths *out
     BRIO_TRY(brio_for(d->ctx, threads, m->count, write_part, &w));
     const sight *seen = all_seen(&w, threads);
     if (!seen->finite && m->points) BRIO_TRY(brio_refuse_not_finite(d->ctx, m->points, m->weights, m->count, NULL));
-    for (size_t i = 0; !seen->finite && i < m->count; i++) { /* another thread has written meanwhile */
+    for (size_t i = 0; !seen->finite && i < m->count; i++) { /* weights alone are named here */
         double record[4];
         BRIO_TRY(brio_new_record(d, m, i, w.names ? w.names[i] : (uint32_t)i, record));
     }

@@ -81,7 +81,7 @@ static brio_status test_queue(brio_dynamic *d, queue *q, brio_slot_list *open) {
 }
 
 /* Returns whether the time of some of the next slots is over. */
-static inline int some_over(const float *until, float now) {
+static inline bool some_over(const float *until, float now) {
     int over = 0;
     for (int i = 0; i < SLOTS; i++) over |= !(until[i] >= now);
     return over;

@@ -134,7 +134,7 @@ brio_status brio_periodic_further(brio_context *ctx, const brio_periodic *t, bri
                                   size_t *num_more);
 
 /** Makes them.   wanted  #points: only those at classes with a point of a 1, and mates among these; NULL: all.
- *  images  gets the images that they name.   out  its array is owned by the caller. */
+ *  images  gets the images that they name.   out  its array is owned by the caller; nothing on failure. */
 brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, const uint8_t *wanted, brio_images *images,
                                  brio_unfolded *out);
 

@@ -252,5 +252,9 @@ brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, cons
     BRIO_TRY(fill(&u, out->tet));
 done:
     free_lists(&u);
+    if (status != BRIO_OK) {
+        brio_release(ctx, out->tet);
+        *out = (brio_unfolded){0};
+    }
     return status;
 }
