@@ -9,9 +9,6 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Chosen: far above the rounding of offsets, far below what the values of a user tell apart. */
-static const double NEAR = 0x1p-80; /* a square */
-
 /* Returns the square of |sum share[i] row[i]|. */
 static double square_of(const double (*row)[3], int count, const double *share) {
     double sum[3] = {0, 0, 0};
@@ -21,10 +18,9 @@ static double square_of(const double (*row)[3], int count, const double *share) 
 }
 
 int brio_shares_hold(const double (*row)[3], int count, const double *share) {
-    assert(count == 3 || count == 4);
     double most = 0;
     for (int i = 0; i < count; i++) most = fmax(most, brio_dot(row[i], row[i]));
-    return square_of(row, count, share) <= NEAR * most;
+    return square_of(row, count, share) <= BRIO_SHARES_NEAR * most;
 }
 
 /* Sets share[0] and share[1] to those of the projection of 0 to the line through two points. */

@@ -14,7 +14,9 @@
  * areas are positive up to rounding; nothing large cancels, even where x is in the plane of a facet.
  *
  * Rounding leaves an error in what the coordinates must reproduce: x itself. The last step changes each coordinate by a
- * factor 1 + g . (a - x) + c near 1, with g and c such that the sum of the coordinates is 1 and x is reproduced.
+ * factor 1 + g . (a - x) + c near 1, with g and c such that the sum of the coordinates is 1 and x is reproduced. Where
+ * the neighbours are in a plane up to rounding, as on the sides of a turned box, g may be anything: so x is looked for
+ * at the end.
  *
  * Based on: Sibson. A vector identity for the Dirichlet tessellation. Math. Proc. Cambridge 1980.
  *           Ledoux, Gold. An efficient natural neighbour interpolation algorithm for geoscientific modelling. SDH 2005.
@@ -357,6 +359,11 @@ static bool divide_by_sum(brio_natural *n, double sum) {
     return true;
 }
 
+/* Returns whether the shares reproduce x. */
+static bool reproduces(const brio_natural *n) {
+    return brio_shares_hold((const double(*)[3])n->offset + 1, (int)n->num_vertices - 1, n->share + 1);
+}
+
 /* --- the whole --- */
 
 static brio_status clear(brio_natural *n, brio_context *ctx) {
@@ -379,6 +386,6 @@ brio_status brio_natural_coordinates(brio_natural *n, brio_querent *q, const bri
     BRIO_FORWARD(find_centres(n, q->l, x, found));
     if (!*found) return BRIO_OK;
     BRIO_FORWARD(find_facets(n));
-    *found = divide_by_sum(n, add_volumes(n)) && correct(n) && correct(n);
+    *found = divide_by_sum(n, add_volumes(n)) && correct(n) && correct(n) && reproduces(n);
     return BRIO_OK;
 }

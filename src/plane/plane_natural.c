@@ -251,6 +251,17 @@ static bool correct(brio_plane_natural *n) {
     return true;
 }
 
+/* Returns whether the shares reproduce x, as brio_shares_hold does. */
+static bool reproduces(const brio_plane_natural *n) {
+    double r[2] = {0, 0}, most = 0;
+    for (size_t k = 0; k < n->num_points; k++) {
+        const double *offset = n->offset[k];
+        for (int i = 0; i < 2; i++) r[i] += n->share[k] * offset[i];
+        most = fmax(most, offset[0] * offset[0] + offset[1] * offset[1]);
+    }
+    return r[0] * r[0] + r[1] * r[1] <= BRIO_SHARES_NEAR * most;
+}
+
 static bool divide_by_sum(brio_plane_natural *n, double sum) {
     if (!(sum > 0 && sum < INFINITY)) return false;
     for (size_t k = 0; k < n->num_points; k++) n->share[k] /= sum;
@@ -266,6 +277,6 @@ brio_status brio_plane_natural_coordinates(brio_plane_natural *n, brio_plane_que
     BRIO_FORWARD(find_centres(n, q->l, x, found));
     if (!*found) return BRIO_OK;
     BRIO_FORWARD(add_areas(n, &sum));
-    *found = divide_by_sum(n, sum) && correct(n) && correct(n);
+    *found = divide_by_sum(n, sum) && correct(n) && correct(n) && reproduces(n);
     return BRIO_OK;
 }
