@@ -29,7 +29,6 @@ typedef struct boxed_diagram {
     const brio_cells_options *options; /* with a box */
 } boxed_diagram;
 
-/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
 static double error_of(const brio_cells *cells) {
     return fabs(cells->volume_sum / cells->region_volume - 1);
 }

@@ -177,13 +177,13 @@ static brio_status report(run *r, brio_tiles *t) {
 
 /* --- cells --- */
 
+/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
 enum { LEAST_VOLUME = -900, MOST_VOLUME = 1020 };
 
 bool cli_volume_is_held(double volume) {
     return volume > 0 && isfinite(volume) && ilogb(volume) >= LEAST_VOLUME && ilogb(volume) <= MOST_VOLUME;
 }
 
-/* Reads six numbers with commas between them. */
 brio_status cli_read_box(run *r, const char *text, double box[6]) {
     const char *rest = text;
     for (int i = 0; i < 6; i++) {
