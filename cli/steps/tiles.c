@@ -184,7 +184,6 @@ bool cli_volume_is_held(double volume) {
     return volume > 0 && isfinite(volume) && ilogb(volume) >= LEAST_VOLUME && ilogb(volume) <= MOST_VOLUME;
 }
 
-/* Reads six numbers with commas between them. */
 brio_status cli_read_box(run *r, const char *text, double box[6]) {
     const char *rest = text;
     for (int i = 0; i < 6; i++) {

@@ -112,6 +112,7 @@ BRIO_API brio_status brio_tiles_checksum(brio_context *ctx, brio_tiles *t, uint6
 BRIO_API brio_status brio_tiles_part(brio_context *ctx, brio_tiles *t, uint32_t tile, brio_tile_part *out);
 BRIO_API void brio_tile_part_free(brio_context *ctx, brio_tile_part *part);
 
+/** No tile: on the other side of a facet of the hull. */
 #define BRIO_NO_TILE UINT32_MAX
 
 /** The tetrahedron on the other side of a facet. */
@@ -126,8 +127,11 @@ typedef struct brio_tile_neighbour {
  *  neighbours  #T by 4, the caller's: entry i receives the neighbour across the facet opposite to vertex i.
  *  Cost: the first call reads the parts of all tiles, and writes 88 bytes for each facet between two tiles, 32 for one
  *  of the hull. Each call sorts the facets of its tile. Memory: 16 bytes a tetrahedron of a tile; in the first call a
- *  part, and 48.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_WRITE, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  part, 48 bytes a tetrahedron, and at most 4 MB, or 1 kB a tile. The files stay until brio_tiles_free. If the first
+ *  call fails to make them, it removes them, and a further call tries again.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no result; no part of this tile), BRIO_ERR_TOO_LARGE (more than 2^30 tetrahedra
+ *  of a tile), BRIO_ERR_WRITE (the disk is full), BRIO_ERR_OPEN (a scratch file was cut or changed),
+ *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
  *  Based on: [Aggarwal Vitter 1988]. */
 BRIO_API brio_status brio_tiles_neighbours(brio_context *ctx, brio_tiles *t, uint32_t tile, const brio_tile_part *part,
                                            brio_tile_neighbour (*neighbours)[4]);

@@ -18,8 +18,8 @@
 
 enum { DIGITS = 68, CARRY_AFTER = 1 << 30, LEAST_EXPONENT = -1074 };
 
-/* A sum of doubles that are not negative: the digits of a whole number to the base 2^32, the least one first. Between
- * carries a digit has up to 2^62. */
+/* A sum of doubles that are not negative: the digits of a whole number to the base 2^32, the least one first. A term
+ * adds less than 2^33 to a digit, so that CARRY_AFTER terms stay below 2^63. */
 typedef struct {
     uint64_t digit[DIGITS];
     uint64_t terms;    /* since the last carry */
@@ -92,10 +92,6 @@ static brio_status take_cells(void *user, brio_cells *cells, const uint64_t *sit
     return BRIO_OK;
 }
 
-static brio_status answer_point(brio_ranks *r, uint64_t place, void *row) {
-    return brio_tile_points(r->t, place, 1, row);
-}
-
 /* Copies the halo that was fetched, as a brio_halo_fn. */
 static brio_status copy_halo(void *user, const uint64_t *halo, size_t n, brio_set_point *points) {
     const cell_run *c = user;
@@ -116,7 +112,7 @@ static brio_status run_tile(cell_run *c, const brio_cells_options *o, uint32_t t
     BRIO_TRY(BRIO_ALLOC(r->ctx, place, facts->halo + 1));
     BRIO_TRY(BRIO_ALLOC(r->ctx, halo, facts->halo + 1));
     BRIO_TRY(brio_tile_halo(r->t, tile, place));
-    BRIO_TRY(brio_ranks_rows(r, place, facts->halo, answer_point, sizeof *halo, halo));
+    BRIO_TRY(brio_ranks_rows(r, place, facts->halo, brio_ranks_own_point, sizeof *halo, halo));
     c->halo = halo;
     if (facts->points) status = brio_tile_run_cells(r->t, tile, o, &reader, &sink, &c->stats);
 done:
@@ -132,25 +128,27 @@ typedef struct {
     exact_sum volume;
 } share;
 
-static brio_status add_shares(cell_run *c) {
+static brio_status add_shares(cell_run *c, const brio_cells_options *o) {
     brio_ranks *r = c->r;
     share s = {c->stats, c->volume};
-    brio_tiles_cells_stats *all = &r->cells;
+    brio_tiles_cells_stats all = {.size = sizeof all, .region_volume = INFINITY};
     exact_sum volume = {.terms = 0};
     carry(&s.volume);
     BRIO_FORWARD(brio_exchange_all(&r->x, &s, sizeof s));
-    *all = (brio_tiles_cells_stats){.size = sizeof *all, .region_volume = INFINITY};
     for (int i = 0; i < r->ranks; i++) {
         memcpy(&s, r->x.from[i]->bytes, sizeof s);
-        all->cells += s.stats.cells;
-        all->bounded += s.stats.bounded;
-        all->faces += s.stats.faces;
-        all->outside += s.stats.outside;
-        all->region_volume = fmin(all->region_volume, s.stats.region_volume);
+        all.cells += s.stats.cells;
+        all.bounded += s.stats.bounded;
+        all.faces += s.stats.faces;
+        all.outside += s.stats.outside;
+        all.region_volume = fmin(all.region_volume, s.stats.region_volume);
         add_sum(&volume, &s.volume);
     }
-    all->volume_sum = rounded(&volume);
-    return brio_tile_cells_check(r->ctx, all);
+    all.volume_sum = rounded(&volume);
+    if (!all.cells) BRIO_FORWARD(brio_tile_region(r->ctx, o, &all.region_volume));
+    BRIO_FORWARD(brio_tile_cells_check(r->ctx, &all));
+    r->cells = all;
+    return BRIO_OK;
 }
 
 static brio_status run(brio_ranks *r, const brio_cells_options *options, brio_tile_cells_fn take, void *user) {
@@ -165,7 +163,7 @@ static brio_status run(brio_ranks *r, const brio_cells_options *options, brio_ti
         BRIO_FORWARD(brio_progress(r->ctx, "cells", (double)i / r->t->num_tiles));
         BRIO_FORWARD(run_tile(&c, &o, i));
     }
-    return add_shares(&c);
+    return add_shares(&c, &o);
 }
 
 brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const brio_cells_options *options,

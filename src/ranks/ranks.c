@@ -51,6 +51,7 @@ brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, c
                  BRIO_ERR_ARGUMENT, "a transport of rank %d of %d", how.rank, how.ranks);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r, 1));
     r->ctx = ctx, r->rank = how.rank, r->ranks = how.ranks;
+    r->cells.size = sizeof r->cells;
     BRIO_TRY(brio_exchange_new(ctx, &how, &r->x));
     BRIO_TRY(brio_exchange_agree(&r->x, open_tiles(r, &o)));
     *out = r;
@@ -219,16 +220,17 @@ brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint64_t *chec
 
 /* --- parts --- */
 
-static brio_status answer_point(brio_ranks *r, uint64_t place, void *row) {
+brio_status brio_ranks_own_point(brio_ranks *r, uint64_t place, void *row) {
     return brio_tile_points(r->t, place, 1, row);
 }
 
 static brio_status read_halo(void *user, const uint64_t *halo, size_t n, brio_set_point *points) {
-    return brio_ranks_rows(user, halo, n, answer_point, sizeof *points, points);
+    return brio_ranks_rows(user, halo, n, brio_ranks_own_point, sizeof *points, points);
 }
 
 static brio_status make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p) {
-    if (!r->t->tile[tile].tetrahedra) return brio_ranks_rows(r, NULL, 0, answer_point, sizeof(brio_set_point), NULL);
+    if (!r->t->tile[tile].tetrahedra)
+        return brio_ranks_rows(r, NULL, 0, brio_ranks_own_point, sizeof(brio_set_point), NULL);
     return brio_tile_part_make(r->t, tile, &(brio_halo_reader){read_halo, r}, p);
 }
 

@@ -19,15 +19,15 @@ struct brio_ranks {
     brio_exchange x;
     brio_tiles *t;
     int rank, ranks;
-    brio_tiles_stats facts;     /* of all ranks */
-    brio_ranks_traffic traffic; /* the same */
-    brio_tiles_cells_stats cells;
-    uint32_t own_root;        /* node over this rank's tiles; TILE_NONE if there are no points */
-    double (*splitter)[3];    /* ranks - 1, ascending: where lists of positions are divided among ranks */
-    brio_found *sample;       /* of each own tile, the points of other ranks that it begins with */
-    brio_ball_box *seen;      /* of each own tile: all points in it are known when it begins */
-    brio_rank_served *served; /* by rank and slot */
-    uint64_t *rank_of;        /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
+    brio_tiles_stats facts;       /* of all ranks */
+    brio_ranks_traffic traffic;   /* the same */
+    brio_tiles_cells_stats cells; /* of all ranks; 0 before brio_ranks_cells ended well */
+    uint32_t own_root;            /* node over this rank's tiles; TILE_NONE if there are no points */
+    double (*splitter)[3];        /* ranks - 1, ascending: where lists of positions are divided among ranks */
+    brio_found *sample;           /* of each own tile, the points of other ranks that it begins with */
+    brio_ball_box *seen;          /* of each own tile: all points in it are known when it begins */
+    brio_rank_served *served;     /* by rank and slot */
+    uint64_t *rank_of;            /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
     uint64_t far_asked, far_found, rounds, question_bytes;
     bool has_result;
 };
@@ -48,6 +48,8 @@ brio_status brio_ranks_sum(brio_ranks *r, uint64_t *checksum);
 typedef brio_status (*brio_row_fn)(brio_ranks *r, uint64_t place, void *row);
 brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, brio_row_fn answer, size_t size,
                             void *rows);
+/** Reads a point of this rank, as a brio_row_fn: a brio_set_point. */
+brio_status brio_ranks_own_point(brio_ranks *r, uint64_t place, void *row);
 
 static inline int brio_rank_of_place(uint64_t place) {
     return (int)(place >> RANK_SHIFT);

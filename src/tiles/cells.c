@@ -83,15 +83,13 @@ done:
     return status;
 }
 
-/* Finds the volume of the region where no cell told it. */
-static brio_status find_region(cell_run *r) {
+brio_status brio_tile_region(brio_context *ctx, const brio_cells_options *options, double *volume) {
     brio_tetrahedron none;
-    const brio_cell_complex nothing = {.tet = &none, .frame = &r->frame};
+    const brio_cell_frame frame = {.weight = 0};
+    const brio_cell_complex nothing = {.tet = &none, .frame = &frame};
     brio_cells *cells = NULL;
-    if (r->t->stats.vertices) return BRIO_OK;
-    r->frame = (brio_cell_frame){.weight = 0};
-    BRIO_FORWARD(brio_cells_of_complex(r->t->ctx, &nothing, r->options, &cells));
-    r->stats->region_volume = cells->region_volume;
+    BRIO_FORWARD(brio_cells_of_complex(ctx, &nothing, options, &cells));
+    *volume = cells->region_volume;
     brio_cells_free(cells);
     return BRIO_OK;
 }
@@ -112,7 +110,7 @@ brio_status brio_tiles_run_cells(brio_tiles *t, const brio_cells_options *option
     uint64_t done = 0;
     for (uint32_t i = 0; i < t->num_tiles; i++)
         if (t->tile[i].points) BRIO_TRY(run_tile(&r, &halo, i, bar, &done));
-    status = find_region(&r);
+    if (!t->stats.vertices) status = brio_tile_region(t->ctx, options, &stats->region_volume);
 done:
     brio_progress_part(t->ctx, bar, 0, 1);
     brio_release(t->ctx, r.site);

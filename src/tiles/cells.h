@@ -54,6 +54,8 @@ typedef struct {
  *  Returns what brio_tiles_cells does. */
 brio_status brio_tiles_run_cells(brio_tiles *t, const brio_cells_options *options, const brio_tile_cells_sink *sink,
                                  brio_tiles_cells_stats *stats);
+/** Computes the volume of the region, where there is no cell that has it. */
+brio_status brio_tile_region(brio_context *ctx, const brio_cells_options *options, double *volume);
 /** Computes the cells of one tile. stats->region_volume is set where the tile has a cell. */
 brio_status brio_tile_run_cells(brio_tiles *t, uint32_t tile, const brio_cells_options *options,
                                 const brio_halo_reader *halo, const brio_tile_cells_sink *sink,

@@ -18,6 +18,8 @@
 
 enum { WAITING = 1 << 14, ALL_WAITING = 1 << 22, LEAST_WAITING = 1 << 10 /* bytes for a file. Chosen */ };
 
+enum { MOST_TETRAHEDRA = 1 << 30 }; /* of a tile: a facet is 4 * tetrahedron + slot, in 32 bits */
+
 /* --- facets of a part --- */
 
 static void sort_three(uint32_t v[3]) {
@@ -65,6 +67,9 @@ static brio_status match_inside(brio_context *ctx, uint32_t tile, const brio_til
     uint32_t *facet = NULL;
     size_t *end = NULL;
     brio_status status = BRIO_OK;
+    BRIO_REQUIRE(ctx, p->num_tetrahedra <= MOST_TETRAHEDRA, BRIO_ERR_TOO_LARGE,
+                 "tile %u has %zu tetrahedra; facets of at most %d have numbers: take more tiles", tile,
+                 p->num_tetrahedra, MOST_TETRAHEDRA);
     memset(neighbours, 0xff, p->num_tetrahedra * sizeof *neighbours); /* BRIO_NO_TILE */
     BRIO_TRY(BRIO_ALLOC(ctx, facet, 4 * p->num_tetrahedra + 1));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, end, p->num_vertices + 1));
@@ -200,19 +205,22 @@ static int compare_lone(uint32_t i, uint32_t j, const void *user) {
     return 0;
 }
 
-/* Tells each side of the pairs of a file the other one. */
-static brio_status answer_pairs(brio_tiles *t, const char *name, trays *all) {
+/* Tells each side of the pairs of a file the other one.   *alone  grows by the facets that have no other side. */
+static brio_status answer_pairs(brio_tiles *t, const char *name, trays *all, uint64_t *alone) {
     lone_facet *l = NULL;
     uint32_t *row = NULL;
     size_t n = 0;
     brio_status status = BRIO_OK;
     BRIO_TRY(read_rows(t, name, sizeof *l, (void **)&l, &n));
+    BRIO_REQUIRE(t->ctx, n <= UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu facets between tiles in a file: take more tiles", n);
     BRIO_TRY(BRIO_ALLOC(t->ctx, row, n + 1));
+    *alone += n;
     for (size_t i = 0; i < n; i++) row[i] = (uint32_t)i;
     BRIO_TRY(brio_sort_many_indices(t->ctx, row, n, compare_lone, l));
     for (size_t i = 1; i < n; i++) {
         const lone_facet *a = &l[row[i - 1]], *b = &l[row[i]];
         if (compare_lone(row[i - 1], row[i], l)) continue;
+        *alone -= 2;
         BRIO_TRY(put(all, a->tile, &(answer){a->facet, {b->tile, brio_tet_of(b->facet)}}, sizeof(answer)));
         BRIO_TRY(put(all, b->tile, &(answer){b->facet, {a->tile, brio_tet_of(a->facet)}}, sizeof(answer)));
     }
@@ -238,27 +246,43 @@ done:
 
 static brio_status join_lone(brio_tiles *t) {
     trays joined = {0};
+    uint64_t alone = 0;
     brio_status status = BRIO_OK;
     BRIO_TRY(open_trays(t, "joined", &joined));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         char name[32];
         snprintf(name, sizeof name, "lone-%u", i);
         BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 + 0.1 * i / t->num_tiles));
-        BRIO_TRY(answer_pairs(t, name, &joined));
+        BRIO_TRY(answer_pairs(t, name, &joined, &alone));
         brio_store_remove(&t->folder, name);
     }
     for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(flush(&joined.tray[i]));
+    BRIO_REQUIRE(t->ctx, alone == t->stats.hull_facets, BRIO_ERR_OPEN,
+                 "%s: files were changed from outside: %llu facets of %llu on the hull", t->folder.path,
+                 (unsigned long long)alone, (unsigned long long)t->stats.hull_facets);
 done:
     close_trays(&joined);
     return status;
 }
 
-/* Finds all neighbours that are of another tile. */
+static void remove_files(brio_tiles *t, const char *name) {
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        char full[32];
+        snprintf(full, sizeof full, "%s-%u", name, i);
+        brio_store_remove(&t->folder, full);
+    }
+}
+
+/* Finds all neighbours that are of another tile. After a failure its files give their room back. */
 static brio_status join_tiles(brio_tiles *t) {
-    BRIO_FORWARD(divide_lone(t));
-    BRIO_FORWARD(join_lone(t));
-    t->has_neighbours = true;
-    return BRIO_OK;
+    brio_status status = divide_lone(t);
+    if (status == BRIO_OK) status = join_lone(t);
+    t->has_neighbours = status == BRIO_OK;
+    t->stats.scratch_bytes = t->folder.most;
+    if (status == BRIO_OK) return BRIO_OK;
+    remove_files(t, "lone");
+    remove_files(t, "joined");
+    return status;
 }
 
 /* Names the neighbours of a part that are of other tiles. */
@@ -292,7 +316,6 @@ brio_status brio_tiles_neighbours(brio_context *ctx, brio_tiles *t, uint32_t til
                 (unsigned long long)t->tile[tile].tetrahedra);
     if (!part->num_tetrahedra) return BRIO_OK;
     if (!t->has_neighbours) BRIO_FORWARD(join_tiles(t));
-    t->stats.scratch_bytes = t->folder.most;
     BRIO_FORWARD(match_inside(ctx, tile, part, neighbours));
     return take_answers(t, tile, part, neighbours);
 }

@@ -33,6 +33,7 @@ static const double NEAR = 0.6; /* a node is as far away as it is large, divided
 /* Doubles side by side. */
 enum { LANES = 2, GROUP = 16 };
 typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8)));
+_Static_assert(TILE_BLOCK % GROUP == 0 && GROUP % LANES == 0, "the last group ends where the arrays do");
 typedef int64_t lane_bits __attribute__((vector_size(8 * LANES), aligned(8)));
 
 enum { BLOCK_NEW, BLOCK_ADDED, BLOCK_KNOWN }; /* ADDED: in this round; the completion does not know it yet */
@@ -66,7 +67,7 @@ struct brio_tile_source {
     uint32_t *read; /* nodes whose blocks are in memory */
     size_t read_capacity;
     uint32_t round;
-    uint32_t *parent; /* of each node; TILE_NONE of the root */
+    uint32_t *parent; /* of each node that a search may reach; TILE_NONE of the root */
     uint32_t *left;   /* of each node: blocks below that are BLOCK_NEW; atomic */
     uint32_t *last;   /* of each node: the last round in which a block below became BLOCK_ADDED; atomic */
     brio_mutex lock;  /* of what is above */
@@ -92,7 +93,8 @@ static bool is_inside(const brio_ball_box *box, const brio_ball_box *outer) {
 
 /* Sets the parents of a node and of those below, and how many blocks of other tiles each has that are not known yet.
  * Roots of tiles have copies that are in no tree, or in that of another root. A node of another process counts as a
- * block that is never read: what is above it is never gone past. */
+ * block that is never read: what is above it is never gone past. A node in the box that was seen has no block that is
+ * not known: no search goes below it, where parents are not set. */
 static uint32_t count_below(brio_tile_source *s, uint32_t at, uint32_t parent, const brio_ball_box *seen) {
     const brio_tile_node *node = &s->t->node[at];
     uint32_t left = node->children == 0;

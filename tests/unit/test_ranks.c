@@ -409,6 +409,27 @@ static void a_rank_without_memory_ends_all_and_they_go_on(void) {
     EXPECT(files_left() == 0);
 }
 
+/* Ranks that wait for one that fails in the middle of the cells end with its sentence, whichever rank it is. */
+static void a_rank_that_ends_its_cells_ends_all(void) {
+    for (int rank = 0; rank < 4; rank++) {
+        plan p = {.n = make_points(7, 2000, 0, false), .cells = true, .ranks = 4, .fails = -1, .tiles = 2, .seed = 5};
+        char begin[32];
+        p.refuses = rank + 1;
+        member m = run_ranks(&p);
+        snprintf(begin, sizeof begin, "rank %d on here: ", rank);
+        EXPECT(m.status == BRIO_ERR_CANCELLED && !strncmp(m.sentence, begin, strlen(begin)), "%s", m.sentence);
+        EXPECT(m.checksum != 0 && files_left() == 0);
+    }
+}
+
+/* Without a cell the volume of the region was infinite, not that of the box. */
+static void cells_of_no_points(void) {
+    plan p = {.cells = true, .ranks = 3, .fails = -1, .tiles = 2};
+    member m = run_ranks(&p);
+    EXPECT(m.status == BRIO_OK && !m.sums.cells && !m.sums.faces && m.sums.volume_sum == 0, "%s", m.sentence);
+    EXPECT(m.sums.region_volume == 7.5 * 7.5 * 7.5, "%g", m.sums.region_volume);
+}
+
 static void a_bad_point_of_one_rank_ends_all(void) {
     size_t n = make_points(5, 600, 0, false);
     points[3 * 250 + 1] = NAN; /* of the third block, which rank 2 has */
@@ -427,6 +448,8 @@ SUITE(test_ranks) {
     RUN(cells_of_ranks_are_refused);
     RUN(small_sets_with_shuffled_letters);
     RUN(a_rank_without_memory_ends_all_and_they_go_on);
+    RUN(a_rank_that_ends_its_cells_ends_all);
+    RUN(cells_of_no_points);
     RUN(a_bad_point_of_one_rank_ends_all);
     rmdir(folder);
     return harness_end();

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/sort.h"
 #include "brio/tiles.h"
+#include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
 #include <dirent.h>
@@ -339,6 +340,104 @@ static void wrong_calls_for_neighbours_are_refused(void) {
     brio_tile_part_free(ctx, &p);
     brio_tiles_free(t);
     brio_context_free(ctx);
+}
+
+/* Writes the path of the one folder in the scratch folder. Returns how many files it has. */
+static size_t find_run(char path[1024]) {
+    size_t n = 0;
+    DIR *d = opendir(folder);
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;)
+        if (e->d_name[0] != '.') snprintf(path, 1024, "%s/%s", folder, e->d_name);
+    if (d) closedir(d);
+    d = opendir(path);
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;) n += e->d_name[0] != '.';
+    if (d) closedir(d);
+    return n;
+}
+
+/* Files of facets stayed when the call that wrote them failed, on a disk that may have been full. */
+static void neighbours_are_named_after_failures(void) {
+    enum { TILES = 3 };
+    failing_memory memory = {0, 0};
+    brio_allocator allocator = {failing_alloc, failing_realloc, failing_free, &memory};
+    brio_context *ctx;
+    brio_tile_part p = {.size = sizeof p};
+    brio_status status = BRIO_ERR_NO_MEMORY;
+    char path[1024] = "";
+    EXPECT(brio_context_new(&allocator, &ctx) == BRIO_OK);
+    brio_context_set_threads(ctx, 1);
+    brio_tiles *t = tiles_of(ctx, TILES, make_points(5, 400, 0), false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK && brio_tiles_part(ctx, t, 1, &p) == BRIO_OK, "%s", brio_message(ctx));
+    brio_tile_neighbour(*some)[4] = calloc(p.num_tetrahedra, sizeof *some);
+    brio_tile_neighbour(*again)[4] = calloc(p.num_tetrahedra, sizeof *again);
+    size_t bytes = brio_context_memory(ctx), files = find_run(path), k = 1, removed = 0;
+    for (; k < 2000 && status != BRIO_OK; k++) {
+        memory.left = k;
+        status = brio_tiles_neighbours(ctx, t, 1, &p, some);
+        size_t now = find_run(path);
+        EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_MEMORY, "request %zu: %s", k, brio_message(ctx));
+        EXPECT(brio_context_memory(ctx) == bytes && (now == files || now == files + TILES),
+               "request %zu: %zu files, not %zu", k, now, files);
+        removed += status != BRIO_OK && now == files;
+    }
+    memory.left = 0;
+    EXPECT(status == BRIO_OK && removed > 20, "%zu requests, %zu times without files", k, removed);
+    EXPECT(brio_tiles_neighbours(ctx, t, 1, &p, again) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(!memcmp(some, again, p.num_tetrahedra * sizeof *some));
+    free(some), free(again);
+    brio_tile_part_free(ctx, &p);
+    brio_tiles_free(t);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* Facets of a tile that was changed met no other side, and were named facets of the hull. */
+static void neighbours_of_changed_tiles_are_refused(void) {
+    brio_context *ctx = new_context();
+    brio_tile_part p = {.size = sizeof p};
+    uint32_t v[4];
+    char path[1024] = "", file[1100];
+    brio_tiles *t = tiles_of(ctx, 2, make_points(5, 2000, 0), false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK && brio_tiles_part(ctx, t, 0, &p) == BRIO_OK, "%s", brio_message(ctx));
+    find_run(path);
+    snprintf(file, sizeof file, "%s/tile-1", path);
+    FILE *f = fopen(file, "r+b");
+    EXPECT(f && fseek(f, 4096, SEEK_SET) == 0 && fread(v, sizeof v, 1, f) == 1, "%s", file);
+    v[0] = v[0] == 7 ? 8 : 7;
+    EXPECT(f && fseek(f, 4096, SEEK_SET) == 0 && fwrite(v, sizeof v, 1, f) == 1);
+    if (f) fclose(f);
+    brio_tile_neighbour(*some)[4] = calloc(p.num_tetrahedra, sizeof *some);
+    EXPECT(brio_tiles_neighbours(ctx, t, 0, &p, some) == BRIO_ERR_OPEN &&
+               strstr(brio_message(ctx), "changed from outside"),
+           "%s", brio_message(ctx));
+    free(some);
+    brio_tile_part_free(ctx, &p);
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
+/* Points without tetrahedra have parts without rows, and no neighbours. */
+static void neighbours_where_there_are_no_tetrahedra(void) {
+    static const size_t COUNT[] = {0, 1, 2, 3, 5, 400};
+    for (int plane = 0; plane < 2; plane++)
+        for (size_t i = 0; i < sizeof COUNT / sizeof *COUNT; i++) {
+            brio_context *ctx = new_context();
+            make_points(3, 400, 0);
+            for (size_t k = 0; k < COUNT[i]; k++) points[3 * k + 2] = 1, points[3 * k + 1] *= plane;
+            brio_tiles *t = tiles_of(ctx, 3, COUNT[i], false, 0);
+            EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+            for (uint32_t tile = 0; tile < 3; tile++) {
+                brio_tile_part p = {.size = sizeof p};
+                brio_tile_neighbour none[1][4] = {{{7, 7}}};
+                EXPECT(brio_tiles_part(ctx, t, tile, &p) == BRIO_OK && !p.num_tetrahedra, "%s", brio_message(ctx));
+                EXPECT(brio_tiles_neighbours(ctx, t, tile, &p, none) == BRIO_OK && none[0][0].tile == 7, "%s",
+                       brio_message(ctx));
+                brio_tile_part_free(ctx, &p);
+            }
+            brio_tiles_free(t);
+            EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+            brio_context_free(ctx);
+        }
 }
 
 /* Hashes the parts of all tiles, every byte of them. */
@@ -716,6 +815,9 @@ SUITE(test_tiles) {
     RUN(parts_are_the_whole);
     RUN(neighbours_across_tiles_are_those_of_the_whole);
     RUN(wrong_calls_for_neighbours_are_refused);
+    RUN(neighbours_are_named_after_failures);
+    RUN(neighbours_of_changed_tiles_are_refused);
+    RUN(neighbours_where_there_are_no_tetrahedra);
     RUN(parts_do_not_depend_on_threads);
     RUN(a_tile_with_one_tetrahedron_many_times_is_refused);
     RUN(vertices_of_cells_do_not_depend_on_threads);
