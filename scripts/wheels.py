@@ -87,7 +87,8 @@ def needs_of(module, target, api):
     versions = sorted({v.decode() for v in re.findall(rb'GLIBC_(2\.[\d.]+)', data)}, key=lambda v: int(v.split('.')[1]))
     wrong += ['GLIBC_' + v for v in versions if int(v.split('.')[1]) > 17]
     names = {m.decode() for m in re.findall(rb'(?<!\w)(_{0,2}Py\w*_\w+)(?=\0)', data)}
-    asked = {n[1:] if target.system == 'Darwin' else n for n in names}  # where C's names begin with _
+    # on macOS C's names begin with _, and a call that is far has a local name of the linker's
+    asked = {n[1:] for n in names if n[0] == '_' and not n.endswith('__thunk')} if target.system == 'Darwin' else names
     wrong += ['not limited: ' + n for n in sorted(asked - api[0] - api[1] - {'PyInit__native'})]
     return sorted(libraries) + ['GLIBC_' + v for v in versions[-1:]], wrong
 
