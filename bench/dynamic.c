@@ -3,7 +3,8 @@
  * PARTS are letters of what to measure, all of them where there are none:
  *   o  medians and means of microseconds for one insertion at a random place, and for one removal;
  *   b  batches of 1 % of the points: wall and processor time, beside that of building anew;
- *   m  seconds for steps that move all points by shares of their spacing, beside building anew (processor time).
+ *   m  seconds for steps that move all points by shares of their spacing, beside building anew (processor time;
+ *      of builds the median of three);
  *   p  the same in a box that repeats, beside brio_delaunay_periodic, and for a snapshot.
  * THREADS: 1 if not given. */
 #include "brio/brio.h"
@@ -59,18 +60,26 @@ static void show_batch(const char *what, stopwatch since, double anew) {
     printf(anew > 0 ? "; building anew takes %.2f x the wall time\n" : "\n", anew / wall);
 }
 
-static double time_anew(brio_context *ctx, const double *points, size_t n) {
-    brio_triangulation *t;
-    double start = seconds(CLOCK_MONOTONIC);
-    check(ctx, brio_delaunay(ctx, points, NULL, n, NULL, &t));
-    brio_triangulation_free(t);
-    return seconds(CLOCK_MONOTONIC) - start;
+/* Returns the median time of three builds.   checksum  NULL, or receives that of the result. */
+static double time_anew(brio_context *ctx, const double *points, size_t n, clockid_t clock, uint64_t *checksum) {
+    enum { BUILDS = 3 };
+    double took[BUILDS];
+    for (int i = 0; i < BUILDS; i++) {
+        brio_triangulation *t;
+        double start = seconds(clock);
+        check(ctx, brio_delaunay(ctx, points, NULL, n, NULL, &t));
+        took[i] = seconds(clock) - start;
+        if (checksum) check(ctx, brio_triangulation_checksum(ctx, t, points, checksum));
+        brio_triangulation_free(t);
+    }
+    return median(took, BUILDS);
 }
 
 static void batches(brio_context *ctx, brio_dynamic *d, const double *points, size_t n) {
     enum { ROUNDS = 3 };
     size_t some = n / 100;
-    double *p = malloc(3 * some * sizeof *p), anew = time_anew(ctx, points, n), spacing = 1 / cbrt((double)n);
+    double *p = malloc(3 * some * sizeof *p), anew = time_anew(ctx, points, n, CLOCK_MONOTONIC, NULL),
+           spacing = 1 / cbrt((double)n);
     uint32_t first, *index = malloc(some * sizeof *index);
     for (int round = 0; round < ROUNDS; round++) {
         for (size_t i = 0; i < 3 * some; i++) p[i] = draw();
@@ -110,7 +119,6 @@ static void move_all(brio_context *ctx, const double *points, size_t n, double s
     enum { STEPS = 6 };
     double *p = malloc(3 * n * sizeof *p), took[STEPS], sum = 0;
     brio_dynamic *d;
-    brio_triangulation *t;
     uint64_t own, built;
     memcpy(p, points, 3 * n * sizeof *p);
     check(ctx, brio_dynamic_new(ctx, p, NULL, n, 0, &d));
@@ -121,12 +129,8 @@ static void move_all(brio_context *ctx, const double *points, size_t n, double s
         took[i] = seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
         if (i > 0) sum += took[i] / (STEPS - 1);
     }
-    double start = seconds(CLOCK_PROCESS_CPUTIME_ID);
-    check(ctx, brio_delaunay(ctx, p, NULL, n, NULL, &t));
-    double anew = seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
-    check(ctx, brio_triangulation_checksum(ctx, t, p, &built));
+    double anew = time_anew(ctx, p, n, CLOCK_PROCESS_CPUTIME_ID, &built);
     check(ctx, brio_dynamic_checksum(ctx, d, &own));
-    brio_triangulation_free(t);
     brio_dynamic_stats after = {.size = sizeof after};
     check(ctx, brio_dynamic_facts(d, &after));
     printf("move all by %g spacings: anew %.4f s; first step %.4f s, %.2f x; mean of %d more %.4f s, %.2f x; "
@@ -173,7 +177,7 @@ static void move_in_a_box(brio_context *ctx, const double *points, size_t n, dou
 }
 
 int main(int argc, char **argv) {
-    static const double SHARE[] = {1e-4, 1e-3, 5e-3, 2e-2, 0.1, 0.5, 5};
+    static const double SHARE[] = {1e-4, 1e-3, 5e-3, 1e-2, 2e-2, 3e-2, 5e-2, 0.1, 0.5, 5};
     size_t n = argc > 1 ? (size_t)atoll(argv[1]) : 100000, changes = argc > 2 ? (size_t)atoll(argv[2]) : n / 10;
     const char *parts = argc > 4 ? argv[4] : "obmp";
     double *points = malloc(3 * n * sizeof *points);

@@ -1,4 +1,5 @@
-/* brio-mpi: what `brio delaunay --tiles` does, by the ranks of an MPI job. Rank 0 reports; all have one exit code. */
+/* brio-mpi: what `brio delaunay --tiles` and `brio voronoi --tiles` compute, by the ranks of an MPI job. Rank 0 reports;
+ * all have one exit code. */
 #include "brio/mpi.h"
 #include "cli/files/files.h"
 #include "cli/files/new_file.h"
@@ -25,12 +26,20 @@ static const char VTU[] = ".vtu";
 typedef struct {
     weights_options weights;
     uint64_t tiles;
+    const char *box;
 } arguments;
 
-static const option options[] = {
+#define TILES_A_RANK                                                                                                   \
+    {                                                                                                                  \
+        "tiles-per-rank", 0, OPTION_NATURAL | OPTION_POSITIVE, offsetof(arguments, tiles), "N",                        \
+            "tiles of each rank, two of which are in memory (default 4)", 0                                            \
+    }
+
+static const option of_delaunay[] = {WEIGHTS_ROWS(arguments, weights), TILES_A_RANK, {0}};
+static const option of_voronoi[] = {
     WEIGHTS_ROWS(arguments, weights),
-    {"tiles-per-rank", 0, OPTION_NATURAL | OPTION_POSITIVE, offsetof(arguments, tiles), "N",
-     "tiles of each rank, two of which are in memory (default 4)", 0},
+    TILES_A_RANK,
+    {"box", 0, OPTION_TEXT, offsetof(arguments, box), "B", "clip the cells to x0,y0,z0,x1,y1,z1", 0},
     {0},
 };
 
@@ -202,12 +211,31 @@ done:
     return status;
 }
 
+/* --- commands --- */
+
+static const command delaunay = {
+    .name = "delaunay",
+    .operands = "IN...",
+    .summary = "Delaunay triangulation of points by the ranks of an MPI job; regular with weights",
+    .examples = "mpirun -n 8 brio-mpi delaunay scan.laz --scratch /var/tmp\n",
+    .has_output = true,
+    .holds = CLI_TETRAHEDRA,
+    .options = of_delaunay,
+};
+
+static const command voronoi = {
+    .name = "voronoi",
+    .operands = "IN...",
+    .summary = "Voronoi cells of points by the ranks of an MPI job, counted and summed; power cells with weights",
+    .examples = "mpirun -n 8 brio-mpi voronoi scan.laz --scratch /var/tmp --box 0,0,0,1,1,1\n",
+    .options = of_voronoi,
+};
+
 /* --- the run --- */
 
-static void report(job *j, uint64_t checksum) {
+static void report_ranks(job *j) {
     const brio_ranks_traffic *t = brio_ranks_sent(j->ranks);
     facts *f = &j->r->facts;
-    cli_report_tiles(j->r, brio_ranks_facts(j->ranks), checksum);
     cli_fact_open(f, "ranks", FACT_OBJECT);
     cli_fact_integer(f, "count", j->size);
     cli_fact_count(f, "exchanges", t->exchanges);
@@ -232,11 +260,37 @@ static uint64_t key_of(const job *j) {
     return key;
 }
 
+/* Computes the checksum, and writes the tetrahedra. */
+static brio_status finish_delaunay(job *j) {
+    run *r = j->r;
+    uint64_t checksum;
+    FORWARD(brio_ranks_checksum(r->ctx, j->ranks, &checksum));
+    cli_lap(r, "checksum");
+    cli_report_tiles(r, brio_ranks_facts(j->ranks), checksum);
+    report_ranks(j);
+    return r->common.output ? write_all(j) : BRIO_OK;
+}
+
+/* Computes the cells, for their counts and sums. */
+static brio_status finish_voronoi(job *j) {
+    run *r = j->r;
+    double box[6];
+    brio_cells_options o = {.size = sizeof o};
+    if (j->a.box) FORWARD(cli_read_box(r, j->a.box, box));
+    if (j->a.box) o.box = box;
+    FORWARD(brio_ranks_cells(r->ctx, j->ranks, &o, NULL, NULL));
+    cli_lap(r, "cells");
+    cli_report_tile_cells(r, brio_ranks_facts(j->ranks), brio_ranks_cells_facts(j->ranks));
+    report_ranks(j);
+    return BRIO_OK;
+}
+
 static brio_status triangulate(job *j) {
     run *r = j->r;
-    brio_ranks_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)j->a.tiles};
+    bool cells = r->command == &voronoi;
+    brio_ranks_options o = {
+        .size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)j->a.tiles, .stars = cells};
     brio_transport t = brio_mpi_transport(j->mpi);
-    uint64_t checksum;
     o.key = key_of(j);
     MPI_Bcast(&o.key, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
     FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* tiles are in memory */
@@ -249,30 +303,20 @@ static brio_status triangulate(job *j) {
     cli_stage(r, "divide", s->divide_seconds);
     cli_stage(r, "insert", s->triangulate_seconds);
     r->lap = cli_clock();
-    FORWARD(brio_ranks_checksum(r->ctx, j->ranks, &checksum));
-    cli_lap(r, "checksum");
-    report(j, checksum);
-    return r->common.output ? write_all(j) : BRIO_OK;
+    return cells ? finish_voronoi(j) : finish_delaunay(j);
 }
 
 /* --- the command line --- */
 
-static const command delaunay = {
-    .name = "delaunay",
-    .operands = "IN...",
-    .summary = "Delaunay triangulation of points by the ranks of an MPI job; regular with weights",
-    .examples = "mpirun -n 8 brio-mpi delaunay scan.laz --scratch /var/tmp\n",
-    .has_output = true,
-    .holds = CLI_TETRAHEDRA,
-    .options = options,
-};
-
 static void print_help(void) {
-    puts("usage: mpirun -n RANKS brio-mpi delaunay IN... --scratch DIR [options]\n\n"
-         "What 'brio delaunay IN --tiles N' computes, by many processes on many hosts: docs/mpi.md.\n\n"
+    puts("usage: mpirun -n RANKS brio-mpi delaunay IN... --scratch DIR [options]\n"
+         "       mpirun -n RANKS brio-mpi voronoi IN... --scratch DIR [options]\n\n"
+         "What 'brio delaunay IN --tiles N' and 'brio voronoi IN --tiles N' compute, by many processes on many hosts:\n"
+         "docs/mpi.md. Cells are counted and summed; none are written.\n\n"
          "  --tiles-per-rank N   tiles of each rank, two of which are in memory (default 4)\n"
          "  --scratch DIR        a folder of each host, for about 190 bytes a point of its ranks\n"
-         "  -o FILE.pvtu         also write a file for each tile; a folder that all hosts see\n"
+         "  -o FILE.pvtu         delaunay: also write a file for each tile; a folder that all hosts see\n"
+         "  --box B              voronoi: clip the cells to x0,y0,z0,x1,y1,z1\n"
          "  --max-memory SIZE    of each rank\n"
          "and --json, --quiet, --progress, --threads, --input-format, --columns, --drop-invalid, --salvage,\n"
          "--unweighted, --weights-mod, --compress as 'brio delaunay' has them.");
@@ -282,13 +326,14 @@ static void print_help(void) {
 static brio_status check_output(run *r) {
     int rank, status = BRIO_OK;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (rank == 0) status = (int)cli_check_tile_files(r);
+    if (rank == 0) status = (int)cli_check_tile_files(r, ".pvtu");
     MPI_Bcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD);
     return (brio_status)status;
 }
 
 static brio_status check(run *r, arguments *a) {
-    if (r->num_operands < 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "delaunay: expected IN..., got no argument");
+    if (r->num_operands < 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: expected IN..., got no argument", r->command->name);
     if (a->tiles > MOST_TILES)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles-per-rank: %" PRIu64 " are more than %d", a->tiles, MOST_TILES);
     if (a->weights.exponent != NO_EXPONENT && r->num_operands > 1)
@@ -296,14 +341,18 @@ static brio_status check(run *r, arguments *a) {
     for (int i = 0; i < r->num_operands; i++)
         if (!strcmp(r->operands[i], "-"))
             return cli_fail(r, BRIO_ERR_ARGUMENT, "-: the ranks have no standard input; give files");
+    double box[6];
+    if (a->box) FORWARD(cli_read_box(r, a->box, box));
+    if (r->common.output && !r->command->has_output)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "-o: cells are counted and summed by ranks, not written");
     FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
     return check_output(r);
 }
 
 static brio_status parse(run *r, arguments *a, int argc, char **argv, bool *help) {
-    const option_group groups[] = {{options, a}, {cli_common_options, &r->common}};
+    const option_group groups[] = {{r->command->options, a}, {cli_common_options, &r->common}};
     option_parse p = {.groups = groups, .num_groups = 2};
-    if (!cli_parse(&p, argc, argv)) return cli_fail(r, BRIO_ERR_ARGUMENT, "delaunay: %s", p.message);
+    if (!cli_parse(&p, argc, argv)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s", r->command->name, p.message);
     *help = p.help;
     r->operands = p.operands;
     r->num_operands = p.num_operands;
@@ -337,9 +386,9 @@ static int finish(job *j, brio_status status) {
         cli_fact_integer(&r->facts, "exit", code);
     }
     if (r->common.json)
-        cli_json_write(stdout, &r->facts, "delaunay");
+        cli_json_write(stdout, &r->facts, r->command->name);
     else if (status == BRIO_OK && !r->common.quiet)
-        cli_text_write(stdout, &r->facts, "delaunay", r->common.verbose);
+        cli_text_write(stdout, &r->facts, r->command->name, r->common.verbose);
     if (!r->common.quiet) cli_notes_print(stderr, "warning", &r->warnings);
     if (status != BRIO_OK) {
         fputs("brio-mpi: ", stderr);
@@ -377,9 +426,10 @@ int main(int argc, char **argv) {
     MPI_Comm_size(MPI_COMM_WORLD, &j.size);
     j.mpi = brio_mpi_new(MPI_COMM_WORLD);
     brio_status status = BRIO_OK;
-    if (argc < 2 || strcmp(argv[1], "delaunay")) {
+    if (argc > 1 && !strcmp(argv[1], voronoi.name)) r.command = &voronoi;
+    if (argc < 2 || strcmp(argv[1], r.command->name)) {
         help = argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"));
-        if (!help) status = cli_fail(&r, BRIO_ERR_ARGUMENT, "expected 'delaunay', the one command; see --help");
+        if (!help) status = cli_fail(&r, BRIO_ERR_ARGUMENT, "expected 'delaunay' or 'voronoi'; see --help");
     } else if (!j.mpi) {
         status = cli_fail(&r, BRIO_ERR_NO_MEMORY, "no memory for the exchange of %d ranks", j.size);
     } else {

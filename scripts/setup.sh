@@ -208,15 +208,23 @@ may_install() {
     [ "$(id -u)" = 0 ] && has apt-get
 }
 
+# Brings the lists of packages up to date, and waits up to two minutes for another process that does.
+update_lists() {
+    said=$(mktemp)
+    for _ in $(seq 24); do
+        apt-get update >"$said" 2>&1 && break
+        grep -q lists/lock "$said" || break
+        sleep 5
+    done
+    rm -f "$said"
+}
+
 install() {
     export DEBIAN_FRONTEND=noninteractive
     log=$(mktemp)
-    if apt-get update >"$log" 2>&1 && apt-get install -y --no-install-recommends "$@" >>"$log" 2>&1; then
-        rm -f "$log"
-    else
-        tail -n 20 "$log" >&2
-        rm -f "$log"
-    fi
+    update_lists
+    apt-get -o DPkg::Lock::Timeout=120 install -y --no-install-recommends "$@" >"$log" 2>&1 || tail -n 20 "$log" >&2
+    rm -f "$log"
 }
 
 # Installs of them what this Debian has, and says what stays missing.
@@ -224,7 +232,7 @@ install_peers() {
     wanted=$(missing_peers "$1")
     [ -n "$wanted" ] || return 0
     if may_install; then
-        apt-get update >/dev/null 2>&1 || true
+        update_lists
         there=$(for package in $wanted; do apt-cache show "$package" >/dev/null 2>&1 && echo "$package"; done | xargs)
         if [ -n "$there" ]; then
             echo "setup: installing $there"

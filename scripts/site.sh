@@ -24,7 +24,10 @@ export PATH="$prefix/bin:$PWD/$environment/bin:$PATH"
 rm -rf "$BRIO_GALLERY" out/site
 mkdir -p "$BRIO_GALLERY"
 /usr/bin/python3 scripts/run_page.py "$BRIO_GALLERY" docs/gallery.md docs/theory.md docs/start/*.md
-[ "${PICTURES:-}" != 1 ] || node scripts/pictures.mjs "$BRIO_GALLERY" docs/images/gallery
+shown=$(grep -oh 'images/gallery/[a-z_-]*' docs/*.md docs/start/*.md | sed 's|.*/||' | LC_ALL=C sort -u)
+# shellcheck disable=SC2086
+[ "${PICTURES:-}" != 1 ] || node scripts/pictures.mjs "$BRIO_GALLERY" docs/images/gallery $shown
 "$environment/bin/mkdocs" build -q
 doxygen docs/Doxyfile
+/usr/bin/python3 scripts/site_links.py out/site
 echo "Written: out/site; open out/site/index.html in a browser"

@@ -7,7 +7,7 @@
 //
 // A function `progress(stage, share)` that returns true stops the call. Failures are BrioError, with the sentence of the library.
 import { Files } from './files.mjs';
-import { AlphaComplex, Cells, Mesh, Points, Triangulation, TYPES } from './results.mjs';
+import { AlphaComplex, Cells, Explanation, Mesh, Points, Triangulation, TYPES } from './results.mjs';
 
 export class BrioError extends Error {
   constructor(status, message) { super(message); this.name = 'BrioError'; this.status = status; }
@@ -143,21 +143,25 @@ class Brio {
   }
 
   /** Makes a surface through points: a mesh with `certificate` and `facts`.   points  an array, or a mesh, whose normals and scanners'
-   *  places tell where outside is, and whose properties the surface gets.   options  see index.d.ts. */
+   *  places tell where outside is, and whose properties the surface gets.   options  see load.d.ts; `explain`: the mesh has an
+   *  `explanation`, how the surface came to be, for `page`. */
   surface(points, options = {}) {
     return this.during(options, (blocks) => {
-      const out = blocks.room(4), facts = blocks.room(48), given = blocks.doubles(choices(options));
+      const out = blocks.room(4), facts = blocks.room(48), given = blocks.doubles(choices(options)), told = options.explain ? blocks.room(4) : 0;
       let status;
-      if (points instanceof Mesh) status = this.x.surface_of(this.context, points.address, given, out, facts);
+      if (points instanceof Mesh) status = this.x.surface_of(this.context, points.address, given, out, facts, told);
       else {
         const p = blocks.points(points, 3);
         const normals = options.normals ? blocks.doubles(options.normals, 3 * p.count, 'normals') : 0;
         const origins = options.origins ? blocks.doubles(options.origins) : 0;
-        status = this.x.surface(this.context, p.at, p.count, given, normals, origins, (options.origins?.length ?? 0) / 3, out, facts);
+        status = this.x.surface(this.context, p.at, p.count, given, normals, origins, (options.origins?.length ?? 0) / 3, out, facts, told);
       }
+      const explanation = told ? this.made(0, told, Explanation) : null;
+      if (status) explanation?.free();
       const mesh = this.made(status, out, Mesh);
       const [noise, smoothed, holes, bridges, strays, agreement] = this.numbers(Float64Array, facts, 6);
       mesh.facts = { noise, smoothed: !!smoothed, holes, bridges, strays, agreement };
+      if (explanation) mesh.explanation = explanation;
       return mesh;
     });
   }
@@ -204,13 +208,13 @@ class Brio {
     });
   }
 
-  /** Makes a page that shows meshes (docs/view.md): the bytes of an HTML file.   layers  [{ mesh, name, report }]. */
+  /** Makes a page that shows meshes (docs/view.md): the bytes of an HTML file.   layers  [{ mesh, name, report, explanation }]. */
   page(layers, options = {}) {
     return this.during(options, (blocks) => {
       const texts = (key) => blocks.words(layers.map((l) => (l[key] ? blocks.text(l[key]) : 0)));
       const name = 'page.html';
       this.check(this.x.page(this.context, blocks.text(name), blocks.words(layers.map((l) => l.mesh.address)), texts('name'), texts('report'),
-        layers.length, options.selfIntersections ? 1 : 0));
+        blocks.words(layers.map((l) => l.explanation?.address ?? 0)), layers.length, options.selfIntersections ? 1 : 0));
       return this.files.take(name);
     });
   }
@@ -333,4 +337,4 @@ function choices(o) {
 
 /** Whether an error says that a call was stopped. */
 export const isCancelled = (error) => error?.name === 'BrioError' && error.status === CANCELLED;
-export { AlphaComplex, Cells, Mesh, Points, Triangulation };
+export { AlphaComplex, Cells, Explanation, Mesh, Points, Triangulation };

@@ -85,10 +85,14 @@ export declare class Mesh extends Result implements MeshArrays, MeshFacts {
   readonly vertices: Float64Array; readonly faces: Uint32Array; readonly offsets: Uint32Array; readonly tetrahedra: Uint32Array;
   readonly edges: Uint32Array; readonly properties: Record<string, Values>; readonly faceProperties: Record<string, Values>;
   facts?: SurfaceFacts; samples?: Uint32Array; dimension?: number; alpha?: number; solid?: number; uncovered?: number;
+  /** Of `surface` with `explain`; released by itself. */
+  explanation?: Explanation;
   /** Counted when it is first asked for. */
   readonly certificate: Certificate;
   copy(): MeshArrays & MeshFacts;
 }
+/** How a surface came to be, at some of its samples: for `page`. */
+export declare class Explanation extends Result { readonly samples: number; readonly allSamples: number }
 export declare class AlphaComplex extends Result {
   /** Those of dimension k, 0 to 3: k + 1 points each, ascending. */
   simplices(k: number): Uint32Array;
@@ -125,6 +129,8 @@ export interface SurfaceOptions extends CallOptions {
   /** Of offset. */
   distance?: number;
   theta?: number; boundaries?: boolean | 'auto'; density?: boolean; pieces?: number; seed?: number;
+  /** Keeps how the surface came to be: cells, poles, labels of at most 5,000 samples. Not with offset and pieces. */
+  explain?: boolean;
   /** Where outside is: a normal of each point; places of scanners, one for all points or one of each. */
   normals?: Numbers; origins?: Numbers;
 }
@@ -152,7 +158,7 @@ export declare class Brio {
   mesh(arrays: MeshInput): Mesh;
   read(bytes: Uint8Array, name?: string, options?: CallOptions): Mesh;
   write(mesh: Mesh | MeshInput, name: string, options?: WriteOptions): Uint8Array;
-  page(layers: { mesh: Mesh; name?: string; report?: string }[], options?: CallOptions & { selfIntersections?: boolean }): Uint8Array;
+  page(layers: { mesh: Mesh; name?: string; report?: string; explanation?: Explanation }[], options?: CallOptions & { selfIntersections?: boolean }): Uint8Array;
 }
 
 export type Source = Response | BufferSource | WebAssembly.Module;

@@ -229,9 +229,10 @@ int module_hull(brio_context *ctx, const double *points, size_t count, int polyg
 
 /* Makes a surface.   given  method, noise, open, holes, simplify, confidence, polygons, distance, theta, boundaries,
  * density, pieces, seed.   evidence  NULL, or where outside is.   facts  noise, smoothed, holes, bridges, strays,
- * agreement with the evidence. */
+ * agreement with the evidence.   explanation  NULL, or receives how the surface came to be. */
 static int make_surface(brio_context *ctx, const double *points, size_t count, const double given[13],
-                        const brio_evidence *evidence, brio_mesh **out, double facts[6]) {
+                        const brio_evidence *evidence, brio_mesh **out, double facts[6],
+                        brio_explanation **explanation) {
     brio_surface_options o = {.size = sizeof o};
     brio_surface_stats s = {.size = sizeof s};
     o.method = (brio_surface_method)given[0];
@@ -247,6 +248,7 @@ static int make_surface(brio_context *ctx, const double *points, size_t count, c
     o.density = given[10] != 0;
     o.pieces = (size_t)given[11];
     o.seed = (uint64_t)given[12];
+    o.explanation = explanation;
     o.evidence = brio_surface_method_has(o.method, "evidence") && !o.pieces ? evidence : NULL;
     brio_status status = brio_surface(ctx, points, count, &o, out, &s);
     const double found[6] = {s.noise,           (double)s.smoothed, (double)s.holes,
@@ -258,9 +260,10 @@ static int make_surface(brio_context *ctx, const double *points, size_t count, c
 /* normals  #P by 3, or NULL.   origins  places of scanners, or NULL. */
 EXPORT(surface)
 int module_surface(brio_context *ctx, const double *points, size_t count, const double given[13], const double *normals,
-                   const double *origins, size_t num_origins, brio_mesh **out, double facts[6]) {
+                   const double *origins, size_t num_origins, brio_mesh **out, double facts[6],
+                   brio_explanation **explanation) {
     const brio_evidence e = {.size = sizeof e, .normals = normals, .origins = origins, .num_origins = num_origins};
-    return make_surface(ctx, points, count, given, normals || origins ? &e : NULL, out, facts);
+    return make_surface(ctx, points, count, given, normals || origins ? &e : NULL, out, facts, explanation);
 }
 
 /* Returns the three properties of these names, row by row, or NULL where one is missing. */
@@ -277,12 +280,12 @@ static double *take_three(const brio_mesh *mesh, const char *const names[3]) {
  * is, and the surface has the mesh's properties. */
 EXPORT(surface_of)
 int module_surface_of(brio_context *ctx, const brio_mesh *points, const double given[13], brio_mesh **out,
-                      double facts[6]) {
+                      double facts[6], brio_explanation **explanation) {
     size_t n = points->num_vertices;
     double *normals = take_three(points, (const char *const[]){"nx", "ny", "nz"});
     double *origins = take_three(points, (const char *const[]){"x_origin", "y_origin", "z_origin"});
     const brio_evidence e = {.size = sizeof e, .normals = normals, .origins = origins, .num_origins = origins ? n : 0};
-    int status = make_surface(ctx, points->vertices, n, given, normals || origins ? &e : NULL, out, facts);
+    int status = make_surface(ctx, points->vertices, n, given, normals || origins ? &e : NULL, out, facts, explanation);
     free(normals);
     free(origins);
     if (status == BRIO_OK && points->num_properties) {
@@ -292,6 +295,16 @@ int module_surface_of(brio_context *ctx, const brio_mesh *points, const double g
         status = brio_mesh_carry_properties(ctx, points, samples, *out);
     }
     return status;
+}
+
+/* Gives the numbers of the samples that are explained, and of all. */
+EXPORT(explanation_parts) void module_explanation_parts(const brio_explanation *e, uint32_t parts[2]) {
+    parts[0] = (uint32_t)e->num_samples;
+    parts[1] = (uint32_t)e->all_samples;
+}
+
+EXPORT(explanation_free) void module_explanation_free(brio_explanation *e) {
+    brio_explanation_free(e);
 }
 
 /* --- meshes --- */
@@ -309,16 +322,17 @@ EXPORT(write) int module_write(brio_context *ctx, const char *path, const brio_m
     return brio_write(ctx, path, mesh, &o);
 }
 
-/* Writes a page that shows meshes; names and reports of each, or NULL. */
+/* Writes a page that shows meshes; name, report and explanation of each, or NULL. */
 EXPORT(page)
 int module_page(brio_context *ctx, const char *path, const brio_mesh *const *meshes, const char *const *names,
-                const char *const *reports, size_t count, int self_intersections) {
+                const char *const *reports, const brio_explanation *const *explanations, size_t count,
+                int self_intersections) {
     const brio_page_options o = {.size = sizeof o, .self_intersections = self_intersections};
     brio_page_layer *layers = calloc(count + 1, sizeof *layers);
     const brio_page_layer **list = calloc(count + 1, sizeof *list);
     int status = layers && list ? BRIO_OK : BRIO_ERR_NO_MEMORY;
     for (size_t i = 0; status == BRIO_OK && i < count; i++) {
-        layers[i] = (brio_page_layer){sizeof *layers, meshes[i], names[i], reports[i]};
+        layers[i] = (brio_page_layer){sizeof *layers, meshes[i], names[i], reports[i], explanations[i]};
         list[i] = &layers[i];
     }
     if (status == BRIO_OK) status = brio_write_page(ctx, path, list, count, &o, NULL);

@@ -158,6 +158,14 @@ export class Mesh extends Result {
   }
 }
 
+/** How a surface came to be, at `samples` of its `allSamples`: for `page`. */
+export class Explanation extends Result {
+  constructor(brio, at) {
+    super(brio, at, 'explanation_free');
+    [this.samples, this.allSamples] = this.parts('explanation_parts', 2);
+  }
+}
+
 /** Simplices with their alphas: of dimension 0 to 3, `simplices(k)` has k + 1 points of each, `values(k)` a number. */
 export class AlphaComplex extends Result {
   constructor(brio, at) { super(brio, at, 'alpha_free'); }

@@ -8,6 +8,7 @@
 #include "cli/steps/hints.h"
 #include "cli/steps/weights.h"
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct arguments {
     weights_options weights;
@@ -84,6 +85,31 @@ done:
     return status;
 }
 
+/* Checks all that the file has: the edges of curves, or tetrahedra, then faces, then faces by samples. */
+static brio_status judge(run *r, const arguments *a, const brio_mesh *mesh) {
+    unsigned how = (a->open ? CERTIFY_OPEN : 0u) | (a->self_intersections ? CERTIFY_EMBEDDED : 0u);
+    brio_status status = BRIO_OK;
+    if (!mesh->num_faces && !mesh->num_tetrahedra) return blame_file(r, cli_check_edges(r, mesh, a->open));
+    if (mesh->num_tetrahedra) FORWARD(check_tetrahedra(r, a, mesh));
+    if (mesh->num_faces) status = blame_file(r, cli_certify(r, mesh, how | CERTIFY_INPUT));
+    if (a->samples && (status == BRIO_OK || status == BRIO_ERR_CHECK))
+        FORWARD(compare_with_samples(r, mesh, a->samples));
+    return status;
+}
+
+/* Shows the mesh, right or wrong. The sentence of the failure is what was found of it, or why it cannot be shown. */
+static brio_status show(run *r, brio_status judged, const brio_mesh *mesh) {
+    const brio_failure why = r->failure;
+    char found[sizeof r->message];
+    if (judged != BRIO_OK && judged != BRIO_ERR_CHECK) return judged;
+    memcpy(found, r->message, sizeof found);
+    r->message[0] = 0;
+    FORWARD(cli_show(r, mesh));
+    memcpy(r->message, found, sizeof found);
+    r->failure = why;
+    return judged;
+}
+
 static brio_status check(run *r) {
     const arguments *a = r->arguments;
     brio_mesh *mesh = NULL;
@@ -101,16 +127,9 @@ static brio_status check(run *r) {
     cli_fact_count(&r->facts, "faces", mesh->num_faces);
     cli_fact_count(&r->facts, "tetrahedra", mesh->num_tetrahedra);
     if (curves) cli_fact_count(&r->facts, "edges", mesh->num_edges);
-    if (curves) status = blame_file(r, cli_check_edges(r, mesh, a->open));
-    if (mesh->num_tetrahedra) TRY(check_tetrahedra(r, a, mesh));
-    unsigned how = (a->open ? CERTIFY_OPEN : 0u) | (a->self_intersections ? CERTIFY_EMBEDDED : 0u);
-    if (mesh->num_faces) status = blame_file(r, cli_certify(r, mesh, how | CERTIFY_INPUT));
-    if (a->samples && (status == BRIO_OK || status == BRIO_ERR_CHECK)) {
-        brio_status judged = status;
-        TRY(compare_with_samples(r, mesh, a->samples));
-        status = judged;
-    }
+    status = judge(r, a, mesh);
     cli_examine(r, status, mesh);
+    status = show(r, status, mesh);
 done:
     brio_mesh_free(mesh);
     return status;
@@ -126,7 +145,9 @@ const command cli_check = {
     .examples = "brio check surface.ply\nclosed, manifold, oriented?\n"
                 "brio check surface.ply --self-intersections\ndo faces run through each other, too?\n"
                 "brio check surface.ply --open --samples scan.ply\nwhat of it did the scan see?\n"
+                "brio check surface.ply --self-intersections --view flaws.html\na page that shows where it fails\n"
                 "brio check tetrahedra.vtu\nare the tetrahedra Delaunay?\n",
+    .shown = true,
     .group = GROUP_FILES,
     .min_operands = 1,
     .max_operands = 1,

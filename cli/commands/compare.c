@@ -145,20 +145,33 @@ static void report_distance(facts *f, const brio_distance *d) {
     cli_fact_close(f);
 }
 
+/* Writes the first of two surfaces, with the distances of its vertices from the second. */
+static brio_status write_distances(run *r, brio_mesh *a, const brio_mesh *b) {
+    brio_status status = BRIO_OK;
+    if (!cli_wants_mesh(r)) return BRIO_OK;
+    double *distance = malloc((a->num_vertices + 1) * sizeof *distance);
+    if (!distance) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu distances", a->num_vertices);
+    TRY(brio_mesh_signed_distances(r->ctx, b, a->vertices, a->num_vertices, distance));
+    cli_lap(r, "compare");
+    TRY(add_property(r, a, distance));
+    status = cli_write(r, a);
+done:
+    free(distance);
+    return status;
+}
+
 /* Compares two surfaces by points on both. */
-static brio_status compare_surfaces(run *r, const brio_mesh *a, const brio_mesh *b) {
+static brio_status compare_surfaces(run *r, brio_mesh *a, const brio_mesh *b) {
     const arguments *chosen = r->arguments;
     brio_distance d = {0};
     brio_status status = BRIO_OK;
-    if (cli_wants_mesh(r))
-        FAIL(r, BRIO_ERR_ARGUMENT, "two surfaces: %s is for points compared with a surface",
-             r->common.output ? "-o" : cli_showing(r));
     status = brio_mesh_distance(r->ctx, a, b, (size_t)chosen->samples, r->common.seed, &d);
     if (status == BRIO_ERR_ARGUMENT) /* faces without area, or of two corners */
         FAIL(r, BRIO_ERR_NO_ANSWER, "%s, %s: %s", r->operands[0], r->operands[1], brio_message(r->ctx));
     TRY(status);
     cli_lap(r, "compare");
     report_distance(&r->facts, &d);
+    TRY(write_distances(r, a, b));
     if (chosen->within > 0) {
         bool within = d.hausdorff <= cli_up_to(chosen->within, fmax(cli_rounding(a), cli_rounding(b)));
         cli_fact_bool(&r->facts, "within", within);
@@ -202,9 +215,10 @@ const command cli_compare = {
     .name = "compare",
     .operands = "A B",
     .summary = "distances between two surfaces, or of points from a surface, with their sides",
-    .description = "Points inside a closed surface, or behind the faces of another one, have negative distances. With "
-                   "-o the points are "
-                   "written with the property distance.",
+    .description =
+        "Points inside a closed surface, or behind the faces of another one, have negative distances. With "
+        "-o the points, or of two surfaces the first, are written with the property distance, which --view shows as "
+        "colours.",
     .examples =
         "brio compare surface.ply truth.ply\nhow far they are apart\n"
         "brio compare scan.ply part.stl --within 0.1 -o checked.ply\nis every point within a tenth of the part?\n",

@@ -156,10 +156,9 @@ static brio_status check_tiles(run *r, const arguments *a) {
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING || a->verify ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->order.block_size ||
                 !isnan(a->order.round_ratio);
-    if (cli_showing(r)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: not with --tiles", cli_showing(r));
     if (once)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "--tiles goes with weights and -o, not with --plane, --verify, orders, "
+                        "--tiles goes with weights, -o, --view and --picture, not with --plane, --verify, orders, "
                         "locations or records");
     FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
     return cli_check_tile_output(r);
@@ -185,8 +184,6 @@ static brio_status check_periodic(run *r, const arguments *a) {
     bool open = a->locate != (int)BRIO_LOCATION_WALK || a->all_conflicts || a->rounds || a->first_conflict ||
                 a->record_every || a->page_size || a->cache_size || a->subgraph != SUBGRAPH_FITTING ||
                 a->plane != NO_PLANE || a->order.order != FITTING_ORDER || a->tiles;
-    if (cli_is_periodic(&a->periodic) && cli_showing(r))
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: not with --cell", cli_showing(r));
     if (cli_is_periodic(&a->periodic) && open)
         return cli_fail(
             r, BRIO_ERR_ARGUMENT,
@@ -422,7 +419,7 @@ static brio_status triangulate_periodic(run *r, const brio_mesh *points, const d
         if (status == BRIO_OK || status == BRIO_ERR_CHECK) cli_fact_bool(&r->facts, "verified", status == BRIO_OK);
         TRY(status);
     }
-    if (!r->common.output) goto done;
+    if (!cli_wants_mesh(r)) goto done;
     TRY(brio_mesh_new(r->ctx, &mesh));
     TRY(fill_images(r, t, mesh));
     TRY(cli_write(r, mesh));

@@ -255,11 +255,15 @@ static brio_status report_offset(run *r, const brio_mesh *mesh, double beside, u
 static brio_status report_surfaces(run *r, const brio_mesh *mesh, size_t usual) {
     facts *f = &r->facts;
     double beside = CLI_PROGRAM_BYTES + cli_mesh_bytes(mesh);
-    uint64_t surface, crust, cocone;
+    uint64_t surface, explained, crust, cocone;
+    brio_explanation *wanted = NULL;
     FORWARD(brio_estimate_surface(r->ctx, usual, NULL, &surface));
+    const brio_surface_options explaining = {.size = sizeof explaining, .explanation = &wanted};
+    FORWARD(brio_estimate_surface(r->ctx, usual, &explaining, &explained));
     FORWARD(brio_estimate_power_shape(r->ctx, usual, NULL, &crust));
     FORWARD(brio_estimate_surface(r->ctx, usual, &(brio_surface_options){.method = BRIO_SURFACE_COCONE}, &cocone));
     cli_fact_bytes(f, "surface", (uint64_t)(beside + (double)surface));
+    cli_fact_bytes(f, "explained", (uint64_t)(beside + (double)explained));
     cli_fact_bytes(f, "medial", (uint64_t)(beside + (double)crust));
     FORWARD(report_offset(r, mesh, beside, crust));
     cli_fact_bytes(f, "cocone", (uint64_t)(beside + (double)cocone));

@@ -29,13 +29,6 @@ typedef struct boxed_diagram {
     const brio_cells_options *options; /* with a box */
 } boxed_diagram;
 
-/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
-enum { LEAST_VOLUME = -900, MOST_VOLUME = 1020 };
-
-static bool is_held(double volume) {
-    return volume > 0 && isfinite(volume) && ilogb(volume) >= LEAST_VOLUME && ilogb(volume) <= MOST_VOLUME;
-}
-
 static double error_of(const brio_cells *cells) {
     return fabs(cells->volume_sum / cells->region_volume - 1);
 }
@@ -88,7 +81,7 @@ done:
  *  needs. */
 static brio_status cli_box_error(run *r, const boxed_diagram *d, const brio_cells *cells, double *error) {
     *error = NAN;
-    if (!is_held(cells->region_volume)) return scaled_error(r, d, error);
+    if (!cli_volume_is_held(cells->region_volume)) return scaled_error(r, d, error);
     *error = error_of(cells);
     return BRIO_OK;
 }
@@ -135,22 +128,6 @@ static brio_status require_output(run *r, brio_cells_format *format) {
         return cli_fail_output(r, "%s: a file of this format cannot hold cells, expected .vtu .npy or .csv", c->output);
     if (c->compress) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress: cells are written without compression");
     return strcmp(c->output, "-") ? cli_check_target(r, c->output) : BRIO_OK;
-}
-
-/* Reads six numbers with commas between them. */
-static brio_status read_box(run *r, const char *text, double box[6]) {
-    const char *rest = text;
-    for (int i = 0; i < 6; i++) {
-        char *end;
-        box[i] = strtod(rest, &end);
-        if (end == rest || !isfinite(box[i]) || *end != (i < 5 ? ',' : 0))
-            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: '%s' is not x0,y0,z0,x1,y1,z1", text);
-        rest = end + 1;
-    }
-    for (int k = 0; k < 3; k++)
-        if (!(box[k] < box[3 + k]))
-            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: %c from %g to %g is empty", "xyz"[k], box[k], box[3 + k]);
-    return BRIO_OK;
 }
 
 /* Refuses work over --max-memory. */
@@ -217,25 +194,17 @@ done:
     return status;
 }
 
-/* What a page and a picture show: cells, and by how much each is smaller there, so that it can be told from others. */
-enum { MOST_SHOWN = 8000 };
-static const double SMALLER = 0.1;
-
-/* Shows the cells: on a page, which moves them apart by itself, and in a picture. */
-static brio_status show(run *r, const brio_cells *cells) {
-    const common_options *c = &r->common;
-    brio_mesh *whole = NULL, *small = NULL;
+static brio_status show(run *r, const brio_mesh *mesh, const brio_cells *cells) {
+    const arguments *a = r->arguments;
     brio_status status = BRIO_OK;
-    size_t left_out = 0;
+    shown_cells s = {.all = cells->num_cells, .has_sites = true};
+    bool open = !a->box && !cli_is_periodic(&a->periodic);
     if (!cli_showing(r)) return BRIO_OK;
-    TRY(brio_cells_mesh(r->ctx, cells, MOST_SHOWN, 0, &left_out, &whole));
-    if (!whole->num_faces) FAIL(r, BRIO_ERR_NO_ANSWER, "no cell ends: nothing to show; --box cuts cells off");
-    if (c->picture) TRY(brio_cells_mesh(r->ctx, cells, MOST_SHOWN, SMALLER, NULL, &small));
-    TRY(cli_show_both(r, whole, small, "volume"));
-    if (left_out) cli_warn(r, WARNING_CELLS, cli_showing(r), left_out, cells->num_cells);
+    if (open) cli_shown_cells_stay_near(&s, mesh->vertices, mesh->num_vertices);
+    TRY(cli_shown_cells_add(r, &s, cells, NULL));
+    status = cli_shown_cells_show(r, &s);
 done:
-    brio_mesh_free(whole);
-    brio_mesh_free(small);
+    cli_shown_cells_free(&s);
     return status;
 }
 
@@ -295,33 +264,55 @@ static int take_cells(const brio_cells *cells, const uint64_t *site, void *user)
 static brio_status check_tiles(run *r, brio_cells_format format) {
     const arguments *a = r->arguments;
     if (cli_is_periodic(&a->periodic)) return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell, --periodic: not with --tiles");
-    if (cli_showing(r)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: not with --tiles", cli_showing(r));
     if (format == BRIO_CELLS_FORMAT_VTU)
         return cli_fail_output(r, "%s: --tiles writes cells to .npy and .csv", r->common.output);
     return cli_check_tiles(r, &a->weights, a->tiles);
 }
 
-static void report_tiles(run *r, const brio_tiles_stats *s, const brio_tiles_cells_stats *cells) {
-    facts *f = &r->facts;
-    cli_fact_bool(f, "weighted", s->weighted);
-    cli_fact_count(f, "points", s->points);
-    cli_fact_count(f, "duplicates", s->duplicates);
-    cli_fact_count(f, "hidden", s->hidden);
-    cli_fact_integer(f, "dimension", s->dimension);
-    cli_fact_count(f, "cells", cells->cells);
-    cli_fact_count(f, "bounded", cells->bounded);
-    cli_fact_count(f, "faces", cells->faces);
-    cli_fact_real(f, "volume", cells->volume_sum);
-    if (isfinite(cells->region_volume)) {
-        double error = fabs(cells->volume_sum / cells->region_volume - 1);
-        if (cells->outside) cli_warn(r, WARNING_OUTSIDE, (size_t)cells->outside, (size_t)s->vertices, r->operands[0]);
-        cli_fact_real(f, "box_volume", cells->region_volume);
-        cli_fact_real(f, "box_error", is_held(cells->region_volume) ? error : NAN);
+/* What takes the cells that are shown. */
+typedef struct {
+    run *r;
+    shown_cells shown;
+    brio_status status;
+} showing;
+
+static int take_shown(const brio_cells *cells, const uint64_t *site, void *user) {
+    showing *s = user;
+    s->status = cli_shown_cells_add(s->r, &s->shown, cells, site);
+    if (s->status != BRIO_OK) cli_keep_failure(s->r, s->status);
+    return s->status != BRIO_OK;
+}
+
+/* Reads where the vertices of all tiles are: cells are shown near them. */
+static brio_status stay_near(run *r, brio_tiles *t, shown_cells *shown) {
+    const arguments *a = r->arguments;
+    for (uint32_t i = 0; i < a->tiles; i++) {
+        brio_tile_part part = {.size = sizeof part};
+        FORWARD(brio_tiles_part(r->ctx, t, i, &part));
+        cli_shown_cells_stay_near(shown, part.points, part.num_vertices);
+        brio_tile_part_free(r->ctx, &part);
+        FORWARD(cli_check_interrupt(r));
     }
-    cli_fact_count(f, "tiles", s->tiles);
-    cli_fact_count(f, "resumed", s->resumed);
-    cli_fact_count(f, "largest_tile", s->most_points);
-    cli_fact_count(f, "scratch_bytes", s->scratch_bytes);
+    return BRIO_OK;
+}
+
+/* Shows cells of all tiles, or an even choice. They are computed once more, with vertices, tile after tile. */
+static brio_status show_tiles(run *r, brio_tiles *t, const brio_cells_options *clipped) {
+    brio_status status = BRIO_OK;
+    brio_cells_options o = *clipped;
+    showing s = {.r = r};
+    if (!cli_showing(r)) return BRIO_OK;
+    s.shown.all = brio_tiles_cells_facts(t)->cells;
+    s.shown.has_sites = brio_tiles_facts(t)->points <= UINT32_MAX;
+    o.vertices = 1;
+    if (!o.box) TRY(stay_near(r, t, &s.shown));
+    brio_status ended = brio_tiles_cells(r->ctx, t, &o, 0, take_shown, &s);
+    TRY(s.status); /* why the function ended it */
+    TRY(ended);
+    status = cli_shown_cells_show(r, &s.shown);
+done:
+    cli_shown_cells_free(&s.shown);
+    return status;
 }
 
 /* Writes the rows of all cells in the order of their sites, as without tiles. */
@@ -341,11 +332,13 @@ static brio_status voronoi_in_tiles(run *r, const brio_cells_options *o, brio_ce
     TRY(out.status); /* why the function ended it */
     TRY(ended);
     cli_lap(r, "cells");
-    report_tiles(r, brio_tiles_facts(t), brio_tiles_cells_facts(t));
+    cli_report_tile_cells(r, brio_tiles_facts(t), brio_tiles_cells_facts(t));
     TRY(cli_check_interrupt(r));
     if (out.cells) TRY(brio_cells_table_finish(r->ctx, out.cells));
     if (out.faces) TRY(brio_cells_table_finish(r->ctx, out.faces));
     cli_lap(r, "write");
+    cli_interrupt_writing(false);
+    status = show_tiles(r, t, o);
 done:
     brio_cells_table_free(out.cells);
     brio_cells_table_free(out.faces);
@@ -366,13 +359,13 @@ static brio_status voronoi(run *r) {
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(require_output(r, &format));
     TRY(cli_check_periodic(r, &a->periodic));
-    if (a->box) TRY(read_box(r, a->box, box));
+    if (a->box) TRY(cli_read_box(r, a->box, box));
     o.box = a->box ? box : NULL;
-    o.vertices = format == BRIO_CELLS_FORMAT_VTU || cli_showing(r);
     if (a->tiles) {
         TRY(check_tiles(r, format));
         return voronoi_in_tiles(r, &o, format);
     }
+    o.vertices = format == BRIO_CELLS_FORMAT_VTU || cli_showing(r);
     TRY(cli_read_points(r, r->operands[0], &mesh));
     bool weighted = cli_is_weighted(&a->weights, mesh);
     TRY(cli_weights(r, &a->weights, mesh, &weights));
@@ -387,7 +380,7 @@ static brio_status voronoi(run *r) {
     }
     TRY(write_file(r, r->common.output, cells, format));
     TRY(write_file(r, a->faces, cells, BRIO_CELLS_FORMAT_FACES_CSV));
-    TRY(show(r, cells));
+    TRY(show(r, mesh, cells));
 done:
     brio_cells_free(cells);
     brio_triangulation_free(t);

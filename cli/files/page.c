@@ -135,7 +135,7 @@ brio_status cli_show_both(run *r, const brio_mesh *mesh, const brio_mesh *pictur
     brio_status status = BRIO_OK;
     char *report = NULL;
     if (!cli_showing(r)) return BRIO_OK;
-    report = brio_program_text(write_report, r);
+    if (!r->facts.failed) report = brio_program_text(write_report, r);
     if (!report) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for the report on a page");
     const char *path = r->common.output ? r->common.output : r->operands[0];
     const brio_page_layer layer = {.size = sizeof layer,
@@ -146,9 +146,10 @@ brio_status cli_show_both(run *r, const brio_mesh *mesh, const brio_mesh *pictur
     const brio_page_layer more = {.mesh = r->beside, .name = r->beside_name};
     const brio_page_layer drawn = {.mesh = pictured, .name = layer.name};
     const brio_page_layer *layers[] = {&layer, &more}, *drawing[] = {&drawn};
-    if (r->common.view) TRY(cli_write_page(r, r->common.view, layers, r->beside ? 2 : 1, NULL));
+    const brio_page_options how = {.size = sizeof how, .self_intersections = r->crossings};
+    if (r->common.view) TRY(cli_write_page(r, r->common.view, layers, r->beside ? 2 : 1, &how));
     if (!r->common.colour_by) r->common.colour_by = colour;
-    if (r->common.picture) TRY(cli_write_picture(r, drawing, 1, NULL));
+    if (r->common.picture) TRY(cli_write_picture(r, drawing, 1, &how));
     if (r->explanation && r->explanation->num_samples < r->explanation->all_samples)
         cli_warn(r, WARNING_EXPLAIN, r->common.view, r->explanation->num_samples, r->explanation->all_samples);
     r->shown = true;

@@ -69,4 +69,27 @@ brio_status cli_show(run *r, const brio_mesh *mesh);
  *  colour  the property that colours the picture unless --colour-by says otherwise; NULL: as ever. */
 brio_status cli_show_both(run *r, const brio_mesh *mesh, const brio_mesh *pictured, const char *colour);
 
+/** Cells that are to be shown, as they come in parts: those that end and, of more than 8,000, an even choice. */
+typedef struct shown_cells {
+    uint64_t all;   /* set at first: how many cells will come, */
+    bool has_sites; /* and whether 32 bits hold the sites, which are shown then */
+    bool is_near;   /* they do not reach far beyond this box: */
+    double low[3], high[3];
+    uint64_t seen;              /* cells so far */
+    size_t left_out, count;     /* cells that are not shown; parts that have some */
+    brio_mesh **whole, **small; /* of each part: on a page, and in a picture */
+} shown_cells;
+
+/** Leaves out the cells that reach beyond the box of points, of all calls, by more than a quarter of its longest side.
+ *  Before the cells come. */
+void cli_shown_cells_stay_near(shown_cells *s, const double *points, size_t count);
+/** Takes a part of the cells, with vertices.   site  in place of cells->site; or NULL. */
+brio_status cli_shown_cells_add(run *r, shown_cells *s, const brio_cells *cells, const uint64_t *site);
+/** Writes what cli_show_both writes, and warns of cells that are left out. BRIO_ERR_NO_ANSWER: none is shown. */
+brio_status cli_shown_cells_show(run *r, const shown_cells *s);
+void cli_shown_cells_free(shown_cells *s);
+
+/** Shows the tetrahedra of all tiles, or of over 200,000 an even choice: one tile is in memory at a time. */
+brio_status cli_show_tiles(run *r, brio_tiles *t, uint32_t tiles);
+
 #endif

@@ -112,6 +112,7 @@ typedef struct run {
     const brio_mesh *beside;       /* set by a command before it writes: a second layer of the page of --view, */
     const char *beside_name;       /* and what it is called there */
     brio_explanation *explanation; /* set by a command: how its surface came to be, for the page; freed with the run */
+    bool crossings;                /* faces that cross others were counted: the page and the picture mark them */
     bool shown;                    /* the page of --view, the picture of --picture was written */
     bool over_limit;               /* an estimate is over --max-memory */
 } run;

@@ -39,8 +39,10 @@
 /* --- warnings --- */
 
 #define WARNING_CELLS                                                                                                  \
-    "%s: %zu of %zu cells are not shown: those without end, and of over 8,000 others all but an even choice"
+    "%s: %zu of %zu cells are not shown: those without end, without a box those that reach far beyond the points, "    \
+    "and of over 8,000 others all but an even choice"
 #define WARNING_EXPLAIN "%s: the page explains an even choice of %zu of %zu samples"
+#define WARNING_CHOSEN  "%s: shows an even choice of %zu of %zu tetrahedra"
 #define WARNING_PAGE    "%s: %llu points are not on the page, which shows an even choice; --points N shows more"
 
 #define WARNING_FILTRATION "%s: shows this alpha alone: with its %zu facets the page would be too large for all alphas"

@@ -53,6 +53,7 @@ static brio_status judge(run *r, const brio_certificate *c, unsigned how) {
 static brio_status count_self_intersections(run *r, const brio_mesh *mesh, brio_certificate *c) {
     brio_status status = brio_mesh_self_intersections(r->ctx, mesh, &c->self_intersections);
     cli_lap(r, "self_intersections");
+    r->crossings = true;
     return status;
 }
 

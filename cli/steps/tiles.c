@@ -32,10 +32,10 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     return BRIO_OK;
 }
 
-brio_status cli_check_tile_files(run *r) {
+brio_status cli_check_tile_files(run *r, const char *formats) {
     const char *output = r->common.output;
     if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
-        return cli_fail_output(r, "%s: --tiles writes .ply, and .pvtu with a file for each tile beside it", output);
+        return cli_fail_output(r, "%s: --tiles writes %s with a file for each tile beside it", output, formats);
     return output ? cli_new_folder_check(r, output, OF_TILES) : BRIO_OK;
 }
 
@@ -50,7 +50,7 @@ static brio_format merged_format(const run *r) {
 brio_status cli_check_tile_output(run *r) {
     const char *input = r->operands[0];
     brio_place_facts file;
-    if (merged_format(r) == BRIO_FORMAT_AUTO) return cli_check_tile_files(r);
+    if (merged_format(r) == BRIO_FORMAT_AUTO) return cli_check_tile_files(r, ".ply, and .pvtu");
     if (!strcmp(input, "-") || !brio_find_facts(input, &file) || file.kind != BRIO_IS_FILE)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "%s: for one output of all tiles the input is read twice, so it must be a file; .pvtu needs it "
@@ -173,6 +173,54 @@ static brio_status report(run *r, brio_tiles *t) {
     cli_lap(r, "checksum");
     cli_report_tiles(r, brio_tiles_facts(t), checksum);
     return BRIO_OK;
+}
+
+/* --- cells --- */
+
+/* Exponents of volumes of which doubles hold a share of 2^-53 and sums of cells. */
+enum { LEAST_VOLUME = -900, MOST_VOLUME = 1020 };
+
+bool cli_volume_is_held(double volume) {
+    return volume > 0 && isfinite(volume) && ilogb(volume) >= LEAST_VOLUME && ilogb(volume) <= MOST_VOLUME;
+}
+
+/* Reads six numbers with commas between them. */
+brio_status cli_read_box(run *r, const char *text, double box[6]) {
+    const char *rest = text;
+    for (int i = 0; i < 6; i++) {
+        char *end;
+        box[i] = strtod(rest, &end);
+        if (end == rest || !isfinite(box[i]) || *end != (i < 5 ? ',' : 0))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: '%s' is not x0,y0,z0,x1,y1,z1", text);
+        rest = end + 1;
+    }
+    for (int k = 0; k < 3; k++)
+        if (!(box[k] < box[3 + k]))
+            return cli_fail(r, BRIO_ERR_ARGUMENT, "--box: %c from %g to %g is empty", "xyz"[k], box[k], box[3 + k]);
+    return BRIO_OK;
+}
+
+void cli_report_tile_cells(run *r, const brio_tiles_stats *s, const brio_tiles_cells_stats *cells) {
+    facts *f = &r->facts;
+    cli_fact_bool(f, "weighted", s->weighted);
+    cli_fact_count(f, "points", s->points);
+    cli_fact_count(f, "duplicates", s->duplicates);
+    cli_fact_count(f, "hidden", s->hidden);
+    cli_fact_integer(f, "dimension", s->dimension);
+    cli_fact_count(f, "cells", cells->cells);
+    cli_fact_count(f, "bounded", cells->bounded);
+    cli_fact_count(f, "faces", cells->faces);
+    cli_fact_real(f, "volume", cells->volume_sum);
+    if (isfinite(cells->region_volume)) {
+        double error = fabs(cells->volume_sum / cells->region_volume - 1);
+        if (cells->outside) cli_warn(r, WARNING_OUTSIDE, (size_t)cells->outside, (size_t)s->vertices, r->operands[0]);
+        cli_fact_real(f, "box_volume", cells->region_volume);
+        cli_fact_real(f, "box_error", cli_volume_is_held(cells->region_volume) ? error : NAN);
+    }
+    cli_fact_count(f, "tiles", s->tiles);
+    cli_fact_count(f, "resumed", s->resumed);
+    cli_fact_count(f, "largest_tile", s->most_points);
+    cli_fact_count(f, "scratch_bytes", s->scratch_bytes);
 }
 
 /* --- output --- */
@@ -442,6 +490,7 @@ brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
         TRY(write_merged(&m, t, (uint32_t)tiles));
     else if (r->common.output)
         TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
+    status = cli_show_tiles(r, t, (uint32_t)tiles);
 done:
     brio_tiles_free(t);
     return status;

@@ -13,8 +13,8 @@
 
 /** Refuses what --tiles does not go with: weights in a file, no scratch folder. */
 brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t tiles);
-/** Refuses an output that is not .pvtu. */
-brio_status cli_check_tile_files(run *r);
+/** Refuses an output that is not .pvtu.   formats  what the sentence says is written. */
+brio_status cli_check_tile_files(run *r, const char *formats);
 
 /** Refuses an output that is neither .pvtu nor .ply, and for .ply an input that cannot be read twice. */
 brio_status cli_check_tile_output(run *r);
@@ -36,6 +36,12 @@ uint64_t cli_tiles_key(const run *r, const weights_options *w, const char *path)
 brio_status cli_block_weights(run *r, const weights_options *options, const brio_mesh *block, uint64_t first,
                               double **weights);
 void cli_report_tiles(run *r, const brio_tiles_stats *s, uint64_t checksum);
+/** Reads --box: six numbers with commas between them. */
+brio_status cli_read_box(run *r, const char *text, double box[6]);
+/** Returns whether a region is neither so small nor so large that its share of rounding errors says nothing. */
+bool cli_volume_is_held(double volume);
+/** Reports cells as brio voronoi does. */
+void cli_report_tile_cells(run *r, const brio_tiles_stats *s, const brio_tiles_cells_stats *cells);
 /** Writes the tetrahedra of a tile. Its vertices have the property `point`, the index in the input, and `weight` if
  *  points have weights: all files have the same properties, which the index names. */
 brio_status cli_write_part(run *r, const brio_tile_part *part, bool weighted, const char *path);

@@ -65,7 +65,7 @@ typedef struct brio_picture_options {
     double from[3];    /* the direction in which the eye is; 0, 0, 0: of 49 directions the one that shows most */
     const char
         *colour; /* a property of vertices or faces, x, y or z, by a colour map, or none; NULL: the colours of the
-                           mesh; of clouds without colours confidence, distance, intensity, value or radius, else z.
+                           mesh; else distance; of clouds also confidence, intensity, value or radius, else z.
                            Layers that show one property have one range of colours */
     int self_intersections; /* 1: finds the faces that cross others, and shows them in red */
     int side_by_side;       /* 1: the layers side by side; 0: over each other */

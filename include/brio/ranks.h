@@ -53,7 +53,7 @@ typedef struct brio_ranks_options {
     size_t size;
     const char *scratch; /* a folder of this host with room for about 190 bytes a point of this rank */
     uint32_t tiles;      /* of each rank, at most 4,096; 0 means 4; the same on all ranks. Two are in memory */
-    int reserved_int;
+    int stars;           /* not 0: keeps what brio_ranks_cells needs: 16 bytes for each tetrahedron of two tiles */
     uint64_t key; /* as in brio_tiles_options; the same on all ranks. A run goes on if all ranks have their folders */
 } brio_ranks_options;
 
@@ -107,6 +107,19 @@ BRIO_API brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint6
 /** Collective. Reads the tetrahedra of one tile of each rank.
  *  tile  below the number of tiles of each rank; the same on all.   out  freed with brio_tile_part_free. */
 BRIO_API brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, brio_tile_part *out);
+
+/** Collective. Computes the cells of all vertices: each rank those of its tiles, whose numbers are those of
+ *  brio_voronoi_cells of all points, bit for bit.
+ *  options  as there; the same on all ranks.
+ *  take  NULL, or receives the cells of this rank's tiles, as brio_tiles_cells without `ordered` hands them on.
+ *  Memory: what brio_tiles_cells needs.
+ *  Returns BRIO_OK or, on all ranks, what brio_tiles_cells returns on one. */
+BRIO_API brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const brio_cells_options *options,
+                                      brio_tile_cells_fn take, void *user);
+
+/** Returns the facts of the cells of all ranks. volume_sum is the exact sum of the volumes of all bounded cells,
+ *  rounded once: the same for every number of ranks and tiles. The view is valid until brio_ranks_free. */
+BRIO_API const brio_tiles_cells_stats *brio_ranks_cells_facts(const brio_ranks *r);
 
 /** Frees everything, and removes this rank's files, unless the run has a key and failed after the points were divided:
  *  then a run that follows goes on with them. NULL is accepted. Not collective. */

@@ -112,6 +112,26 @@ BRIO_API brio_status brio_tiles_checksum(brio_context *ctx, brio_tiles *t, uint6
 BRIO_API brio_status brio_tiles_part(brio_context *ctx, brio_tiles *t, uint32_t tile, brio_tile_part *out);
 BRIO_API void brio_tile_part_free(brio_context *ctx, brio_tile_part *part);
 
+#define BRIO_NO_TILE UINT32_MAX
+
+/** The tetrahedron on the other side of a facet. */
+typedef struct brio_tile_neighbour {
+    uint32_t tile;        /* whose part has it; BRIO_NO_TILE: the facet is one of the hull */
+    uint32_t tetrahedron; /* its row there */
+} brio_tile_neighbour;
+
+/** Names the neighbours of a tile's tetrahedra, also those of other tiles.
+ *  The rows are those of brio_tiles_part, which are the same in every call and for every number of threads.
+ *  part  of the tile, as brio_tiles_part made it.
+ *  neighbours  #T by 4, the caller's: entry i receives the neighbour across the facet opposite to vertex i.
+ *  Cost: the first call reads the parts of all tiles, and writes 88 bytes for each facet between two tiles, 32 for one
+ *  of the hull. Each call sorts the facets of its tile. Memory: 16 bytes a tetrahedron of a tile; in the first call a
+ *  part, and 48.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_WRITE, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Aggarwal Vitter 1988]. */
+BRIO_API brio_status brio_tiles_neighbours(brio_context *ctx, brio_tiles *t, uint32_t tile, const brio_tile_part *part,
+                                           brio_tile_neighbour (*neighbours)[4]);
+
 /** Receives some cells. `site` has the index of each cell's point, in the order in which points were added; in place of
  *  cells->site. Neighbours of faces are such indices, too. Both are valid during the call.
  *  Returns 0, or another number to end the run. */

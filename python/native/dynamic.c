@@ -188,30 +188,32 @@ static size_t count_points(const living *l) {
     return s.points + p.points;
 }
 
-/* dynamic_points(object, indices, points, weights): arrays of as many rows as there are points. */
-static PyObject *dynamic_points(PyObject *module, PyObject *args) {
-    PyObject *object, *indices, *points, *weights;
-    input i = {.held = 0}, p = {.held = 0}, w = {.held = 0};
-    int failed = -1;
-    if (!PyArg_ParseTuple(args, "OOOO", &object, &indices, &points, &weights)) return NULL;
+/* Returns the indices, points and weights, each a bytearray, as they are now. */
+static PyObject *copy_points(const living *l) {
+    const Py_ssize_t count = (Py_ssize_t)count_points(l),
+                     size[3] = {sizeof(uint32_t), 3 * sizeof(double), sizeof(double)};
+    PyObject *rows[3] = {NULL}, *result = NULL;
+    for (int k = 0; k < 3; k++)
+        if (!(rows[k] = PyByteArray_FromStringAndSize(NULL, size[k] * count))) goto done;
+    uint32_t *indices = (uint32_t *)PyByteArray_AsString(rows[0]);
+    double *points = (double *)PyByteArray_AsString(rows[1]), *weights = (double *)PyByteArray_AsString(rows[2]);
+    if (l->wrapped)
+        brio_dynamic_periodic_points(l->wrapped, indices, points, weights);
+    else
+        brio_dynamic_points(l->d, indices, points, weights);
+    result = PyTuple_Pack(3, rows[0], rows[1], rows[2]);
+done:
+    for (int k = 0; k < 3; k++) Py_XDECREF(rows[k]);
+    return result;
+}
+
+/* dynamic_points(object): its indices, points and weights as bytearrays of one moment. */
+static PyObject *dynamic_points(PyObject *module, PyObject *object) {
     living *l = enter(module, object);
     if (!l) return NULL;
-    size_t count = count_points(l);
-    if (!output_open(&i, indices, "indices", 'I', 0) && !output_open(&p, points, "points", 'd', 3) &&
-        !output_open(&w, weights, "weights", 'd', 0) && !input_has_rows(&i, "indices", count) &&
-        !input_has_rows(&p, "points", count) && !input_has_rows(&w, "weights", count)) {
-        if (l->wrapped)
-            brio_dynamic_periodic_points(l->wrapped, i.data, p.data, w.data);
-        else
-            brio_dynamic_points(l->d, i.data, p.data, w.data);
-        failed = 0;
-    }
-    input_close(&i);
-    input_close(&p);
-    input_close(&w);
+    PyObject *result = copy_points(l);
     leave(l);
-    if (failed) return NULL;
-    Py_RETURN_NONE;
+    return result;
 }
 
 /* dynamic_neighbors(object, index): a bytes object of numbers of 32 bits; in space that repeats four for each neighbour, its
@@ -276,7 +278,8 @@ static void free_wrapped_snapshot(void *t) {
     brio_periodic_free(t);
 }
 
-/* dynamic_snapshot(object, threads, progress): a triangulation of the points by ascending index. */
+/* dynamic_snapshot(object, threads, progress): a triangulation of the points by ascending index; and the indices, points and
+ * weights of the same moment. */
 static PyObject *dynamic_snapshot(PyObject *module, PyObject *args) {
     PyObject *object, *progress, *result = NULL;
     int threads;
@@ -294,8 +297,11 @@ static PyObject *dynamic_snapshot(PyObject *module, PyObject *args) {
         result = l->wrapped ? call_end_with(&c, status, KIND_PERIODIC, p, free_wrapped_snapshot, NULL)
                             : call_end_with(&c, status, KIND_TRIANGULATION, t, free_snapshot, NULL);
     }
+    PyObject *points = result ? copy_points(l) : NULL;
     leave(l);
-    return result;
+    if (points) return Py_BuildValue("NN", result, points);
+    Py_XDECREF(result);
+    return NULL;
 }
 
 PyMethodDef dynamic_methods[] = {
@@ -305,7 +311,7 @@ PyMethodDef dynamic_methods[] = {
     {"dynamic_insert", dynamic_insert, METH_VARARGS, "dynamic_insert(d, points, weights, threads, progress)"},
     {"dynamic_change", dynamic_change, METH_VARARGS, "dynamic_change(d, indices, points, weights, threads, progress)"},
     {"dynamic_facts", dynamic_facts, METH_O, "dynamic_facts(d)"},
-    {"dynamic_points", dynamic_points, METH_VARARGS, "dynamic_points(d, indices, points, weights)"},
+    {"dynamic_points", dynamic_points, METH_O, "dynamic_points(d)"},
     {"dynamic_neighbors", dynamic_neighbors, METH_VARARGS, "dynamic_neighbors(d, index)"},
     {"dynamic_locate", dynamic_locate, METH_VARARGS, "dynamic_locate(d, queries, out)"},
     {"dynamic_snapshot", dynamic_snapshot, METH_VARARGS, "dynamic_snapshot(d, threads, progress)"},

@@ -84,6 +84,24 @@ def test_a_cancelled_call_changes_nothing():
     assert tri.snapshot().checksum == before and is_as_built(tri)
 
 
+@pytest.mark.parametrize("kind, how", [(brio.DynamicDelaunay, {}), (brio.PeriodicDynamicDelaunay, {"cell": [1, 1, 1]})])
+def test_a_snapshot_had_the_points_of_another_moment(kind, how):
+    class Busy(kind):
+        """Another thread changes it whenever its points were read."""
+
+        @property
+        def weights(self):
+            out = kind.weights.fget(self)
+            self.remove(self.indices[:1])
+            self.insert(GENERATOR.random((1, 3)))
+            return out
+
+    tri = Busy(GENERATOR.random((300, 3)), weighted=True, **how)
+    now, still = tri.snapshot(), kind.points.fget(tri)
+    assert np.array_equal(now.points, still)
+    assert now.check() if how else np.array_equal(now.simplices, brio.Delaunay(now.points, now.weights).simplices)
+
+
 def test_threads_do_not_meet_in_one_triangulation():
     tri = brio.DynamicDelaunay(GENERATOR.random((500, 3)))
     refused = []

@@ -1,6 +1,7 @@
 """Pages of brio.view: what they hold is tested in tests/cli/test_view.py, what they show in tests/browser."""
 
 import html
+import json
 import os
 import re
 
@@ -86,3 +87,61 @@ def test_wrong_calls_of_pictures():
     for wrong in ({"look": (1, 2)}, {"look": (0, 0, 0)}, {"size": (0, 9)}, {"size": (20000, 9)}, {"colour_by": "heat"}, {"colour_by": 5}, {"look": (1, float("nan"), 2)}):
         with pytest.raises(ValueError):
             brio.picture(TRIANGLE, **wrong)
+
+
+SITES = np.random.default_rng(3).random((60, 3))
+
+
+def cells_near(voronoi):
+    """The cells that are shown of an open set: they end, and are not far beyond the points."""
+    low, high = voronoi.points.min(axis=0), voronoi.points.max(axis=0)
+    far = (high - low).max() / 4
+    out = []
+    for site, region in enumerate(voronoi.regions[r] for r in voronoi.point_region):
+        corners = voronoi.vertices[region]
+        if -1 not in region and (corners >= low - far).all() and (corners <= high + far).all():
+            out.append(site)
+    return out
+
+
+def layer(page):
+    return json.loads(re.search(r'class="layer">(.*?)</script>', page.html).group(1))
+
+
+def test_triangulations_hulls_and_cells_are_shown():
+    tri, flat, hull = brio.Delaunay(SITES), brio.Delaunay(SITES[:, :2]), brio.ConvexHull(SITES)
+    assert layer(brio.view(tri))["tetrahedra"] == len(tri.simplices)
+    assert layer(brio.view(flat))["faces"] == len(flat.simplices)
+    assert layer(brio.view(brio.DynamicDelaunay(SITES)))["tetrahedra"] == len(tri.simplices)
+    periodic = brio.Delaunay(SITES, cell=[1, 1, 1])
+    assert layer(brio.view(periodic))["tetrahedra"] == len(periodic.simplices)
+    shown = layer(brio.view(hull))
+    assert (shown["vertices"], shown["faces"]) == (len(hull.vertices), len(hull.simplices))
+    assert shown["certificate"]["closed"] and shown["certificate"]["oriented"]
+    assert shown["certificate"]["volume"] == pytest.approx(hull.volume, 1e-12)
+    assert layer(brio.view(brio.ConvexHull(SITES[:, :2])))["edges"] == len(brio.ConvexHull(SITES[:, :2]).vertices)
+
+
+@pytest.mark.parametrize("made, solids, volume", [
+    (lambda: brio.Voronoi(SITES, box=[0, 0, 0, 1, 1, 1]), 60, 1), (lambda: brio.Voronoi(SITES, cell=[1, 1, 1]), 60, 1),
+    (lambda: brio.Voronoi(SITES), 0, 0)])
+def test_cells_are_closed_solids(made, solids, volume):
+    voronoi = made()
+    shown = layer(brio.view(voronoi))
+    c, near = shown["certificate"], solids == 0 and cells_near(voronoi)
+    assert (c["closed"], c["manifold"], c["oriented"], c["components"]) == (True, True, True, solids or len(near))
+    assert c["volume"] == pytest.approx(volume or voronoi.volumes[near].sum(), 1e-9)
+    assert [p["name"] for p in shown["face_properties"]] == ["site", "volume"]
+    assert brio.picture(voronoi, size=(60, 40)).png
+
+
+def test_cells_of_the_plane_are_polygons():
+    shown = layer(brio.view(brio.Voronoi(SITES[:, :2], box=[0, 0, 1, 1])))
+    assert (shown["faces"], shown["certificate"]["area"]) == (60, pytest.approx(1))
+    open_ones = brio.Voronoi(SITES[:, :2])
+    assert layer(brio.view(open_ones))["faces"] == len(cells_near(open_ones)) < np.isfinite(open_ones.volumes).sum()
+
+
+def test_of_many_cells_an_even_choice():
+    shown = layer(brio.view(brio.Voronoi(np.random.default_rng(1).random((8100, 3)), box=[0, 0, 0, 1, 1, 1])))
+    assert shown["certificate"]["components"] == 8000

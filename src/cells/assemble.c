@@ -13,8 +13,8 @@ enum { CELLS_A_THREAD = 1 << 12 };
 typedef struct {
     brio_cell_job *job;
     uint32_t *vertex_of;    /* of each tetrahedron: one more than the vertex at its centre; 0 if it is no corner */
-    uint64_t *first_corner; /* of each cell */
-    uint64_t *first_vertex; /* of each cell: its first own vertex */
+    uint64_t *first_corner; /* of each cell, or NULL without vertices */
+    uint64_t *first_vertex; /* of each cell: its first own vertex; or NULL without vertices */
     size_t num_voronoi;     /* vertices at centres */
 } assembly;
 
@@ -23,22 +23,32 @@ static inline bool is_swept(const brio_cell_job *job, size_t c) {
     return job->sweep && !job->sweep->left[job->sweep->rank[job->out->site[c]]];
 }
 
+/* Writes the number of faces of each cell to where the next cell's faces begin. */
+static void count_faces(void *user, size_t from, size_t to, int thread) {
+    const brio_cell_job *job = ((assembly *)user)->job;
+    (void)thread;
+    for (size_t c = from; c < to; c++)
+        job->out->face_offsets[c + 1] = is_swept(job, c)
+                                            ? brio_sweep_degree(job->sweep, job->sweep->rank[job->out->site[c]])
+                                            : job->place[c].num_faces;
+}
+
 static brio_status offset_cells(assembly *a) {
     const brio_cell_job *job = a->job;
     brio_cells *out = job->out;
     brio_context *ctx = job->d->ctx;
     size_t n = out->num_cells;
     BRIO_FORWARD(BRIO_ALLOC(ctx, out->face_offsets, n + 1));
+    out->face_offsets[0] = 0;
+    BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, n, CELLS_A_THREAD), n, count_faces, a));
+    for (size_t c = 0; c < n; c++) out->face_offsets[c + 1] += out->face_offsets[c];
+    if (!job->vertices) return BRIO_OK;
     BRIO_FORWARD(BRIO_ALLOC(ctx, a->first_corner, n + 1));
     BRIO_FORWARD(BRIO_ALLOC(ctx, a->first_vertex, n + 1));
-    out->face_offsets[0] = a->first_corner[0] = a->first_vertex[0] = 0;
+    a->first_corner[0] = a->first_vertex[0] = 0;
     for (size_t c = 0; c < n; c++) {
-        brio_cell_place *place = &job->place[c];
-        if (is_swept(job, c))
-            *place = (brio_cell_place){.num_faces = brio_sweep_degree(job->sweep, job->sweep->rank[out->site[c]])};
-        out->face_offsets[c + 1] = out->face_offsets[c] + place->num_faces;
-        a->first_corner[c + 1] = a->first_corner[c] + place->num_corners;
-        a->first_vertex[c + 1] = a->first_vertex[c] + place->num_vertices;
+        a->first_corner[c + 1] = a->first_corner[c] + job->place[c].num_corners;
+        a->first_vertex[c + 1] = a->first_vertex[c] + job->place[c].num_vertices;
     }
     return BRIO_OK;
 }
@@ -68,7 +78,7 @@ static void copy_faces(void *user, size_t from, size_t to, int thread) {
         assert(0 <= place->thread && place->thread < a->job->threads &&
                place->face + place->num_faces <= a->job->recorder[place->thread].num_faces);
         const brio_cell_recorder *r = &a->job->recorder[place->thread];
-        uint64_t corner = a->first_corner[c];
+        uint64_t corner = a->first_corner ? a->first_corner[c] : 0;
         for (size_t i = 0; i < place->num_faces; i++) {
             const brio_cell_face *face = &r->face[place->face + i];
             size_t f = (size_t)out->face_offsets[c] + i;

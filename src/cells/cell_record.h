@@ -51,7 +51,7 @@ typedef struct brio_cell_job {
     bool areas, centroids, faces, vertices; /* what is asked for; vertices implies faces */
     bool sizes;                             /* of faces: areas and normals */
     uint32_t *cell_of;                      /* #P: the cell of each vertex */
-    brio_cell_place *place;                 /* of each cell; NULL without faces */
+    brio_cell_place *place;                 /* of each cell that does not come from it; NULL without faces */
     brio_cell_recorder *recorder;           /* one a thread */
     int threads;
 } brio_cell_job;

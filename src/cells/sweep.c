@@ -11,8 +11,16 @@
 #include <math.h>
 #include <string.h>
 
-/* SLICE, chosen: batches a thread and slice, whose shares fit the second-level cache. SLICES: between progress. */
-enum { SLICE = 64, SLICES = 64, BATCHES_A_THREAD = 256, ROWS_A_THREAD = 1 << 14, BATCH = BRIO_CENTRE_BATCH };
+/* SLICE, chosen: batches a thread and slice, whose shares fit the second-level cache. SLICES: between progress. AHEAD:
+ * ranks are fetched this number of tetrahedra before they are read. */
+enum {
+    SLICE = 64,
+    SLICES = 64,
+    BATCHES_A_THREAD = 256,
+    ROWS_A_THREAD = 1 << 14,
+    BATCH = BRIO_CENTRE_BATCH,
+    AHEAD = 16
+};
 
 /* Chosen: a thousandth of what users compare to. The bound is generous: errors are 1e-15 of ordinary cells. */
 static const double MOST_ERROR = 0x1p-36;
@@ -49,12 +57,17 @@ void brio_sweep_free(brio_sweep *s) {
 
 /* --- ranks --- */
 
+static inline const uint32_t *vertices_of(const brio_sweep *s, size_t n) {
+    return n < s->task.num_finite ? s->task.tet[n].vertex : s->task.more[n - s->task.num_finite];
+}
+
 static brio_status rank_rows(brio_sweep *s) {
     const brio_sweep_task *t = &s->task;
     uint32_t site = 0, other = (uint32_t)t->num_sites;
     for (size_t p = 0; p < t->num_rows; p++) s->rank[p] = UINT32_MAX;
     for (size_t n = 0; n < s->num_tets; n++) {
-        const uint32_t *v = n < t->num_finite ? t->tet[n].vertex : t->more[n - t->num_finite];
+        const uint32_t *v = vertices_of(s, n), *later = vertices_of(s, n + AHEAD < s->num_tets ? n + AHEAD : n);
+        for (int i = 0; i < 4; i++) __builtin_prefetch(&s->rank[later[i]], 1);
         BRIO_FORWARD(brio_look(s->ctx, 1));
         for (int i = 0; i < 4; i++) {
             uint32_t r = s->rank[v[i]];
@@ -174,6 +187,13 @@ done:
 
 /* --- all --- */
 
+static void judge_some(void *user, size_t from, size_t to, int thread) {
+    const brio_sweep *s = user;
+    (void)thread;
+    for (size_t r = from; r < to; r++)
+        if (!is_known(s, r)) s->left[r] = 1;
+}
+
 brio_status brio_sweep_fill(brio_context *ctx, const brio_sweep_task *task, brio_sweep *s) {
     size_t rows = task->num_rows;
     *s = (brio_sweep){.ctx = ctx, .task = *task, .num_tets = task->num_finite + task->num_more};
@@ -195,12 +215,13 @@ brio_status brio_sweep_fill(brio_context *ctx, const brio_sweep_task *task, brio
         const uint32_t *v = task->tet[n].vertex;
         brio_sweep_leave(s, (const uint32_t[]){s->rank[v[0]], s->rank[v[1]], s->rank[v[2]]}, 3);
     }
-    for (size_t r = 0; r < s->num_ranks; r++)
-        if (!is_known(s, r)) s->left[r] = 1;
+    BRIO_FORWARD(brio_for(ctx, brio_threads(ctx, s->num_ranks, ROWS_A_THREAD), s->num_ranks, judge_some, s));
     if (task->neighbours)
         BRIO_FORWARD(brio_sweep_find_ties(s));
     else
         free_tetrahedra(s);
+    brio_release(ctx, s->key);
+    s->key = NULL;
     for (size_t r = 0; r < s->num_ranks; r++) s->num_left += s->left[r];
     return brio_progress(ctx, "cells", 0.5);
 }

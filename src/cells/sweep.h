@@ -39,8 +39,8 @@ typedef struct brio_sweep {
     uint32_t (*id)[4];              /* of each tetrahedron: the ranks of its vertices */
     double *ranked, *ranked_square; /* of each rank: its position, its weight */
     float *rounded;                 /* of each rank: x of its position, rounded */
-    double *key;                    /* of each finite one: x of its centre; NaN where it is not known well */
-    double fine;                    /* the error that keys may have */
+    double *key; /* of each finite one: x of its centre; NaN where it is not known well. NULL in a filled sweep */
+    double fine; /* the error that keys may have */
 } brio_sweep;
 
 /** Fills a sweep.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED; freed with brio_sweep_free in any case. */

@@ -16,7 +16,8 @@
 #include <string.h>
 
 /* LANE: a multiple of what vector registers compare at once. TABLE: places in the table. MOST_MET: a star with more
- * vertices is sorted. AHEAD: tetrahedra are fetched this number of ranks before they are read. All chosen. */
+ * vertices is sorted. AHEAD: tetrahedra are fetched this number of ranks before they are read. SLICE: tetrahedra
+ * between two looks. All chosen. */
 enum {
     LANE = 8,
     TABLE = 1 << 11,
@@ -24,7 +25,8 @@ enum {
     AHEAD = 2,
     TETRAHEDRA_A_THREAD = 1 << 14,
     RANKS_A_THREAD = 1 << 11,
-    CHUNK = 1 << 10
+    CHUNK = 1 << 10,
+    SLICE = 1 << 20
 };
 
 /* --- ties --- */
@@ -144,35 +146,38 @@ typedef struct {
     uint32_t *list;
     const uint64_t *first;
     int64_t *out;
-    int threads;
+    size_t slice; /* the first of SLICE tetrahedra that are listed */
     brio_status status;
 } search;
 
+/* Lists the tetrahedra of the slice at the ranks [from, to), which one thread owns: additions by several threads at
+ * once would take longer than what each reads in vain. */
 static void list_some(void *user, size_t from, size_t to, int thread) {
     const search *h = user;
     const brio_sweep *s = h->s;
+    size_t end = s->num_tets - h->slice < SLICE ? s->num_tets : h->slice + SLICE;
     (void)thread;
-    for (size_t t = from; t < to; t++)
+    for (size_t t = h->slice; t < end; t++)
         for (int i = 0; i < 4; i++) {
-            uint32_t r = s->id[t][i];
-            if (r >= s->task.num_sites || s->left[r]) continue;
-            uint64_t at = h->threads == 1 ? h->begin[r]++ : __atomic_fetch_add(&h->begin[r], 1, __ATOMIC_RELAXED);
-            h->list[at] = (uint32_t)t;
+            size_t r = s->id[t][i];
+            if (r - from >= to - from || s->left[r]) continue;
+            h->list[h->begin[r]++] = (uint32_t)t;
         }
 }
 
-/* Lists the tetrahedra of each rank, in any order. */
+/* Lists the tetrahedra of each rank: they ascend. */
 static brio_status list_stars(search *h) {
     const brio_sweep *s = h->s;
     uint64_t next = 0;
-    h->threads = brio_threads(s->ctx, s->num_tets, TETRAHEDRA_A_THREAD);
+    int threads = brio_threads(s->ctx, s->num_tets, TETRAHEDRA_A_THREAD);
     BRIO_FORWARD(BRIO_ALLOC(s->ctx, h->begin, s->num_ranks + 1));
     for (size_t r = 0; r < s->num_ranks; r++) {
         h->begin[r] = next;
         next += s->left[r] ? 0 : s->size[r];
     }
     BRIO_FORWARD(BRIO_ALLOC(s->ctx, h->list, next));
-    BRIO_FORWARD(brio_for(s->ctx, h->threads, s->num_tets, list_some, h));
+    for (; h->slice < s->num_tets; h->slice += SLICE)
+        BRIO_FORWARD(brio_for_parts(s->ctx, threads, s->num_ranks, list_some, h));
     for (size_t r = s->num_ranks; r > 0; r--) h->begin[r] = h->begin[r - 1];
     h->begin[0] = 0;
     return BRIO_OK;

@@ -8,7 +8,7 @@
  * points. All roundings together stay below a factor of 1 +- 2^-46, and TINY stands for what underflows. */
 #include "completion/completion.h"
 
-static const double SLACK = 0x1p-46, TINY = 1e-290;
+static const double SLACK = BRIO_BALL_SLACK, TINY = 1e-290;
 
 void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all) {
     const double *p = ball->vertex[0];
@@ -24,19 +24,9 @@ void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *al
     if (!isnan(square)) ball->square = square; /* else differences of infinities */
 }
 
-/* Returns a lower bound of the squared distance of a position to a box. */
-static double square_to(const double *x, const brio_ball_box *box) {
-    double square = 0;
-    for (int k = 0; k < 3; k++) {
-        double d = x[k] < box->low[k] ? box->low[k] - x[k] : x[k] > box->high[k] ? x[k] - box->high[k] : 0;
-        square += d * d;
-    }
-    return square * (1 - SLACK);
-}
-
 /* Returns whether a corner of the box may be behind the facet: the corners at which the facet's normal n is greatest.
  * Where the sign of a coordinate of n is not sure, both sides of the box count. */
-static bool may_be_behind(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
+bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
     const double *a = ball->vertex[0], *b = ball->vertex[1], *c = ball->vertex[2];
     double u[3], v[3], value = 0, margin = 0;
     int first[3], last[3]; /* sides of the box to try: 0 low, 1 high */
@@ -60,12 +50,6 @@ static bool may_be_behind(brio_filter *f, const brio_ball *ball, const brio_ball
                 if (brio_orient3d_sign(f, a, b, c, corner) > 0) return true;
             }
     return false;
-}
-
-bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
-    if (ball->infinite) return may_be_behind(f, ball, box);
-    double most = ball->square + fabs(ball->square) * SLACK + box->weight + fabs(box->weight) * SLACK;
-    return !(square_to(ball->centre, box) > most); /* true for NaN */
 }
 
 bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box) {

@@ -169,8 +169,8 @@ static void judge_batch(completion *c, const uint32_t *tets, size_t n) {
     double centre[BRIO_CENTRE_BATCH][3], error[BRIO_CENTRE_BATCH];
     brio_ball ball;
     for (size_t i = 0; i < n; i++) memcpy(vertex[i], c->tet[tets[i]].vertex, sizeof *vertex);
-    brio_centres(&(brio_centre_batch){c->points, c->task.weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, n},
-                 *centre, error);
+    brio_centre_batch batch = {c->points, c->task.weighted ? c->weights : NULL, (const uint32_t(*)[4])vertex, n};
+    brio_near_centres(&batch, *centre, error);
     ball.infinite = false;
     for (size_t i = 0; i < n; i++) {
         memcpy(ball.vertex[0], c->points + 3 * (size_t)vertex[i][0], 3 * sizeof **ball.vertex);
@@ -371,8 +371,11 @@ static void list_finals(void *user, size_t begin, size_t end, int thread) {
         if (finite) any |= c->open[t->vertex[3]];
         c->stays[i] = any & OPEN;
         if (!(any & ENDS)) continue;
-        uint32_t leader = leader_of(c, t);
-        if (leader == BRIO_INFINITE || c->open[leader] != ENDS) continue;
+        unsigned all = c->open[t->vertex[0]] & c->open[t->vertex[1]] & c->open[t->vertex[2]];
+        if (!finite || !(all & c->open[t->vertex[3]] & ENDS)) { /* else it has own vertices alone, which all end */
+            uint32_t leader = leader_of(c, t);
+            if (leader == BRIO_INFINITE || c->open[leader] != ENDS) continue;
+        }
         uint32_t *row = s->row[begin + mine->count++];
         for (int k = 0; k < 4; k++) row[k] = t->vertex[k] == BRIO_INFINITE ? BRIO_INFINITE : c->local[t->vertex[k]];
         mine->finite += finite;

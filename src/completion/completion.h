@@ -10,6 +10,7 @@
 
 #include "base/context.h"
 #include "predicates/predicates.h"
+#include <math.h>
 
 /* --- regions of conflict --- */
 
@@ -37,8 +38,23 @@ typedef struct {
  *  all  a box that holds all points that will ever be compared with the ball. */
 void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all);
 
+/* All roundings of a comparison together stay below a factor of 1 +- this. */
+#define BRIO_BALL_SLACK 0x1p-46
+
+/** Returns what brio_ball_meets does, for an infinite tetrahedron. */
+bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box);
+
 /** Returns whether a point in the box may be in conflict. Never false where one is.   f  as in brio_ball_takes. */
-bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box);
+static inline bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
+    if (ball->infinite) return brio_facet_meets(f, ball, box);
+    double most = ball->square + box->weight + (fabs(ball->square) + fabs(box->weight)) * BRIO_BALL_SLACK, square = 0;
+    for (int k = 0; k < 3; k++) {
+        double below = box->low[k] - ball->centre[k], above = ball->centre[k] - box->high[k];
+        double d = below > above ? below : above;
+        square += d > 0 ? d * d : 0;
+    }
+    return !(square * (1 - BRIO_BALL_SLACK) > most); /* true for NaN */
+}
 
 /** Returns whether every point in conflict lies strictly inside the box, whose weight is that of the heaviest point.
  *  May be false where they do. Always false for a half-space. */

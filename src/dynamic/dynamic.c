@@ -334,11 +334,12 @@ static brio_status move_points(brio_dynamic *d, const brio_moves *m) {
     }
     if (m->count == 0) return BRIO_OK;
     BRIO_EXPECT(d->ctx, d->weighted || !m->weights, BRIO_ERR_ARGUMENT, "weights for a triangulation without weights");
-    if (m->points) BRIO_FORWARD(brio_refuse_not_finite(d->ctx, m->points, m->weights, m->count, NULL));
+    bool many = are_many(d, m); /* then whoever writes the records looks at them */
+    if (m->points && !many) BRIO_FORWARD(brio_refuse_not_finite(d->ctx, m->points, m->weights, m->count, NULL));
     d->needs_anew = d->dimension < 3;
     if (!d->needs_anew) {
         brio_live_begin(d);
-        status = brio_live_end(d, are_many(d, m) ? move_together(d, m) : move_each(d, m));
+        status = brio_live_end(d, many ? move_together(d, m) : move_each(d, m));
     }
     if (status != BRIO_OK) d->in_place = in_place, d->replaced = replaced;
     return d->needs_anew ? move_anew(d, m) : status;

@@ -81,15 +81,19 @@ static inline bool is_hit(const brio_link *l, uint32_t tet) {
     return l->hit[tet / 8] >> tet % 8 & 1;
 }
 
-/* Lists the tetrahedra in conflict with a vertex; returns their number. */
+/* Lists the tetrahedra in conflict with a vertex; returns their number. One that is not alive is not tested: a living
+ * one stands for it, since its mates may be anything. */
 static size_t find_conflicts(brio_dynamic *d, const brio_tetrahedra *t, uint32_t vertex) {
     brio_link *l = d->link;
     size_t n = 0;
-    for (uint32_t base = 0; base < l->count; base += 8) {
-        uint32_t facet[BRIO_BATCH], left = (uint32_t)l->count - base, count = left < 8 ? left : 8;
-        for (uint32_t i = 0; i < 8; i++) facet[i] = brio_facet_of(base + (i < count ? i : 0), 0);
-        unsigned mask = d->engine->conflicts(t, &d->filter, facet, count, l->record[vertex]) & l->alive[base / 8];
-        l->hit[base / 8] = (uint8_t)mask;
+    for (uint32_t base = 0; base < l->count; base += BRIO_BATCH) {
+        uint32_t facet[BRIO_BATCH], alive = l->alive[base / BRIO_BATCH];
+        l->hit[base / BRIO_BATCH] = 0;
+        if (!alive) continue;
+        uint32_t one = base + (uint32_t)__builtin_ctz(alive), count = 32 - (uint32_t)__builtin_clz(alive);
+        for (uint32_t i = 0; i < BRIO_BATCH; i++) facet[i] = brio_facet_of(alive >> i & 1 ? base + i : one, 0);
+        unsigned mask = d->engine->conflicts(t, &d->filter, facet, count, l->record[vertex]) & alive;
+        l->hit[base / BRIO_BATCH] = (uint8_t)mask;
         for (; mask; mask &= mask - 1) l->in[n++] = base + (uint32_t)__builtin_ctz(mask);
     }
     return n;

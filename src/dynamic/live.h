@@ -126,7 +126,7 @@ struct brio_dynamic {
     uint32_t *home, *number;
     uint32_t *rank; /* of each row: near vertices have near ranks, whose segments threads hold */
     uint8_t *kind;
-    size_t num_rows, row_capacity;
+    size_t num_rows, row_capacity; /* row_capacity: what each of these has room for, at least */
     uint32_t *free_row;
     size_t num_free_rows, free_row_capacity;
     uint32_t *row_of;

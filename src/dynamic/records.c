@@ -141,7 +141,7 @@ brio_status brio_paths_new(brio_dynamic *d, const brio_moves *m, brio_paths *out
     uint32_t *names = NULL;
     writing w = {.d = d, .m = m};
     brio_paths p = {0};
-    BRIO_TRY(BRIO_ALLOC(d->ctx, p.record, d->row_capacity));
+    BRIO_TRY(BRIO_ALLOC(d->ctx, p.record, d->num_rows));
     if (!m->indices) BRIO_TRY(list_names(d, &names));
     w.names = m->indices ? m->indices : names;
     w.record = p.record;
@@ -153,7 +153,8 @@ brio_status brio_paths_new(brio_dynamic *d, const brio_moves *m, brio_paths *out
     BRIO_TRY(brio_for(d->ctx, threads, d->num_rows, copy_part, &w));
     BRIO_TRY(brio_for(d->ctx, threads, m->count, write_part, &w));
     const sight *seen = all_seen(&w, threads);
-    for (size_t i = 0; !seen->finite && i < m->count; i++) { /* to name the point */
+    if (!seen->finite && m->points) BRIO_TRY(brio_refuse_not_finite(d->ctx, m->points, m->weights, m->count, NULL));
+    for (size_t i = 0; !seen->finite && i < m->count; i++) { /* weights alone are named here */
         double record[4];
         BRIO_TRY(brio_new_record(d, m, i, w.names ? w.names[i] : (uint32_t)i, record));
     }

@@ -12,9 +12,10 @@
 #include "dynamic/live.h"
 #include "triangulation/ring.h"
 #include <float.h>
+#include <math.h>
 #include <string.h>
 
-enum { LEAST = 1 << 14 }; /* slots that are worth a thread */
+enum { LEAST = 1 << 14, SLOTS = 16 }; /* slots that are worth a thread; that are looked at together */
 
 void brio_slack_end(brio_dynamic *d) {
     const brio_hole *h = &d->hole;
@@ -59,51 +60,60 @@ static brio_status list(brio_context *ctx, brio_slot_list *l, uint32_t slot) {
     return BRIO_OK;
 }
 
-/* Tests n finite tetrahedra, which have room for a batch. */
-static brio_status test_batch(brio_dynamic *d, uint32_t *batch, size_t n, brio_slot_list *open) {
-    double slack[BRIO_BATCH];
-    for (size_t i = n; i < BRIO_BATCH; i++) batch[i] = batch[0];
-    unsigned sound = d->engine->sound(&d->t, &d->filter, batch, slack);
+/* Finite tetrahedra that wait for their tests: their neighbours were called for when they came. */
+typedef struct {
+    uint32_t slot[BRIO_SOUND_BATCH];
+    size_t count;
+} queue;
+
+/* Tests those that wait, and says until when each needs no other test. */
+static brio_status test_queue(brio_dynamic *d, queue *q, brio_slot_list *open) {
+    double slack[BRIO_SOUND_BATCH];
+    size_t n = q->count;
+    while (q->count % BRIO_BATCH) q->slot[q->count++] = q->slot[0];
+    uint64_t sound = d->engine->sound(&d->t, &d->filter, q->slot, q->count, slack);
     for (size_t i = 0; i < n; i++)
-        if (sound >> i & 1)
-            d->until[batch[i]] = below(slack[i] > 0 ? d->travelled + slack[i] : 0);
-        else
-            BRIO_FORWARD(list(d->ctx, open, batch[i]));
+        d->until[q->slot[i]] = sound >> i & 1 && slack[i] > 0 ? below(d->travelled + slack[i]) : -1;
+    q->count = 0;
+    for (size_t i = 0; i < n; i++)
+        if (!(sound >> i & 1)) BRIO_FORWARD(list(d->ctx, open, q->slot[i]));
     return BRIO_OK;
 }
 
 /* Returns whether the time of some of the next slots is over. */
-static inline bool some_over(const float *until, double now) {
-    enum { SLOTS = 16 };
+static inline bool some_over(const float *until, float now) {
     int over = 0;
-    for (int i = 0; i < SLOTS; i++) over |= !((double)until[i] >= now);
+    for (int i = 0; i < SLOTS; i++) over |= !(until[i] >= now);
     return over;
 }
 
+/* Returns the least float that is not below a time. */
+static float not_below(double time) {
+    float f = (float)time;
+    return (double)f < time ? nextafterf(f, INFINITY) : f;
+}
+
 static brio_status test_slots(test_pass *own, size_t begin, size_t end, int thread) {
-    enum { AHEAD = 32, STRIDE = 16 }; /* AHEAD: tetrahedra whose neighbours are called for */
     brio_dynamic *d = own->d;
-    uint32_t batch[BRIO_BATCH];
-    size_t n = 0;
-    double now = d->travelled;
+    enum { AHEAD = 128 }; /* slots whose tetrahedra are called for */
+    queue q = {.count = 0};
+    float now = not_below(d->travelled);
     for (size_t slot = begin; slot < end; slot++) {
-        if (slot % STRIDE == 0 && slot + STRIDE <= end && !some_over(d->until + slot, now)) {
-            slot += STRIDE - 1;
+        if (slot % SLOTS == 0 && slot + SLOTS <= end && !some_over(d->until + slot, now)) {
+            slot += SLOTS - 1;
             continue;
         }
-        if ((double)d->until[slot] >= now || d->state[slot] & SLOT_UNUSED) continue;
-        if (slot + AHEAD < end && !((double)d->until[slot + AHEAD] >= now)) brio_ring_fetch(&d->t, slot + AHEAD);
-        d->until[slot] = -1;
+        if (d->until[slot] >= now || d->state[slot] & SLOT_UNUSED) continue;
+        if (slot + AHEAD < end) __builtin_prefetch(&d->t.tet[slot + AHEAD]);
         if (brio_is_infinite(&d->t, (uint32_t)slot)) {
             BRIO_FORWARD(list(d->ctx, &own->infinite[thread], (uint32_t)slot));
             continue;
         }
-        batch[n++] = (uint32_t)slot;
-        if (n < BRIO_BATCH) continue;
-        BRIO_FORWARD(test_batch(d, batch, n, &own->open[thread]));
-        n = 0;
+        brio_ring_fetch(&d->t, slot);
+        q.slot[q.count++] = (uint32_t)slot;
+        if (q.count == BRIO_SOUND_BATCH) BRIO_FORWARD(test_queue(d, &q, &own->open[thread]));
     }
-    return n ? test_batch(d, batch, n, &own->open[thread]) : BRIO_OK;
+    return q.count ? test_queue(d, &q, &own->open[thread]) : BRIO_OK;
 }
 
 static void test_part(void *user, size_t begin, size_t end, int thread) {

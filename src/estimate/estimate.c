@@ -21,16 +21,15 @@ static const double SEQUENCE_BYTES_A_POINT = 4; /* more, with weights */
 static const double BYTES_A_HIDDEN_POINT = 32;
 /* While the result is sorted: index, representative and two buckets; two numbers a tetrahedron. */
 static const double SORT_BYTES_A_POINT = 16, SORT_BYTES_A_TETRAHEDRON = 41;
-/* With threads: the rank on the curve, and a thirty-second of the result moved at a time, with the lists for it. */
+/* With threads: the rank on the curve, and at most a sixteenth of the result moved at a time, with the lists for it. */
 static const double THREADS_BYTES_A_POINT = 4, THREADS_BYTES_A_TETRAHEDRON = 1.25;
 /* In the plane: record, index in the input, representative, two triangles; with weights two marks, a triangle of each
  * vertex and a list of the points that may be hidden. */
 static const double PLANE_BYTES_A_POINT = 88, PLANE_BYTES_A_WEIGHT = 10;
 
-/* In space that repeats: a translate with its position; a point in the domain and the shift to it. Then, while classes
- * are made, the tetrahedra of all, the class of each and a mark; and the classes, with room to grow. Measured. */
+/* In space that repeats: a translate with its position; a point in the domain and the shift to it. Measured. Classes
+ * take the place of the tetrahedra, with less beside them than the sort has. */
 static const double IMAGE_BYTES = 60, HOME_BYTES_A_POINT = 36;
-static const double RESULT_BYTES_A_TETRAHEDRON = 37, FOLD_BYTES_A_TETRAHEDRON = 42;
 
 static const double SUBDIVIDE_BYTES_A_FACE = 76; /* of the result, a certificate included */
 static const double ISO_BYTES_A_VERTEX = 71;
@@ -87,8 +86,7 @@ brio_status brio_estimate_periodic(brio_context *ctx, const double *points, cons
     double image = IMAGE_BYTES + (weights ? sizeof(double) : 0);
     double work =
         delaunay_bytes(images, &all, weights ? SEQUENCE_BYTES_A_POINT * images : 0, brio_context_threads(ctx) > 1);
-    double fold = RESULT_BYTES_A_TETRAHEDRON * all.tetrahedra + FOLD_BYTES_A_TETRAHEDRON * size.tetrahedra;
-    *bytes = bytes_of(HOME_BYTES_A_POINT * n + image * images + fmax(work, fold));
+    *bytes = bytes_of(HOME_BYTES_A_POINT * n + image * images + work);
     return BRIO_OK;
 }
 

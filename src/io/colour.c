@@ -165,6 +165,19 @@ static void decide(brio_colour_depth *plan, const brio_mesh *m, const brio_chann
     plan->decided = true;
 }
 
+double brio_colour_white(const brio_mesh *m) {
+    brio_colour_depth plan = {.to = BRIO_COLOURS_8};
+    brio_channels c = brio_colour_of(m);
+    if (c.count) decide(&plan, m, &c);
+    return plan.white;
+}
+
+uint8_t brio_colour_byte(double x, double white) {
+    if (!(x > 0)) return 0;
+    if (x >= white) return 255;
+    return (uint8_t)(white == WORD && x == floor(x) ? (uint32_t)x >> 8 : rint(x / white * BYTE));
+}
+
 /* --- change of depth --- */
 
 /* Returns white of the file that is written, and the type of its numbers; 0: they stay as they are. */

@@ -22,6 +22,12 @@ brio_channels brio_normal_of(const brio_mesh *m);
 /** Returns whether a property is one of the channels. */
 bool brio_channels_have(const brio_channels *c, const brio_property *p);
 
+/** Returns what white is in the colours of the points of a mesh: 1, 255 or 65535. Returns 0 if the mesh has no colours,
+ *  or if their numbers are none. For colours of faces give brio_mesh_faces_as_points. */
+double brio_colour_white(const brio_mesh *m);
+/** Returns a number of a colour as a byte. */
+uint8_t brio_colour_byte(double x, double white);
+
 /** Gives colours, normals and intensities their usual names, red green blue alpha, nx ny nz, intensity, where all of
  *  them are there under other names that are known, such as R G B or normal_x normal_y normal_z. */
 void brio_colour_name(brio_mesh *m);

@@ -6,8 +6,10 @@
 #include "base/finite.h"
 #include "base/memory.h"
 #include "base/utf8.h"
+#include "io/colour.h"
 #include "mesh/crossing_faces.h"
 #include "mesh/edge_rings.h"
+#include "mesh/properties.h"
 #include "mesh/tetrahedra_adjacency.h"
 #include "page/block.h"
 #include "page/sent_order.h"
@@ -418,6 +420,9 @@ static brio_status describe(layer *l, const brio_certificate *c, size_t hull) {
     BRIO_FORWARD(put_count(out, "boundary", o->num_boundary));
     BRIO_FORWARD(put_count(out, "nonmanifold", o->num_nonmanifold));
     BRIO_FORWARD(put_count(out, "flipped", o->num_flipped));
+    const brio_mesh faces = brio_mesh_faces_as_points(m);
+    BRIO_FORWARD(put_real(out, "white", brio_colour_white(m)));
+    BRIO_FORWARD(put_real(out, "face_white", brio_colour_white(&faces)));
     BRIO_FORWARD(describe_properties(l, of_vertices(l)));
     BRIO_FORWARD(describe_properties(l, of_faces(l)));
     if (m->num_faces) BRIO_FORWARD(describe_certificate(out, c));

@@ -72,12 +72,16 @@ static brio_status take_box(periodic_call *c, brio_cells_options *o) {
 
 /* --- what the caller sees --- */
 
-/* Returns how far the cell of a point is moved, along coordinate k: from the domain to where the point was given. */
-static inline double move_of(const brio_periodic *t, uint32_t point, int k) {
+/* Returns how far a shift to the domain moves back, along coordinate k. */
+static inline double moved_by(const brio_periodic *t, const int32_t shift[3], int k) {
     double sum = 0;
-    if (t->stays) return 0;
-    for (int j = 0; j < t->lattice.rank; j++) sum -= t->home[point][j] * t->lattice.used[j][k];
+    for (int j = 0; j < t->lattice.rank; j++) sum -= shift[j] * t->lattice.used[j][k];
     return sum;
+}
+
+/* Returns how far the cell of a point is moved: from the domain to where the point was given. */
+static inline double move_of(const brio_periodic *t, uint32_t point, int k) {
+    return t->stays ? 0 : moved_by(t, t->home[point], k);
 }
 
 typedef struct {
@@ -142,48 +146,74 @@ typedef struct {
     int32_t move[3];
 } moved_vertex;
 
+/* Vertices of moved cells, in the order in which they were met, and a table that finds them. */
+typedef struct {
+    brio_context *ctx;
+    moved_vertex *list;
+    size_t count, capacity;
+    uint32_t *slot; /* one more than the number in the list, or 0; at most half of them are in use */
+    size_t size;
+} moved_vertices;
+
+static size_t place_of(const moved_vertices *m, const moved_vertex *v) {
+    uint64_t moves = (uint64_t)(uint32_t)v->move[0] << 32 | (uint32_t)v->move[1];
+    uint64_t hash = brio_mix(v->vertex + brio_mix(moves) + (uint32_t)v->move[2] * UINT64_C(0x9e3779b97f4a7c15));
+    size_t place = hash & (m->size - 1);
+    while (m->slot[place] && memcmp(&m->list[m->slot[place] - 1], v, sizeof *v)) place = (place + 1) & (m->size - 1);
+    return place;
+}
+
+/* Doubles the table. Cells at one vertex may all have other moves, so nobody knows how large it gets. */
+static brio_status grow(moved_vertices *m) {
+    brio_release(m->ctx, m->slot);
+    m->size = m->size ? 2 * m->size : 64;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(m->ctx, m->slot, m->size));
+    for (size_t i = 0; i < m->count; i++) m->slot[place_of(m, &m->list[i])] = (uint32_t)i + 1;
+    return BRIO_OK;
+}
+
+/* Sets *number to that of a vertex, which is added if it is not known. */
+static brio_status find_moved(moved_vertices *m, const moved_vertex *v, uint32_t *number) {
+    if (2 * (m->count + 1) > m->size) BRIO_FORWARD(grow(m));
+    uint32_t *slot = &m->slot[place_of(m, v)];
+    if (!*slot) {
+        BRIO_EXPECT(m->ctx, m->count < UINT32_MAX - 1, BRIO_ERR_TOO_LARGE, "2^32 - 2 vertices of cells or more");
+        BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->list, m->capacity, m->count + 1));
+        m->list[m->count++] = *v;
+        *slot = (uint32_t)m->count;
+    }
+    *number = *slot - 1;
+    return BRIO_OK;
+}
+
 /* Gives the corner of a cell its vertex, a new one where no cell with that move had it. */
 static brio_status move_vertices(const periodic_call *c, brio_cells *cells) {
     brio_context *ctx = c->ctx;
     const brio_periodic *t = c->t;
     brio_status status = BRIO_OK;
-    size_t size = 64, count = 0, capacity = 0, x_capacity = 0;
-    uint32_t *slot = NULL;
-    moved_vertex *list = NULL;
+    moved_vertices m = {.ctx = ctx};
     double *x = NULL;
-    while (size < 4 * cells->num_vertices) size *= 2;
-    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, slot, size));
-    for (size_t n = 0; n < cells->num_cells; n++)
+    for (size_t n = 0; n < cells->num_cells; n++) {
+        moved_vertex v;
+        memcpy(v.move, t->home[cells->site[n]], sizeof v.move);
         for (uint64_t f = cells->face_offsets[n]; f < cells->face_offsets[n + 1]; f++)
             for (uint64_t at = cells->corner_offsets[f]; at < cells->corner_offsets[f + 1]; at++) {
-                moved_vertex v = {.vertex = cells->face_vertices[at]};
-                memcpy(v.move, t->home[cells->site[n]], sizeof v.move);
-                uint64_t hash =
-                    brio_mix(v.vertex + brio_mix((uint64_t)(uint32_t)v.move[0] << 32 | (uint32_t)v.move[1]) +
-                             (uint32_t)v.move[2] * UINT64_C(0x9e3779b97f4a7c15));
-                size_t place = hash & (size - 1);
-                while (slot[place] && memcmp(&list[slot[place] - 1], &v, sizeof v)) place = (place + 1) & (size - 1);
-                if (!slot[place]) {
-                    BRIO_REQUIRE(ctx, 2 * (count + 1) <= size, BRIO_ERR_TOO_LARGE, "too many vertices of moved cells");
-                    BRIO_TRY(BRIO_RESERVE(ctx, list, capacity, count + 1));
-                    BRIO_TRY(BRIO_RESERVE(ctx, x, x_capacity, 3 * (count + 1)));
-                    for (int k = 0; k < 3; k++)
-                        x[3 * count + (size_t)k] =
-                            brio_lattice_shown(&t->lattice, cells->vertices[3 * (size_t)v.vertex + (size_t)k], k) +
-                            move_of(t, cells->site[n], k);
-                    list[count++] = v;
-                    slot[place] = (uint32_t)count;
-                }
-                cells->face_vertices[at] = slot[place] - 1;
+                v.vertex = cells->face_vertices[at];
+                BRIO_TRY(find_moved(&m, &v, &cells->face_vertices[at]));
             }
+    }
+    BRIO_TRY(BRIO_ALLOC(ctx, x, 3 * m.count + 1));
+    for (size_t i = 0; i < m.count; i++)
+        for (int k = 0; k < 3; k++)
+            x[3 * i + (size_t)k] =
+                brio_lattice_shown(&t->lattice, cells->vertices[3 * (size_t)m.list[i].vertex + (size_t)k], k) +
+                moved_by(t, m.list[i].move, k);
     brio_release(ctx, cells->vertices);
     cells->vertices = x;
-    cells->num_vertices = count;
-    x = NULL;
+    cells->num_vertices = m.count;
 done:
-    brio_release(ctx, slot);
-    brio_release(ctx, list);
-    brio_release(ctx, x);
+    brio_release(ctx, m.slot);
+    brio_release(ctx, m.list);
     return status;
 }
 

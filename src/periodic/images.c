@@ -6,12 +6,19 @@
 #include <assert.h>
 #include <string.h>
 
+/* Makes room for `count` images. */
+static brio_status reserve(brio_images *m, size_t count, bool weighted) {
+    BRIO_FORWARD(BRIO_RESIZE(m->ctx, m->list, count));
+    BRIO_FORWARD(BRIO_RESIZE(m->ctx, m->x, count));
+    if (weighted) BRIO_FORWARD(BRIO_RESIZE(m->ctx, m->weight, count));
+    m->capacity = count;
+    return BRIO_OK;
+}
+
 brio_status brio_images_new(brio_context *ctx, const brio_lattice *lattice, const double (*home)[3],
                             const double *weights, size_t n, brio_images *m) {
     *m = (brio_images){.ctx = ctx, .lattice = lattice, .num_points = n};
-    BRIO_FORWARD(BRIO_RESERVE(ctx, m->list, m->capacity, n));
-    BRIO_FORWARD(BRIO_RESERVE(ctx, m->x, m->x_capacity, n));
-    if (weights) BRIO_FORWARD(BRIO_RESERVE(ctx, m->weight, m->weight_capacity, n + 1));
+    BRIO_FORWARD(reserve(m, n + 1, weights != NULL));
     for (size_t p = 0; p < n; p++) m->list[p] = (brio_image){.point = (uint32_t)p};
     if (n) memcpy(m->x, home, n * sizeof *m->x);
     if (n && weights) memcpy(m->weight, weights, n * sizeof *weights);
@@ -28,19 +35,25 @@ void brio_images_free(brio_images *m) {
     *m = (brio_images){0};
 }
 
-brio_status brio_images_add(brio_images *m, uint32_t point, const int32_t shift[3]) {
-    assert(point < m->num_points);
-    BRIO_EXPECT(m->ctx, m->count < BRIO_INFINITE - 16, BRIO_ERR_TOO_LARGE,
+brio_status brio_images_extend(brio_images *m, size_t more) {
+    size_t count = m->count + more;
+    BRIO_EXPECT(m->ctx, count <= BRIO_INFINITE - 16, BRIO_ERR_TOO_LARGE,
                 "the points and the translates about them are 2^32 - 17 or more");
-    BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->list, m->capacity, m->count + 1));
-    BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->x, m->x_capacity, m->count + 1));
-    m->list[m->count] = (brio_image){point, {shift[0], shift[1], shift[2]}};
-    brio_lattice_move(m->lattice, m->x[point], shift, m->x[m->count]);
-    if (m->weight) {
-        BRIO_FORWARD(BRIO_RESERVE(m->ctx, m->weight, m->weight_capacity, m->count + 1));
-        m->weight[m->count] = m->weight[point];
-    }
-    m->count++;
+    if (count > m->capacity) BRIO_FORWARD(reserve(m, count + count / 8 + 16, m->weight != NULL));
+    m->count = count;
+    return BRIO_OK;
+}
+
+void brio_images_set(brio_images *m, size_t i, uint32_t point, const int32_t shift[3]) {
+    assert(point < m->num_points && i >= m->num_points && i < m->count);
+    m->list[i] = (brio_image){point, {shift[0], shift[1], shift[2]}};
+    brio_lattice_move(m->lattice, m->x[point], shift, m->x[i]);
+    if (m->weight) m->weight[i] = m->weight[point];
+}
+
+brio_status brio_images_add(brio_images *m, uint32_t point, const int32_t shift[3]) {
+    BRIO_FORWARD(brio_images_extend(m, 1));
+    brio_images_set(m, m->count - 1, point, shift);
     return BRIO_OK;
 }
 

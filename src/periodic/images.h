@@ -10,7 +10,7 @@
 typedef struct brio_images {
     brio_context *ctx;
     const brio_lattice *lattice;
-    size_t num_points, count, capacity, x_capacity, weight_capacity;
+    size_t num_points, count, capacity;
     brio_image *list; /* I1, I2 */
     double (*x)[3];   /* #count: positions, relative to the lattice's origin */
     double *weight;   /* #count, or NULL */
@@ -26,6 +26,13 @@ void brio_images_free(brio_images *images);
 
 /** Makes a copy, to which images can be added.   lattice  of the copy.   Errors as above; freed as above. */
 brio_status brio_images_copy(brio_context *ctx, const brio_images *from, const brio_lattice *lattice, brio_images *to);
+
+/** Appends images, of which brio_images_set says which they are.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY,
+ *  BRIO_ERR_TOO_LARGE. */
+brio_status brio_images_extend(brio_images *images, size_t more);
+
+/** Sets image i behind the points. Threads may set images at once. */
+void brio_images_set(brio_images *images, size_t i, uint32_t point, const int32_t shift[3]);
 
 /** Appends an image that is not in the list.   Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_TOO_LARGE. */
 brio_status brio_images_add(brio_images *images, uint32_t point, const int32_t shift[3]);

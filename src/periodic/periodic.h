@@ -107,7 +107,8 @@ typedef struct brio_folded {
     size_t num_border;
 } brio_folded;
 
-/** Makes the classes of stars.   out  its arrays are owned by the caller.
+/** Makes the classes of stars, of which the tetrahedra take the place of those of stars->t.
+ *  out  its arrays are owned by the caller.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, BRIO_ERR_TOO_LARGE, or BRIO_ERR_INTERNAL if facets have no
  *  mates. */
 brio_status brio_periodic_fold(brio_context *ctx, brio_stars *stars, brio_folded *out);
@@ -133,7 +134,7 @@ brio_status brio_periodic_further(brio_context *ctx, const brio_periodic *t, bri
                                   size_t *num_more);
 
 /** Makes them.   wanted  #points: only those at classes with a point of a 1, and mates among these; NULL: all.
- *  images  gets the images that they name.   out  its array is owned by the caller. */
+ *  images  gets the images that they name.   out  its array is owned by the caller; nothing on failure. */
 brio_status brio_periodic_unfold(brio_context *ctx, const brio_periodic *t, const uint8_t *wanted, brio_images *images,
                                  brio_unfolded *out);
 

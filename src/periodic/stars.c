@@ -13,12 +13,23 @@
  * Differs from the paper: no covering of 27 or more sheets is made; copies are where balls need them. */
 #include "periodic/periodic.h"
 #include "base/memory.h"
+#include "base/team.h"
 #include "base/vector.h"
 #include "periodic/translates.h"
 #include "predicates/circumcentre.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
+
+enum { POINTS_A_THREAD = 1 << 14, BALLS_A_THREAD = 1 << 9 };
+
+/* What one thread has of a step of the search for the layer. */
+typedef struct {
+    brio_filter filter;
+    uint32_t *met;
+    size_t count, capacity;
+    brio_status status;
+} searcher;
 
 typedef struct {
     brio_context *ctx;
@@ -29,9 +40,10 @@ typedef struct {
     double heaviest;
     const brio_tetrahedron *tet;
     size_t num_finite, num_tets;
-    uint8_t *seen;
-    uint32_t *queue;
-    size_t queued, queue_capacity;
+    uint8_t *seen;  /* #tetrahedra; atomic */
+    uint32_t *edge; /* of the layer: what the last step met */
+    size_t edge_count, edge_capacity;
+    searcher *searcher; /* one a thread */
     brio_translates translates;
     uint8_t *left_out;
 } layer;
@@ -67,23 +79,10 @@ void brio_stars_shifts(const brio_lattice *lattice, const double margin[3], cons
         from[i] = to[i] = 0;
         if (i >= lattice->rank) continue;
         double share = brio_lattice_share(lattice, i, x);
-        from[i] = (int32_t)ceil(-margin[i] - share);
-        to[i] = (int32_t)floor(1 + margin[i] - share);
-        if (from[i] > 0) from[i] = 0;
-        if (to[i] < 0) to[i] = 0;
+        double low = -margin[i] - share, high = 1 + margin[i] - share;
+        if (low <= -1) from[i] = (int32_t)ceil(low);
+        if (high >= 1) to[i] = (int32_t)floor(high);
     }
-}
-
-/* Appends the translates of point p that are in K. */
-static brio_status add_translates(const layer *y, uint32_t p) {
-    brio_images *m = &y->s->images;
-    int32_t from[3], to[3], s[3];
-    brio_stars_shifts(y->lattice, y->margin, m->x[p], from, to);
-    for (s[0] = from[0]; s[0] <= to[0]; s[0]++)
-        for (s[1] = from[1]; s[1] <= to[1]; s[1]++)
-            for (s[2] = from[2]; s[2] <= to[2]; s[2]++)
-                if (s[0] || s[1] || s[2]) BRIO_FORWARD(brio_images_add(m, p, s));
-    return BRIO_OK;
 }
 
 void brio_stars_margin(const brio_stars_task *task, double margin[3]) {
@@ -92,12 +91,53 @@ void brio_stars_margin(const brio_stars_task *task, double margin[3]) {
     for (int i = 0; i < l->rank; i++) margin[i] = fmin(width * brio_length(l->dual[i]), l->range[i]);
 }
 
-static brio_status add_margin(layer *y) {
-    for (size_t p = 0; p < y->num_points; p++) {
-        BRIO_FORWARD(add_translates(y, (uint32_t)p));
-        BRIO_FORWARD(brio_look(y->ctx, 1));
+/* Points of which the translates in K are appended. */
+typedef struct {
+    layer *y;
+    size_t *next; /* of each thread: the number of its translates, then where the next one goes */
+} translating;
+
+static void count_some(void *user, size_t from, size_t to, int thread) {
+    const translating *h = user;
+    for (size_t p = from; p < to; p++) {
+        int32_t low[3], high[3];
+        brio_stars_shifts(h->y->lattice, h->y->margin, h->y->s->images.x[p], low, high);
+        size_t all = (size_t)(high[0] - low[0] + 1) * (size_t)(high[1] - low[1] + 1) * (size_t)(high[2] - low[2] + 1);
+        h->next[thread] += all - 1;
     }
-    return BRIO_OK;
+}
+
+static void add_some(void *user, size_t from, size_t to, int thread) {
+    const translating *h = user;
+    brio_images *m = &h->y->s->images;
+    for (size_t p = from; p < to; p++) {
+        int32_t low[3], high[3], s[3];
+        brio_stars_shifts(h->y->lattice, h->y->margin, m->x[p], low, high);
+        for (s[0] = low[0]; s[0] <= high[0]; s[0]++)
+            for (s[1] = low[1]; s[1] <= high[1]; s[1]++)
+                for (s[2] = low[2]; s[2] <= high[2]; s[2]++)
+                    if (s[0] || s[1] || s[2]) brio_images_set(m, h->next[thread]++, (uint32_t)p, s);
+    }
+}
+
+/* Appends the translates of the points that are in K. */
+static brio_status add_margin(layer *y) {
+    brio_status status = BRIO_OK;
+    translating h = {.y = y};
+    int threads = brio_threads(y->ctx, y->num_points, POINTS_A_THREAD);
+    size_t next = y->num_points;
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, h.next, (size_t)threads));
+    BRIO_TRY(brio_for(y->ctx, threads, y->num_points, count_some, &h));
+    for (int i = 0; i < threads; i++) {
+        size_t count = h.next[i];
+        h.next[i] = next;
+        next += count;
+    }
+    BRIO_TRY(brio_images_extend(&y->s->images, next - y->num_points));
+    BRIO_TRY(brio_for(y->ctx, threads, y->num_points, add_some, &h));
+done:
+    brio_release(y->ctx, h.next);
+    return status;
 }
 
 double brio_stars_count(const brio_stars_task *task) {
@@ -139,11 +179,11 @@ bool brio_stars_has_all(const brio_lattice *lattice, const double margin[3]) {
 
 /* --- the layer --- */
 
-static brio_status push(layer *y, size_t tet) {
-    if (y->seen[tet]) return BRIO_OK;
-    y->seen[tet] = 1;
-    BRIO_FORWARD(BRIO_RESERVE(y->ctx, y->queue, y->queue_capacity, y->queued + 1));
-    y->queue[y->queued++] = (uint32_t)tet;
+static brio_status push(const layer *y, searcher *own, size_t tet) {
+    uint8_t *seen = &y->seen[tet];
+    if (__atomic_load_n(seen, __ATOMIC_RELAXED) || __atomic_exchange_n(seen, 1, __ATOMIC_RELAXED)) return BRIO_OK;
+    BRIO_FORWARD(BRIO_RESERVE(y->ctx, own->met, own->capacity, own->count + 1));
+    own->met[own->count++] = (uint32_t)tet;
     return BRIO_OK;
 }
 
@@ -186,68 +226,108 @@ static void set_balls(const layer *y, const uint32_t *tets, size_t n, brio_ball 
     }
 }
 
-static bool is_own(const layer *y, const uint32_t *v) {
+/* Returns whether a tetrahedron has points in the domain of which it is not known yet that they are redone. */
+static bool asks(const layer *y, const uint32_t *v) {
     for (int k = 0; k < 4; k++)
-        if (v[k] < y->num_points) return true;
+        if (v[k] < y->num_points && !__atomic_load_n(&y->s->redone[v[k]], __ATOMIC_RELAXED)) return true;
     return false;
 }
 
 /* Looks at one of the layer: goes on to its mates, and marks its points for redoing where a translate conflicts. */
-static brio_status look_at(layer *y, uint32_t tet, const brio_ball *ball) {
+static brio_status look_at(const layer *y, searcher *own, uint32_t tet, const brio_ball *ball) {
     const brio_tetrahedron *t = &y->tet[tet];
     brio_set_point found;
     if (!brio_stars_leaves(y->lattice, y->margin, y->heaviest, ball)) return BRIO_OK;
-    for (int i = 0; i < 4; i++) BRIO_FORWARD(push(y, t->mate[i] >> 2));
-    if (!is_own(y, t->vertex)) return BRIO_OK;
-    bool known = true;
-    for (int k = 0; k < 4; k++) known &= t->vertex[k] >= y->num_points || y->s->redone[t->vertex[k]];
-    if (known || !brio_translates_deepest(&y->translates, &y->translates.filter, ball, &found)) return BRIO_OK;
-    for (int k = 0; k < 4; k++) {
-        if (t->vertex[k] >= y->num_points || y->s->redone[t->vertex[k]]) continue;
-        y->s->redone[t->vertex[k]] = 1;
-        y->s->num_redone++;
+    for (int i = 0; i < 4; i++) BRIO_FORWARD(push(y, own, t->mate[i] >> 2));
+    if (!asks(y, t->vertex) || !brio_translates_deepest(&y->translates, &own->filter, ball, &found)) return BRIO_OK;
+    for (int k = 0; k < 4; k++)
+        if (t->vertex[k] < y->num_points) __atomic_store_n(&y->s->redone[t->vertex[k]], 1, __ATOMIC_RELAXED);
+    return BRIO_OK;
+}
+
+static void look_at_some(void *user, size_t from, size_t to, int thread) {
+    const layer *y = user;
+    searcher *own = &y->searcher[thread];
+    brio_ball balls[BRIO_CENTRE_BATCH];
+    for (size_t at = from, n; at < to && own->status == BRIO_OK; at += n) {
+        n = to - at < BRIO_CENTRE_BATCH ? to - at : BRIO_CENTRE_BATCH;
+        set_balls(y, y->edge + at, n, balls);
+        for (size_t i = 0; i < n; i++) brio_report(&own->status, look_at(y, own, y->edge[at + i], &balls[i]));
+    }
+}
+
+/* Makes what the threads met the edge of the layer. */
+static brio_status take_step(layer *y, int threads) {
+    y->edge_count = 0;
+    for (int i = 0; i < threads; i++) {
+        searcher *own = &y->searcher[i];
+        BRIO_FORWARD(own->status);
+        BRIO_FORWARD(BRIO_RESERVE(y->ctx, y->edge, y->edge_capacity, y->edge_count + own->count));
+        if (own->count) memcpy(y->edge + y->edge_count, own->met, own->count * sizeof *own->met);
+        y->edge_count += own->count;
+        own->count = 0;
     }
     return BRIO_OK;
 }
 
+/* Searches the layer step by step, from the hull on. Which points are redone does not depend on the order. */
 static brio_status search_layer(layer *y) {
-    brio_ball balls[BRIO_CENTRE_BATCH];
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(y->ctx, y->seen, y->num_tets + 1));
-    for (size_t t = y->num_finite; t < y->num_tets; t++) BRIO_FORWARD(push(y, t));
-    for (size_t at = 0; at < y->queued;) {
-        size_t n = y->queued - at < BRIO_CENTRE_BATCH ? y->queued - at : BRIO_CENTRE_BATCH;
-        set_balls(y, y->queue + at, n, balls);
-        for (size_t i = 0; i < n; i++) BRIO_FORWARD(look_at(y, y->queue[at + i], &balls[i]));
-        at += n;
-        BRIO_FORWARD(brio_look(y->ctx, n * 16));
+    brio_status status = BRIO_OK;
+    int most = brio_threads(y->ctx, y->num_tets, BALLS_A_THREAD);
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, y->seen, y->num_tets + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, y->searcher, (size_t)most));
+    for (int i = 0; i < most; i++) y->searcher[i].filter = y->translates.filter;
+    for (size_t t = y->num_finite; t < y->num_tets; t++) BRIO_TRY(push(y, &y->searcher[0], t));
+    BRIO_TRY(take_step(y, 1));
+    while (y->edge_count) {
+        int threads = brio_threads(y->ctx, y->edge_count, BALLS_A_THREAD);
+        BRIO_TRY(brio_for(y->ctx, threads < most ? threads : most, y->edge_count, look_at_some, y));
+        BRIO_TRY(brio_look(y->ctx, 16 * y->edge_count));
+        BRIO_TRY(take_step(y, most));
     }
-    return BRIO_OK;
+    for (size_t p = 0; p < y->num_points; p++) y->s->num_redone += y->s->redone[p];
+done:
+    for (int i = 0; y->searcher && i < most; i++) brio_release(y->ctx, y->searcher[i].met);
+    return status;
 }
 
 /* --- points that are redone --- */
+
+typedef struct {
+    const layer *y;
+    uint8_t *needed; /* #images; atomic */
+} needing;
+
+/* Marks the vertices of tetrahedra with redone points. */
+static void need_some(void *user, size_t from, size_t to, int thread) {
+    const needing *h = user;
+    const uint8_t *is_redone = h->y->s->redone;
+    size_t points = h->y->num_points;
+    (void)thread;
+    for (size_t t = from; t < to; t++) {
+        const uint32_t *v = h->y->tet[t].vertex;
+        bool redone = false;
+        for (int k = 0; k < 4; k++) redone |= v[k] < points && is_redone[v[k]];
+        for (int k = 0; k < 4 && redone; k++)
+            if (v[k] != BRIO_INFINITE) __atomic_store_n(&h->needed[v[k]], 1, __ATOMIC_RELAXED);
+    }
+}
 
 /* Lists the redone points, and the vertices of their tetrahedra. */
 static brio_status list_points(const layer *y, brio_set_point **out, size_t *num_own, size_t *num_all) {
     const brio_images *m = &y->s->images;
     brio_status status = BRIO_OK;
-    uint8_t *needed = NULL;
+    needing h = {.y = y};
     brio_set_point *list = NULL;
     size_t n = 0, count = 0;
-    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, needed, m->count + 1));
-    for (size_t t = 0; t < y->num_tets; t++) {
-        const uint32_t *v = y->tet[t].vertex;
-        bool redone = false;
-        for (int k = 0; k < 4; k++) redone |= v[k] < y->num_points && y->s->redone[v[k]];
-        for (int k = 0; k < 4 && redone; k++)
-            if (v[k] != BRIO_INFINITE) needed[v[k]] = 1;
-        BRIO_TRY(brio_look(y->ctx, 1));
-    }
-    for (size_t i = 0; i < m->count; i++) count += needed[i] != 0;
+    BRIO_TRY(BRIO_ALLOC_ZERO(y->ctx, h.needed, m->count + 1));
+    BRIO_TRY(brio_for(y->ctx, brio_threads(y->ctx, y->num_tets, POINTS_A_THREAD), y->num_tets, need_some, &h));
+    for (size_t i = 0; i < m->count; i++) count += h.needed[i] != 0;
     BRIO_TRY(BRIO_ALLOC(y->ctx, list, count + 1));
     for (int own = 1; own >= 0; own--)
         for (size_t i = 0; i < m->count; i++) {
             bool is_redone = i < y->num_points && y->s->redone[i];
-            if (!needed[i] || is_redone != (own == 1)) continue;
+            if (!h.needed[i] || is_redone != (own == 1)) continue;
             brio_set_point *p = &list[n++];
             memcpy(p->record, m->x[i], 3 * sizeof(double));
             p->record[3] = m->weight ? m->weight[i] : 0;
@@ -258,7 +338,7 @@ static brio_status list_points(const layer *y, brio_set_point **out, size_t *num
     *out = list;
     list = NULL;
 done:
-    brio_release(y->ctx, needed);
+    brio_release(y->ctx, h.needed);
     brio_release(y->ctx, list);
     return status;
 }
@@ -347,7 +427,8 @@ done:
     brio_translates_free(&y.translates);
     brio_release(ctx, y.left_out);
     brio_release(ctx, y.seen);
-    brio_release(ctx, y.queue);
+    brio_release(ctx, y.edge);
+    brio_release(ctx, y.searcher);
     return status;
 }
 

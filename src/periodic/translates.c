@@ -33,10 +33,12 @@ brio_image brio_translate_of(uint64_t name) {
 
 /* --- the tree --- */
 
+/* Moves bit i of BITS bits to bit 3 i. */
 static uint64_t spread(uint64_t x) {
-    uint64_t key = 0;
-    for (int bit = 0; bit < BITS; bit++) key |= (x >> bit & 1) << 3 * bit;
-    return key;
+    x = (x | x << 16) & 0x030000ff;
+    x = (x | x << 8) & 0x0300f00f;
+    x = (x | x << 4) & 0x030c30c3;
+    return (x | x << 2) & 0x09249249;
 }
 
 /* Returns the place of a position on the curve. Coordinates that do not repeat are taken as shares of the box. */
@@ -44,15 +46,18 @@ static uint64_t curve_key(const brio_translates *t, const double *x) {
     uint64_t key = 0;
     for (int k = 0; k < 3; k++) {
         double width = t->all.high[k] - t->all.low[k], share = width > 0 ? (x[k] - t->all.low[k]) / width : 0;
-        double cell = fmin(fmax(floor(share * (1 << BITS)), 0), (1 << BITS) - 1);
-        key |= spread((uint64_t)cell) << k;
+        double cell = share * (1 << BITS); /* not below 0 */
+        key |= spread(cell < (1 << BITS) - 1 ? (uint64_t)cell : (1 << BITS) - 1) << k;
     }
     return key;
 }
 
-static void widen(brio_ball_box *b, const double *low, const double *high, double weight) {
-    for (int k = 0; k < 3; k++) b->low[k] = fmin(b->low[k], low[k]), b->high[k] = fmax(b->high[k], high[k]);
-    b->weight = fmax(b->weight, weight);
+static inline void widen(brio_ball_box *b, const double *low, const double *high, double weight) {
+    for (int k = 0; k < 3; k++) {
+        b->low[k] = low[k] < b->low[k] ? low[k] : b->low[k];
+        b->high[k] = high[k] > b->high[k] ? high[k] : b->high[k];
+    }
+    b->weight = weight > b->weight ? weight : b->weight;
 }
 
 brio_ball_box brio_translates_box(const brio_lattice *l, const double low[3], const double high[3], double heaviest) {

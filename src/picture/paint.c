@@ -1,6 +1,8 @@
 /* Colours of meshes in pictures: those of the mesh, a property by a colour map, or one colour for the layer. The same
  * as on pages (web/src/colours.js), except for the range of a property: layers share it, for want of sliders. */
 #include "base/memory.h"
+#include "io/colour.h"
+#include "mesh/properties.h"
 #include "picture/picture.h"
 #include <math.h>
 #include <string.h>
@@ -36,28 +38,15 @@ static const brio_property *find(const brio_mesh *m, const char *name, bool of_f
     return brio_mesh_property(m, name);
 }
 
-/* Takes the colours red, green and blue, if there are all three: bytes, 16 bits, or real numbers up to 1. */
+/* Takes the colours of the vertices or of the faces, if there are some. */
 static brio_status take_colours(brio_context *ctx, const brio_mesh *m, bool of_faces, brio_paint *out) {
-    static const char *const names[3] = {"red", "green", "blue"};
-    const size_t n = of_faces ? m->num_faces : m->num_vertices;
-    const brio_property *p[3];
-    double most = 0;
-    for (int k = 0; k < 3; k++) {
-        p[k] = find(m, names[k], of_faces);
-        if (!p[k]) return BRIO_OK;
-        for (size_t i = 0; i < n; i++) {
-            double value = brio_property_value(p[k], i);
-            most = value > most ? value : most;
-        }
-    }
-    bool real = p[0]->type == BRIO_SCALAR_FLOAT32 || p[0]->type == BRIO_SCALAR_FLOAT64;
-    double scale = real && most <= 1 ? 255 : most > 255 ? 255 / 65535.0 : 1;
-    BRIO_FORWARD(BRIO_ALLOC(ctx, out->rgb, n + 1));
-    for (size_t i = 0; i < n; i++)
-        for (int k = 0; k < 3; k++) {
-            double value = brio_property_value(p[k], i) * scale;
-            out->rgb[i].c[k] = value > 0 ? value < 255 ? (uint8_t)lrint(value) : 255 : 0;
-        }
+    const brio_mesh rows = of_faces ? brio_mesh_faces_as_points(m) : *m;
+    const brio_channels colour = brio_colour_of(&rows);
+    const double white = brio_colour_white(&rows);
+    if (white == 0) return BRIO_OK;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, out->rgb, rows.num_vertices + 1));
+    for (size_t i = 0; i < rows.num_vertices; i++)
+        for (int k = 0; k < 3; k++) out->rgb[i].c[k] = brio_colour_byte(brio_property_value(colour.of[k], i), white);
     out->of_faces = of_faces;
     return BRIO_OK;
 }
@@ -127,7 +116,11 @@ brio_status brio_paint_find(brio_context *ctx, const brio_mesh *m, size_t layer,
     }
     BRIO_FORWARD(take_colours(ctx, m, false, out));
     if (!out->rgb) BRIO_FORWARD(take_colours(ctx, m, true, out));
-    if (out->rgb || m->num_faces || m->num_tetrahedra || m->num_edges) return BRIO_OK;
+    if (out->rgb) return BRIO_OK;
+    if (m->num_faces || m->num_tetrahedra || m->num_edges) {
+        if (find(m, "distance", false)) take_property(m, "distance", out); /* of brio compare */
+        return BRIO_OK;
+    }
     const char *name = "z";
     for (size_t i = sizeof TELLING / sizeof *TELLING; i-- > 0;)
         if (find(m, TELLING[i], false)) name = TELLING[i];

@@ -15,7 +15,7 @@
 enum { ROWS = 16, MOST_ROWS = 64, BANDS = 64 };
 
 /* Lines: half their width, by how much they are nearer than what they lie on; both in pixels. */
-static const double LINE = 0.75, EDGE_LINE = 0.55, MARK = 1.25, NEARER = 1.5;
+static const double LINE = 0.75, LINE_ON_FACES = 0.4, EDGE_LINE = 0.55, MARK = 1.25, NEARER = 1.5;
 
 static const brio_rgb KINDS[] = {[BRIO_LINE_BOUNDARY] = {{26, 158, 255}},
                                  [BRIO_LINE_NONMANIFOLD] = {{255, 61, 166}},
@@ -86,12 +86,29 @@ typedef struct {
 /* The least cosine between a face and the normal at its corner, about 25 degrees. Chosen. */
 static const float SMOOTH = 0.9F;
 
-/* Takes a normal for each corner: the vertex's, where the face does not bend away from it, and else the face's own. */
-static void take_normals(const brio_drawn_mesh *d, const uint32_t *corner, const float *own, float sign, facet *f) {
+/* Slivers: how high they are at most, as parts of their longest side, and how long, in pixels. Chosen. */
+static const double THIN = 0.25, SHORT = 24;
+
+/* Returns whether a triangle is so thin and short that its normal says nothing: it would be a speck in the picture. */
+static bool is_speck(const facet *f, double area) {
+    double longest = 0;
+    for (int k = 0; k < 3; k++) {
+        const double *a = f->p[k], *b = f->p[(k + 1) % 3];
+        longest = fmax(longest,
+                       (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+    }
+    return area < THIN * longest && longest < SHORT * SHORT * BRIO_SAMPLES * BRIO_SAMPLES;
+}
+
+/* Takes a normal for each corner: the vertex's, where the face does not bend away from it, and else the face's own.
+ * own  the face's.   area  twice that of the face. */
+static void take_normals(const brio_drawn_mesh *d, const uint32_t *corner, const float *own, double area, float sign,
+                         facet *f) {
+    bool speck = is_speck(f, area);
     for (int k = 0; k < 3; k++) {
         const float *of = d->normal && !d->shapes.flat ? d->normal[corner[k]] : own;
         float cosine = of[0] * own[0] + of[1] * own[1] + of[2] * own[2];
-        if (cosine < SMOOTH) of = own;
+        if (cosine < SMOOTH && !(speck && of[0] * of[0] + of[1] * of[1] + of[2] * of[2] > 0.5F)) of = own;
         for (int x = 0; x < 3; x++) f->normal[k][x] = sign * of[x];
     }
 }
@@ -126,7 +143,7 @@ static bool set_up(const brio_drawn_mesh *d, size_t t, facet *f) {
     float own[3];
     f->twice = n[2];
     for (int k = 0; k < 3; k++) own[k] = (float)(-n[k] / length);
-    take_normals(d, corner, own, turned ? -1 : 1, f);
+    take_normals(d, corner, own, length, turned ? -1 : 1, f);
     take_colours(d, t, turned && !d->shapes.flat, f);
     f->drawn = d->shapes.lined ? d->shapes.drawn[t] : 0;
     for (int k = 0; k < 3; k++) {
@@ -194,7 +211,8 @@ static void draw_triangle(band *b, const brio_drawn_mesh *d, size_t t) {
 static void draw_line(band *b, const brio_drawn_mesh *d, size_t i) {
     const double *p = d->place[d->shapes.end[i][0]], *q = d->place[d->shapes.end[i][1]];
     brio_line_kind kind = (brio_line_kind)d->shapes.kind[i];
-    const double half = BRIO_SAMPLES * (kind == BRIO_LINE_EDGE ? LINE : MARK), dx = q[0] - p[0], dy = q[1] - p[1];
+    const double line = d->shapes.num_triangles ? LINE_ON_FACES : LINE;
+    const double half = BRIO_SAMPLES * (kind == BRIO_LINE_EDGE ? line : MARK), dx = q[0] - p[0], dy = q[1] - p[1];
     const double square = dx * dx + dy * dy;
     double ends[2][3];
     float colour[2][3];

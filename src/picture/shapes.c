@@ -49,17 +49,13 @@ static brio_status take_faces(brio_context *ctx, const brio_mesh *m, brio_shapes
     return BRIO_OK;
 }
 
-/* Drops the marks of edges of more than two faces where these are no faults. */
+/* Drops the marks of a complex, where edges of more than two faces are no faults, and faces have no sides. */
 static void drop_crowded(brio_shapes *s, size_t faces) {
-    size_t crowded = 0, kept = 0;
+    size_t crowded = 0;
     for (size_t l = 0; l < s->num_lines; l++) crowded += s->kind[l] == BRIO_LINE_NONMANIFOLD;
     if (crowded <= FEW_CROWDED || crowded < faces / 10) return;
-    for (size_t l = 0; l < s->num_lines; l++) {
-        if (s->kind[l] == BRIO_LINE_NONMANIFOLD) continue;
-        s->end[kept][0] = s->end[l][0], s->end[kept][1] = s->end[l][1];
-        s->kind[kept++] = s->kind[l];
-    }
-    s->num_lines = kept;
+    s->num_lines = 0;
+    s->flat = true;
 }
 
 /* Finds the edges of one face, of more than two, and of two faces that run along it in the same direction. */

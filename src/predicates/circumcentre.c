@@ -136,6 +136,10 @@ void brio_centres(const brio_centre_batch *b, double *centre, double *error) {
     find(b, every(b), &(brio_centre_goal){FINE, centre, 3, error});
 }
 
+void brio_near_centres(const brio_centre_batch *b, double *centre, double *error) {
+    find(b, every(b), &(brio_centre_goal){ROUGH, centre, 3, error});
+}
+
 static const double *first_point(const brio_centre_batch *b, size_t n) {
     const double *first = b->points + 3 * (size_t)b->vertex[n][0];
     for (int i = 1; i < 4; i++) {

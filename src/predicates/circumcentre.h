@@ -24,6 +24,10 @@ typedef struct {
  *  NaN. */
 void brio_centres(const brio_centre_batch *b, double *centre, double *error);
 
+/** Computes the same, but the error is at most 2^-30 of the centre's distance from the points, plus the rounding. This
+ *  is faster where tetrahedra are nearly flat. `error` is wanted. */
+void brio_near_centres(const brio_centre_batch *b, double *centre, double *error);
+
 /** Computes centres faster than brio_centres, without weights, for coordinates of at most 1. The error is at most 2^-30
  *  of the centre's distance from the points, plus one rounding.
  *  centre  #count by 4: the centre and its squared distance from the points. NaN in the first coordinate and in the

@@ -16,6 +16,7 @@
 typedef struct {
     uint32_t slot, tile; /* of the rank that asks */
     uint64_t count;      /* of an answer: questions that are free */
+    brio_ball_box seen;  /* of a question: the tile knows all points in it */
 } heading;
 
 typedef struct {
@@ -46,7 +47,7 @@ typedef struct {
 
 static brio_status put_question(completing *c, uint32_t number, int rank, const brio_ball *ball, uint64_t question) {
     brio_exchange *x = &c->r->x;
-    heading h = {number, c->slots[number].tile, 0};
+    heading h = {number, c->slots[number].tile, 0, c->r->seen[c->slots[number].tile]};
     far_question q;
     memset(&q, 0, sizeof q);
     q.ball = *ball, q.question = question;
@@ -108,7 +109,7 @@ static brio_status source_for(brio_ranks *r, int rank, const heading *h, brio_ti
         served->source = NULL;
     }
     served->tile = h->tile;
-    if (!served->source) BRIO_FORWARD(brio_tile_source_new(r->t, TILE_OTHER, r->own_root, &served->source));
+    if (!served->source) BRIO_FORWARD(brio_tile_source_new(r->t, TILE_OTHER, r->own_root, &h->seen, &served->source));
     *out = served->source;
     return BRIO_OK;
 }
@@ -142,7 +143,7 @@ static brio_status answer_message(completing *c, const brio_letter *m) {
     const heading *h = m->bytes;
     const far_question *q = (const far_question *)(h + 1);
     size_t n = (m->size - sizeof *h) / sizeof *q;
-    heading reply = {h->slot, h->tile, 0};
+    heading reply = {.slot = h->slot, .tile = h->tile};
     brio_tile_source *source;
     BRIO_FORWARD(source_for(r, m->rank, h, &source));
     brio_tile_source_round(source);
@@ -234,7 +235,7 @@ static brio_status ask_for_tile(brio_ranks *r, uint32_t tile, brio_found *unused
     BRIO_TRY(brio_tile_halo_box(t, tile, &q.seen));
     r->seen[tile] = q.seen;
     BRIO_TRY(brio_tile_halo_ranks(t, &q.seen, &near));
-    BRIO_TRY(brio_tile_source_new(t, tile, (uint32_t)t->num_nodes - 1, &source));
+    BRIO_TRY(brio_tile_source_new(t, tile, (uint32_t)t->num_nodes - 1, NULL, &source));
     BRIO_TRY(brio_tile_coarse_sample(source, &q.box, unused));
     unused->count = 0;
     const brio_tile_asked *asked = brio_tile_source_asked(source, &n);
@@ -254,7 +255,7 @@ static brio_status ask_samples(brio_ranks *r, brio_found *unused) {
 
 static brio_status answer_sample(brio_ranks *r, int rank, const sample_question *q, brio_found *found) {
     brio_tile_source *source;
-    BRIO_FORWARD(brio_tile_source_new(r->t, TILE_OTHER, r->own_root, &source));
+    BRIO_FORWARD(brio_tile_source_new(r->t, TILE_OTHER, r->own_root, NULL, &source));
     found->count = 0;
     brio_status status = brio_tile_coarse_sample(source, &q->box, found);
     brio_tile_source_free(source);

@@ -19,8 +19,10 @@ static brio_status agree_on_points(brio_ranks *r) {
 }
 
 static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *o) {
-    brio_tiles_options of_tiles = {
-        .size = sizeof of_tiles, .scratch = o->scratch, .tiles = o->tiles ? o->tiles : TILES};
+    brio_tiles_options of_tiles = {.size = sizeof of_tiles,
+                                   .scratch = o->scratch,
+                                   .tiles = o->tiles ? o->tiles : TILES,
+                                   .stars = o->stars ? 2 : 0};
     BRIO_EXPECT(r->ctx, of_tiles.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles of a rank; at most %d", o->tiles,
                 MOST_TILES);
     if (o->key) of_tiles.key = brio_hash(brio_hash(o->key, (uint64_t)r->ranks), (uint64_t)r->rank) | 1;
@@ -227,7 +229,7 @@ static brio_status read_halo(void *user, const uint64_t *halo, size_t n, brio_se
 
 static brio_status make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p) {
     if (!r->t->tile[tile].tetrahedra) return brio_ranks_rows(r, NULL, 0, answer_point, sizeof(brio_set_point), NULL);
-    return brio_tile_part_make(r->t, tile, read_halo, r, p);
+    return brio_tile_part_make(r->t, tile, &(brio_halo_reader){read_halo, r}, p);
 }
 
 brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, brio_tile_part *out) {

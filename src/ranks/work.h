@@ -21,12 +21,13 @@ struct brio_ranks {
     int rank, ranks;
     brio_tiles_stats facts;     /* of all ranks */
     brio_ranks_traffic traffic; /* the same */
-    uint32_t own_root;          /* node over this rank's tiles; TILE_NONE if there are no points */
-    double (*splitter)[3];      /* ranks - 1, ascending: where lists of positions are divided among ranks */
-    brio_found *sample;         /* of each own tile, the points of other ranks that it begins with */
-    brio_ball_box *seen;        /* of each own tile: all points in it are known when it begins */
-    brio_rank_served *served;   /* by rank and slot */
-    uint64_t *rank_of;          /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
+    brio_tiles_cells_stats cells;
+    uint32_t own_root;        /* node over this rank's tiles; TILE_NONE if there are no points */
+    double (*splitter)[3];    /* ranks - 1, ascending: where lists of positions are divided among ranks */
+    brio_found *sample;       /* of each own tile, the points of other ranks that it begins with */
+    brio_ball_box *seen;      /* of each own tile: all points in it are known when it begins */
+    brio_rank_served *served; /* by rank and slot */
+    uint64_t *rank_of;        /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
     uint64_t far_asked, far_found, rounds, question_bytes;
     bool has_result;
 };

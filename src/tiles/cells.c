@@ -67,11 +67,11 @@ static brio_status run_slab(cell_run *r, brio_slabs *s, size_t slab) {
     return status;
 }
 
-static brio_status run_tile(cell_run *r, uint32_t tile, brio_bar bar, uint64_t *done) {
+static brio_status run_tile(cell_run *r, const brio_halo_reader *halo, uint32_t tile, brio_bar bar, uint64_t *done) {
     brio_slabs s;
     brio_status status = BRIO_OK;
     double all = (double)(r->t->stats.vertices + 1);
-    BRIO_TRY(brio_slabs_open(r->t, tile, &s));
+    BRIO_TRY(brio_slabs_open(r->t, tile, halo, &s));
     for (size_t slab = 0; slab < s.count; slab++) {
         uint64_t next = *done + r->t->tile[tile].vertices / s.count;
         brio_progress_part(r->t->ctx, bar, (double)*done / all, (double)next / all);
@@ -106,13 +106,26 @@ static brio_cell_frame frame_of(const brio_tiles *t) {
 brio_status brio_tiles_run_cells(brio_tiles *t, const brio_cells_options *options, const brio_tile_cells_sink *sink,
                                  brio_tiles_cells_stats *stats) {
     cell_run r = {.t = t, .options = options, .frame = frame_of(t), .sink = sink, .stats = stats};
+    const brio_halo_reader halo = brio_tile_own_halo(t);
     brio_bar bar = brio_progress_bar(t->ctx);
     brio_status status = BRIO_OK;
     uint64_t done = 0;
     for (uint32_t i = 0; i < t->num_tiles; i++)
-        if (t->tile[i].points) BRIO_TRY(run_tile(&r, i, bar, &done));
+        if (t->tile[i].points) BRIO_TRY(run_tile(&r, &halo, i, bar, &done));
     status = find_region(&r);
 done:
+    brio_progress_part(t->ctx, bar, 0, 1);
+    brio_release(t->ctx, r.site);
+    return status;
+}
+
+brio_status brio_tile_run_cells(brio_tiles *t, uint32_t tile, const brio_cells_options *options,
+                                const brio_halo_reader *halo, const brio_tile_cells_sink *sink,
+                                brio_tiles_cells_stats *stats) {
+    cell_run r = {.t = t, .options = options, .frame = frame_of(t), .sink = sink, .stats = stats};
+    brio_bar bar = brio_progress_bar(t->ctx);
+    uint64_t done = 0;
+    brio_status status = run_tile(&r, halo, tile, bar, &done);
     brio_progress_part(t->ctx, bar, 0, 1);
     brio_release(t->ctx, r.site);
     return status;
@@ -137,8 +150,7 @@ static brio_status call(void *user, brio_cells *cells, const uint64_t *site) {
     return BRIO_OK;
 }
 
-/* Checks that the cells fill the region, as brio_voronoi_cells does. */
-static brio_status check_filled(brio_context *ctx, const brio_tiles_cells_stats *s) {
+brio_status brio_tile_cells_check(brio_context *ctx, const brio_tiles_cells_stats *s) {
     static const double MOST = 0.01;
     double filled = s->volume_sum / s->region_volume;
     if (!s->cells || !isnormal(s->region_volume) || !isfinite(filled)) return BRIO_OK;
@@ -174,7 +186,7 @@ brio_status brio_tiles_cells(brio_context *ctx, brio_tiles *t, const brio_cells_
     t->stats.scratch_bytes = t->folder.most;
     BRIO_FORWARD(status);
     s.volume_sum += c.lost;
-    BRIO_FORWARD(check_filled(ctx, &s));
+    BRIO_FORWARD(brio_tile_cells_check(ctx, &s));
     t->cells = s;
     return BRIO_OK;
 }

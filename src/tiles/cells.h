@@ -32,9 +32,9 @@ typedef struct {
     size_t row_capacity, tet_capacity, slot_capacity, at_capacity, weights_capacity;
 } brio_slabs;
 
-/** Reads a tile whose stars were kept. Call brio_slabs_free in any case.
+/** Reads a tile whose stars were kept, and by `halo` the points of its halo. Call brio_slabs_free in any case.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
-brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, brio_slabs *s);
+brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, const brio_halo_reader *halo, brio_slabs *s);
 void brio_slabs_free(brio_slabs *s);
 
 /** Makes the complex of a slab, whose sites are the vertices among its points.
@@ -54,7 +54,11 @@ typedef struct {
  *  Returns what brio_tiles_cells does. */
 brio_status brio_tiles_run_cells(brio_tiles *t, const brio_cells_options *options, const brio_tile_cells_sink *sink,
                                  brio_tiles_cells_stats *stats);
-/** Computes the same, but hands them on in ascending order of the sites. No vertices.
+/** Computes the cells of one tile. stats->region_volume is set where the tile has a cell. */
+brio_status brio_tile_run_cells(brio_tiles *t, uint32_t tile, const brio_cells_options *options,
+                                const brio_halo_reader *halo, const brio_tile_cells_sink *sink,
+                                brio_tiles_cells_stats *stats);
+/** Computes the cells of all tiles, but hands them on in ascending order of the sites. No vertices.
  *  with_faces  false: of the faces no more than their number, as brio_tiles_cells does. */
 brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options, bool with_faces,
                                          const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats);
@@ -64,5 +68,7 @@ double brio_ordered_cells_buffers(size_t tiles, bool with_faces);
 
 /** Adds cells to the counts and to the sum of volumes, whose rounding errors go to *lost [Neumaier 1974]. */
 void brio_tile_cells_count(const brio_cells *cells, brio_tiles_cells_stats *stats, double *lost);
+/** Refuses cells that do not fill the region, as brio_voronoi_cells does. */
+brio_status brio_tile_cells_check(brio_context *ctx, const brio_tiles_cells_stats *stats);
 
 #endif

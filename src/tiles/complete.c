@@ -234,7 +234,7 @@ static brio_status begin(brio_tile_work *w, const brio_found *more) {
     BRIO_TRY(brio_store_append(&w->out, &none, sizeof none));
     w->out.hashes = t->key != 0;
     if (t->stars) BRIO_TRY(begin_border(w));
-    BRIO_TRY(brio_tile_source_new(t, w->tile, (uint32_t)t->num_nodes - 1, &w->source));
+    BRIO_TRY(brio_tile_source_new(t, w->tile, (uint32_t)t->num_nodes - 1, &w->seen, &w->source));
     BRIO_TRY(list_known(w, more, &list));
     w->num_known = list.count;
     brio_completion_task task = {.points = list.point,
@@ -393,6 +393,21 @@ brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, 
 done:
     brio_store_close(&f);
     if (status != BRIO_OK) brio_tile_result_free(t, out);
+    return status;
+}
+
+brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, uint64_t *halo) {
+    const brio_tile *facts = &t->tile[tile];
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    char name[32];
+    if (!facts->halo) return BRIO_OK;
+    snprintf(name, sizeof name, "tile-%u", tile);
+    BRIO_TRY(brio_store_open(&t->folder, name, &f));
+    status = brio_store_read(&f, sizeof(tile_head) + facts->tetrahedra * 4 * sizeof(uint32_t), halo,
+                             facts->halo * sizeof *halo);
+done:
+    brio_store_close(&f);
     return status;
 }
 

@@ -40,10 +40,8 @@ done:
     return status;
 }
 
-brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *halo, brio_set_point *points) {
-    const brio_tile *facts = &t->tile[tile];
-    BRIO_FORWARD(brio_tile_points(t, facts->place, facts->points, points));
-    return read_halo(t, halo, facts->halo, points + facts->points);
+brio_halo_reader brio_tile_own_halo(brio_tiles *t) {
+    return (brio_halo_reader){read_halo, t};
 }
 
 /* Marks the rows of the vertices, and lists those of the halo by their places.   *count  receives their number. */
@@ -158,7 +156,7 @@ static brio_status fill(brio_tiles *t, const brio_set_point *points, const uint3
     return BRIO_OK;
 }
 
-brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_of, void *user, brio_tile_part *p) {
+brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, const brio_halo_reader *halo, brio_tile_part *p) {
     const brio_tile *facts = &t->tile[tile];
     brio_tile_result result = {0};
     brio_set_point *points = NULL;
@@ -173,7 +171,7 @@ brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn halo_
     BRIO_TRY(BRIO_ALLOC(t->ctx, points, n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, number, n + 1));
     BRIO_TRY(brio_tile_points(t, facts->place, facts->points, points));
-    BRIO_TRY(halo_of(user, result.halo, facts->halo, points + facts->points));
+    BRIO_TRY(halo->read(halo->user, result.halo, facts->halo, points + facts->points));
     p->num_tetrahedra = facts->tetrahedra;
     BRIO_TRY(number_vertices(t->ctx, &result, facts, number, &p->num_vertices));
     BRIO_TRY(fill(t, points, number, n, p));
@@ -194,7 +192,8 @@ brio_status brio_tiles_part(brio_context *ctx, brio_tiles *t, uint32_t tile, bri
     BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
     BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
     BRIO_EXPECT(ctx, tile < t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, t->num_tiles);
-    brio_status status = brio_tile_part_make(t, tile, read_halo, t, &p);
+    brio_halo_reader halo = brio_tile_own_halo(t);
+    brio_status status = brio_tile_part_make(t, tile, &halo, &p);
     if (status != BRIO_OK)
         brio_tile_part_free(ctx, &p);
     else

@@ -76,7 +76,7 @@ static brio_status list_tetrahedra(brio_slabs *s) {
     return BRIO_OK;
 }
 
-brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, brio_slabs *s) {
+brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, const brio_halo_reader *halo, brio_slabs *s) {
     const brio_tile *facts = &t->tile[tile];
     brio_context *ctx = t->ctx;
     *s = (brio_slabs){.t = t,
@@ -92,7 +92,8 @@ brio_status brio_slabs_open(brio_tiles *t, uint32_t tile, brio_slabs *s) {
     BRIO_FORWARD(BRIO_ALLOC(ctx, s->border, s->num_border + 1));
     BRIO_FORWARD(brio_tile_border(t, tile, s->border));
     BRIO_FORWARD(BRIO_ALLOC(ctx, s->points, s->num_rows + 1));
-    BRIO_FORWARD(brio_tile_all_points(t, tile, s->result.halo, s->points));
+    BRIO_FORWARD(brio_tile_points(t, facts->place, facts->points, s->points));
+    BRIO_FORWARD(halo->read(halo->user, s->result.halo, facts->halo, s->points + facts->points));
     BRIO_FORWARD(BRIO_ALLOC(ctx, s->local, s->num_rows + 1));
     memset(s->local, 0xff, s->num_rows * sizeof *s->local);
     return list_tetrahedra(s);

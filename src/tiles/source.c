@@ -9,7 +9,8 @@
  * as a whole; then its points are known, and known points are never in conflict. So the number of these comparisons is
  * in proportion to the points.
  *
- * A block in memory has a reader for each coordinate, so that comparisons with a ball run in vector lanes. */
+ * Most balls are empty, and large: they touch the boxes of many blocks. So a block in memory has an array for each
+ * coordinate, and a ball is compared with a group of its points at a time, in vector lanes. */
 #include "base/memory.h"
 #include "base/team.h"
 #include "platform/thread.h"
@@ -29,10 +30,16 @@ enum {
 static const double SLACK = 0x1p-46;
 static const double NEAR = 0.6; /* a node is as far away as it is large, divided by this: then its sample suffices */
 
+/* Doubles side by side. */
+enum { LANES = 2, GROUP = 16 };
+typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8)));
+typedef int64_t lane_bits __attribute__((vector_size(8 * LANES), aligned(8)));
+
 enum { BLOCK_NEW, BLOCK_ADDED, BLOCK_KNOWN }; /* ADDED: in this round; the completion does not know it yet */
 
 typedef struct {
-    double x[TILE_BLOCK], y[TILE_BLOCK], z[TILE_BLOCK], w[TILE_BLOCK];
+    double x[TILE_BLOCK], y[TILE_BLOCK], z[TILE_BLOCK]; /* behind the points: INFINITY, which is near nothing */
+    double w[TILE_BLOCK], heaviest;
     uint64_t place;
     uint32_t points;
     uint32_t wasted; /* comparisons; atomic */
@@ -77,28 +84,35 @@ void brio_tiles_filter(const brio_tiles *t, brio_filter *f) {
     brio_filter_set(f, extent, t->weighted ? heaviest + fabs(lightest) : 0, t->weighted);
 }
 
-/* Sets the parents of a node and of those below, and how many blocks of other tiles each has. Roots of tiles have
- * copies that are in no tree, or in that of another root. A node of another process counts as a block that is never
- * read: what is above it is never gone past. */
-static uint32_t count_below(brio_tile_source *s, uint32_t at, uint32_t parent) {
+static bool is_inside(const brio_ball_box *box, const brio_ball_box *outer) {
+    for (int k = 0; k < 3; k++)
+        if (box->low[k] < outer->low[k] || box->high[k] > outer->high[k]) return false;
+    return true;
+}
+
+/* Sets the parents of a node and of those below, and how many blocks of other tiles each has that are not known yet.
+ * Roots of tiles have copies that are in no tree, or in that of another root. A node of another process counts as a
+ * block that is never read: what is above it is never gone past. */
+static uint32_t count_below(brio_tile_source *s, uint32_t at, uint32_t parent, const brio_ball_box *seen) {
     const brio_tile_node *node = &s->t->node[at];
     uint32_t left = node->children == 0;
     s->parent[at] = parent;
-    if (node->tile == s->tile) return 0;
-    for (uint32_t c = node->first; c < node->first + node->children; c++) left += count_below(s, c, at);
+    if (node->tile == s->tile || (seen && is_inside(&node->box, seen))) return 0;
+    for (uint32_t c = node->first; c < node->first + node->children; c++) left += count_below(s, c, at, seen);
     return s->left[at] = left;
 }
 
-static brio_status count_blocks(brio_tile_source *s) {
+static brio_status count_blocks(brio_tile_source *s, const brio_ball_box *seen) {
     const brio_tiles *t = s->t;
     BRIO_FORWARD(BRIO_ALLOC(t->ctx, s->parent, t->num_nodes + 1));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, s->left, t->num_nodes + 1));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, s->last, t->num_nodes + 1));
-    count_below(s, s->root, TILE_NONE);
+    count_below(s, s->root, TILE_NONE, seen);
     return BRIO_OK;
 }
 
-brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, brio_tile_source **out) {
+brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, const brio_ball_box *seen,
+                                 brio_tile_source **out) {
     brio_tile_source *s = NULL;
     brio_status status = BRIO_OK;
     *out = NULL;
@@ -111,7 +125,7 @@ brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, br
     s->threads = brio_threads(t->ctx, 1 << 20, BALLS_A_THREAD);
     BRIO_TRY(brio_store_open(&t->folder, "points", &s->points));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->cache, t->num_nodes + 1));
-    BRIO_TRY(count_blocks(s));
+    BRIO_TRY(count_blocks(s, seen));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->search, s->threads));
     for (int i = 0; i < s->threads; i++) {
         brio_tiles_filter(t, &s->search[i].filter);
@@ -158,6 +172,7 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
     block *b = *out;
     b->place = node->place;
     b->points = node->points;
+    b->heaviest = node->box.weight;
     b->wasted = 0;
     b->state = BLOCK_NEW;
     brio_status status = brio_store_read(&s->points, (node->place - s->t->first_place) * sizeof *some, some,
@@ -166,6 +181,7 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
         b->x[i] = some[i].record[0], b->y[i] = some[i].record[1];
         b->z[i] = some[i].record[2], b->w[i] = some[i].record[3];
     }
+    for (uint32_t i = node->points; i < TILE_BLOCK; i++) b->x[i] = b->y[i] = b->z[i] = INFINITY, b->w[i] = 0;
     if (status != BRIO_OK) brio_release(s->t->ctx, b);
     return status;
 }
@@ -192,25 +208,43 @@ static brio_set_point point_of(const block *b, uint32_t i) {
 }
 
 /* Returns whether a ball with a square may take a point. */
-static bool is_near(const brio_ball *ball, const double *record) {
+static inline bool is_near(const brio_ball *ball, const double *record) {
     double limit = ball->square + fabs(ball->square) * SLACK, square = 0;
     for (int k = 0; k < 3; k++) square += (record[k] - ball->centre[k]) * (record[k] - ball->centre[k]);
     return !(square * (1 - SLACK) > limit + record[3] + fabs(record[3]) * SLACK);
 }
 
+static lanes load(const double *from) {
+    lanes v;
+    memcpy(&v, from, sizeof v);
+    return v;
+}
+
+/* Returns whether one of the points of a group is at most that far from a centre, squared. */
+static bool is_group_near(const double *centre, double square, const block *b, uint32_t first) {
+    lane_bits near = {0};
+    for (uint32_t i = first; i < first + GROUP; i += LANES) {
+        lanes x = load(b->x + i) - centre[0], y = load(b->y + i) - centre[1], z = load(b->z + i) - centre[2];
+        near |= x * x + y * y + z * z <= square;
+    }
+    return (near[0] | near[1]) != 0;
+}
+
 /* Lists the points that a ball may take. Returns their number. */
 static uint32_t list_near(const brio_ball *ball, const block *b, uint32_t list[TILE_BLOCK]) {
-    double limit = ball->square + fabs(ball->square) * SLACK;
-    const double *c = ball->centre;
+    double most = ball->square + b->heaviest, square = most + 4 * SLACK * (fabs(ball->square) + fabs(b->heaviest));
     uint32_t n = 0;
-    if (ball->infinite || !(ball->square < INFINITY)) {
+    if (ball->infinite || !(square < INFINITY)) {
         for (uint32_t i = 0; i < b->points; i++) list[i] = i;
         return b->points;
     }
-    for (uint32_t i = 0; i < b->points; i++) {
-        double x = b->x[i] - c[0], y = b->y[i] - c[1], z = b->z[i] - c[2], w = b->w[i];
-        list[n] = i;
-        n += !((x * x + y * y + z * z) * (1 - SLACK) > limit + w + fabs(w) * SLACK);
+    for (uint32_t first = 0; first < b->points; first += GROUP) {
+        if (!is_group_near(ball->centre, square, b, first)) continue;
+        for (uint32_t i = first; i < first + GROUP && i < b->points; i++) {
+            double record[4] = {b->x[i], b->y[i], b->z[i], b->w[i]};
+            list[n] = i;
+            n += is_near(ball, record);
+        }
     }
     return n;
 }

@@ -56,7 +56,7 @@ struct brio_tiles {
     brio_store_folder folder;
     brio_tiles_stats stats;
     brio_tiles_cells_stats cells;
-    bool weighted, has_points, has_result, has_ranks, stars;
+    bool weighted, has_points, has_result, has_ranks, has_neighbours, stars;
     bool sorts_cells, sorts_faces; /* cells will be asked for in order, and their faces */
     bool torn;                     /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
@@ -162,8 +162,11 @@ void brio_tiles_filter(const brio_tiles *t, brio_filter *f);
 /** Points of other tiles that a tile asks for: reads their blocks, and keeps those that it read. */
 typedef struct brio_tile_source brio_tile_source;
 
-/** Makes a source.   root  the node below which it searches. */
-brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, brio_tile_source **out);
+/** Makes a source.
+ *  root  the node below which it searches.
+ *  seen  NULL, or a box all of whose points who asks knows: blocks in it are not searched. */
+brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, const brio_ball_box *seen,
+                                 brio_tile_source **out);
 void brio_tile_source_free(brio_tile_source *s);
 /** Notes that a round of the completion begins, which knows all that was added before. */
 void brio_tile_source_round(brio_tile_source *s);
@@ -219,16 +222,21 @@ typedef struct {
 /** Reads it.   wants_all  false: only which points are vertices. */
 brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, brio_tile_result *out);
 void brio_tile_result_free(brio_tiles *t, brio_tile_result *r);
+/** Reads the places of the halo of a tile, as many as its facts say. */
+brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, uint64_t *halo);
 /** Reads the border of a tile.   border  as many rows as the tile's facts say. */
 brio_status brio_tile_border(brio_tiles *t, uint32_t tile, uint32_t (*border)[4]);
-/** Reads the points of a tile, and behind them those of its halo. Names become indices.
- *  points  as many as the tile's facts say, both. */
-brio_status brio_tile_all_points(brio_tiles *t, uint32_t tile, const uint64_t *halo, brio_set_point *points);
-
 /** A function that reads the points of a halo, in its order. */
 typedef brio_status (*brio_halo_fn)(void *user, const uint64_t *halo, size_t n, brio_set_point *points);
+/** Such a function, and what it is called with. */
+typedef struct {
+    brio_halo_fn read;
+    void *user;
+} brio_halo_reader;
+/** Returns the reader of tiles whose points are all of this process. */
+brio_halo_reader brio_tile_own_halo(brio_tiles *t);
 /** Makes the part of a tile, as brio_tiles_part. */
-brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, brio_halo_fn read_halo, void *user, brio_tile_part *p);
+brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, const brio_halo_reader *halo, brio_tile_part *p);
 
 /** Sums the hashes of all tetrahedra: the checksum. */
 brio_status brio_tiles_sum(brio_tiles *t, uint64_t *checksum);

@@ -19,6 +19,7 @@
 #include <assert.h>
 #include <string.h>
 
+/* BLOCK: places of a thread, which fit its second-level cache with twice as many. STEPS, AHEAD: chosen. */
 enum { BLOCK = 1 << 13, STEPS = 32, AHEAD = 24 };
 
 static const uint32_t NOWHERE = UINT32_MAX;
@@ -330,7 +331,7 @@ static brio_status move_all(sorter *s) {
     brio_context *ctx = s->store->ctx;
     brio_status status = BRIO_OK;
     size_t block = (size_t)BLOCK * (size_t)s->threads;
-    if (s->threads > 1 && block < s->live / STEPS) block = s->live / STEPS; /* threads wait for each other each time */
+    if (s->threads > 1 && s->live / block > STEPS) block *= 2; /* threads wait for each other each time */
     mover m = {.sorter = s, .block = block};
     BRIO_TRY(BRIO_ALLOC(ctx, m.aside, block));
     BRIO_TRY(BRIO_ALLOC(ctx, m.leaving, block));

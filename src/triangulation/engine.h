@@ -6,7 +6,7 @@
 
 typedef struct brio_inserter brio_inserter;
 
-enum { BRIO_BATCH = 8 };
+enum { BRIO_BATCH = 8, BRIO_SOUND_BATCH = 64 };
 
 typedef struct {
     /** Bit i of the result: whether p conflicts with the tetrahedron of facet handle facets[i], i < count. All
@@ -22,11 +22,12 @@ typedef struct {
     /** brio_locate_abreast. */
     void (*walk_abreast)(const brio_tetrahedra *t, brio_filter *f, brio_walk walks[BRIO_ABREAST],
                          const double (*points)[4], unsigned which, uint32_t *found);
-    /** Bit i of the result: tets[i], a finite tetrahedron, is certainly positive, and no vertex behind a facet that it
-     *  shares with a finite tetrahedron of higher number is in conflict with it. A bit of 0 says nothing.
+    /** Bit i of the result, i < count: tets[i], a finite tetrahedron, is certainly positive, and no vertex behind a
+     *  facet that it shares with a finite tetrahedron of higher number is in conflict with it. A bit of 0 says nothing.
+     *  count     a multiple of BRIO_BATCH, at most BRIO_SOUND_BATCH.
      *  slack[i]  for a bit of 1: this stays so while each of these points is nearer than that to where it is. */
-    unsigned (*sound)(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH],
-                      double slack[BRIO_BATCH]);
+    uint64_t (*sound)(const brio_tetrahedra *t, const brio_filter *f, const uint32_t *tets, size_t count,
+                      double *slack);
 } brio_engine;
 
 /** Returns the version for the instruction set in use. */

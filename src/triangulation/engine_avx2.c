@@ -6,9 +6,10 @@
 #include "triangulation/sound_lanes.h"
 #include "triangulation/walk_lanes.h"
 
-#define WALK    walk
-#define ABREAST walk_abreast
-#define ENGINE  brio_engine_avx2
+#define WALK      walk
+#define ABREAST   walk_abreast
+#define ENGINE    brio_engine_avx2
+#define FIND_ROWS find_rows
 #include "triangulation/engine_body.h"
 #else
 typedef int brio_no_avx2;

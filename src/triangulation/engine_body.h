@@ -1,5 +1,6 @@
 /* The inner loops around the conflict test; included by one source file an instruction set, after its
- * batch_in_conflict and batch_sound, with ENGINE, the name of its table, WALK and ABREAST. See cavity.c for the method.
+ * batch_in_conflict and lanes_sound, with ENGINE, the name of its table, WALK, ABREAST and FIND_ROWS. See cavity.c for
+ * the method.
  *
  * Lists are written always and their length is advanced by a bit, since no branch could be foreseen. */
 #include "base/memory.h"
@@ -110,14 +111,31 @@ static brio_status dig_weighted(brio_inserter *ins, uint32_t first, uint32_t p, 
     return dig_cavity(ins, first, ins->store->record[p], deferred, true);
 }
 
-static unsigned sound(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH],
-                      double slack[BRIO_BATCH]) {
-    return batch_sound(t, f, tets, slack, false);
+/* Finds the rows of all first, and calls for them, so that no arithmetic waits. */
+static inline __attribute__((always_inline)) uint64_t batch_sound(const brio_tetrahedra *t, const brio_filter *f,
+                                                                  const uint32_t *tets, size_t count, double *slack,
+                                                                  const bool weighted) {
+    star_rows near[BRIO_SOUND_BATCH / LANES];
+    uint64_t sound = 0;
+    for (size_t i = 0; i < count; i += LANES) {
+        star_rows *r = &near[i / LANES];
+        FIND_ROWS(t, tets + i, r);
+        for (int s = 0; s < 4; s++)
+            for (int k = 0; k < LANES; k++) __builtin_prefetch(r->apex[s][k]), __builtin_prefetch(r->vertex[s][k]);
+    }
+    for (size_t i = 0; i < count; i += LANES)
+        sound |= (uint64_t)lanes_sound(&near[i / LANES], f, slack + i, weighted) << i;
+    return sound;
 }
 
-static unsigned sound_weighted(const brio_tetrahedra *t, const brio_filter *f, const uint32_t tets[BRIO_BATCH],
-                               double slack[BRIO_BATCH]) {
-    return batch_sound(t, f, tets, slack, true);
+static uint64_t sound(const brio_tetrahedra *t, const brio_filter *f, const uint32_t *tets, size_t count,
+                      double *slack) {
+    return batch_sound(t, f, tets, count, slack, false);
+}
+
+static uint64_t sound_weighted(const brio_tetrahedra *t, const brio_filter *f, const uint32_t *tets, size_t count,
+                               double *slack) {
+    return batch_sound(t, f, tets, count, slack, true);
 }
 
 const brio_engine ENGINE[2] = {{test_batch, dig, WALK, ABREAST, sound},

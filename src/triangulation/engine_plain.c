@@ -4,7 +4,8 @@
 #include "triangulation/conflict_lanes.h"
 #include "triangulation/sound_lanes.h"
 
-#define WALK    brio_locate_walk
-#define ABREAST brio_locate_abreast
-#define ENGINE  brio_engine_plain
+#define WALK      brio_locate_walk
+#define ABREAST   brio_locate_abreast
+#define ENGINE    brio_engine_plain
+#define FIND_ROWS find_rows
 #include "triangulation/engine_body.h"

@@ -21,6 +21,32 @@
  * Based on: de Castro, Tournois, Alliez, Devillers. Filtering relocations on a Delaunay triangulation. CGF 2009.
  * Differs from the paper: the distance is of a tetrahedron, from the gradient of the determinant; no spheres. */
 
+/* Of LANES tetrahedra: the records of their vertices and of those behind facets. Where a vertex behind a facet is not
+ * asked for, or is infinite, that of vertex 0 stands for it. */
+typedef struct {
+    const double *vertex[4][LANES], *apex[4][LANES];
+    unsigned asked[4];
+} star_rows;
+
+/* Finds the rows of finite tetrahedra. Asked for are vertices of finite ones of higher number; behind a facet of a
+ * finite tetrahedron is an infinite one just where the vertex there is infinite. */
+static inline void find_rows(const brio_tetrahedra *t, const uint32_t tets[LANES], star_rows *r) {
+    for (int s = 0; s < 4; s++) r->asked[s] = 0;
+    for (int i = 0; i < LANES; i++) {
+        const brio_tetrahedron *tet = &t->tet[tets[i]];
+        uint32_t last = brio_facet_of(tets[i], 3), own = tet->vertex[0];
+        for (int s = 0; s < 4; s++) {
+            uint32_t mate = tet->mate[s], apex = t->tet[brio_tet_of(mate)].vertex[brio_slot_of(mate)];
+            unsigned ask = (unsigned)(mate > last) & (unsigned)(apex != t->infinite);
+            r->vertex[s][i] = t->record[tet->vertex[s]];
+            r->apex[s][i] = t->record[own ^ ((apex ^ own) & (0 - ask))]; /* without a branch */
+            r->asked[s] |= ask << i;
+        }
+    }
+}
+
+/* --- the arithmetic --- */
+
 typedef struct {
     lanes v[4]; /* x, y, z, lift, relative to vertex a */
     lanes square;
@@ -93,7 +119,7 @@ static inline void tets_set(moved_tets *m, const moved_row *b, const moved_row *
 static inline unsigned stand(moved_tets *m, const moved_row *e, const bool weighted) {
     lanes b = dot(e->v, m->b_normal), c = dot(e->v, m->c_normal), d = dot(e->v, m->d_normal);
     lanes volumes = magnitude(b) + magnitude(c) + magnitude(d) + magnitude(m->volume - b - c - d);
-    lanes rate = m->most * volumes + m->volume * (weighted ? root(square_reach(m, e)) : m->most);
+    lanes rate = weighted ? m->most * volumes + m->volume * root(square_reach(m, e)) : m->most * (volumes + m->volume);
     lane_mask none = equal(e->square, all(0));
     lanes det = choose(none, all(1e200), multiply_subtract(e->v[3], m->volume, dot(e->v, m->x)));
     lane_mask worse = greater(rate * m->below, m->above * det);
@@ -137,47 +163,24 @@ static inline lanes slacks(const moved_tets *m, lane_mask ordinary, lanes length
 }
 
 /* Returns the bits of the lanes whose tetrahedra are certainly sound, and their slacks. */
-static inline __attribute__((always_inline)) unsigned lanes_sound(const brio_tetrahedra *t, const brio_filter *f,
-                                                                  const uint32_t tets[LANES], double slack[LANES],
-                                                                  const bool weighted) {
-    const double *row[4][LANES], *apex[4][LANES];
-    unsigned asked[4] = {0, 0, 0, 0};
-    for (int i = 0; i < LANES; i++) {
-        const brio_tetrahedron *tet = &t->tet[tets[i]];
-        for (int s = 0; s < 4; s++) {
-            uint32_t mate = tet->mate[s], other = brio_tet_of(mate);
-            const uint32_t *v = t->tet[other].vertex;
-            uint32_t ask = (uint32_t)(other > tets[i]) & (uint32_t)(v[3] != t->infinite), own = tet->vertex[0];
-            row[s][i] = t->record[tet->vertex[s]];
-            apex[s][i] = t->record[own ^ ((v[brio_slot_of(mate)] ^ own) & (0 - ask))]; /* without a branch */
-            asked[s] |= ask << i;
-        }
-    }
+static inline __attribute__((always_inline)) unsigned lanes_sound(const star_rows *near, const brio_filter *f,
+                                                                  double slack[LANES], const bool weighted) {
     lanes a[4];
     moved_row b, c, d, e;
     moved_tets m;
-    load_rows(row[0], true, a);
-    row_about(row[1], a, &b, weighted);
-    row_about(row[2], a, &c, weighted);
-    row_about(row[3], a, &d, weighted);
+    load_rows(near->vertex[0], true, a);
+    row_about(near->vertex[1], a, &b, weighted);
+    row_about(near->vertex[2], a, &c, weighted);
+    row_about(near->vertex[3], a, &d, weighted);
     tets_set(&m, &b, &c, &d, weighted);
     unsigned met = 0; /* vertices that have met vertex a */
     for (int s = 0; s < 4; s++) {
-        row_about(apex[s], a, &e, weighted);
-        met |= stand(&m, &e, weighted) & asked[s];
+        row_about(near->apex[s], a, &e, weighted);
+        met |= stand(&m, &e, weighted) & near->asked[s];
     }
     lanes length = root(m.longest);
     lane_mask ordinary = both(greater(m.longest, all(1e-40)), greater(all(1e40), m.longest));
     unsigned sound = take_errors_off(&m, f, ordinary, length) & ~met;
     store_lanes(slack, slacks(&m, ordinary, length, weighted));
-    return sound;
-}
-
-static inline __attribute__((always_inline)) unsigned batch_sound(const brio_tetrahedra *t, const brio_filter *f,
-                                                                  const uint32_t tets[BRIO_BATCH],
-                                                                  double slack[BRIO_BATCH], const bool weighted) {
-    unsigned sound = 0;
-    for (int i = 0; i < BRIO_BATCH; i += LANES)
-        sound |= (lanes_sound(t, f, tets + i, slack + i, weighted) & ((1u << LANES) - 1)) << i;
-    return sound;
+    return sound & ((1u << LANES) - 1);
 }

@@ -38,8 +38,8 @@ function expect(truth, words) {
 const browser = await playwright.chromium.launch({ executablePath: chromium, args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"] });
 
 /** Opens the page, and watches what it asks for and says. */
-async function open({ width = 900, height = 600 } = {}) {
-    const context = await browser.newContext({ viewport: { width, height }, offline: true, acceptDownloads: true }), page = await context.newPage();
+async function open({ width = 900, height = 600, ...more } = {}) {
+    const context = await browser.newContext({ viewport: { width, height }, offline: true, acceptDownloads: true, ...more }), page = await context.newPage();
     page.on("console", m => expect(m.type() === "log", `console ${m.type()}: ${m.text()}`));
     page.on("pageerror", e => expect(false, e.message));
     page.on("request", r => expect(r.url() === `file://${html}` || r.url().startsWith("blob:"), `asks for ${r.url()}`));
@@ -142,6 +142,45 @@ async function surface() {
     await page.context().close();
 }
 
+/** How the surface came to be is told, where it is asked for: of each method, with polar balls that pass through their sample, and the faces
+ *  that the mesh has there; by a finger, too, dark, and at 400 pixels. */
+async function explained() {
+    if (!existsSync(at("points.ply"))) run("generate", "sphere", "-n", "400", "-o", "points.ply");
+    const page = await open({ width: 400, height: 760, hasTouch: true });
+    await drop(page, "points.ply");
+    const make = async method => {
+        await page.getByLabel("Method").selectOption(method);
+        await page.getByRole("button", { name: "Reconstruct" }).click();
+        await page.evaluate(() => window.brioDrop.ready);
+        expect(/^Surface/.test(await done(page)), `${method}: ${await done(page)} ${await wrong(page)}`);
+    };
+    await make("labeled");
+    expect(await page.locator(".explanation").count() === 0, "an explanation is there that nobody asked for");
+    await page.getByLabel("tell how it comes to be").tap();
+    for (const method of length === "short" ? ["labeled"] : ["power-crust", "cocone", "tight-cocone", "labeled"]) {
+        await make(method);
+        await page.locator(".explanation").getByLabel("show a sample").tap();
+        await page.getByRole("slider", { name: "Sample" }).fill("150");
+        await page.waitForFunction(() => window.brioPage.drawings[0].told && document.querySelectorAll(".told dt").length > 4);
+        const facts = await page.evaluate(() => {
+            const d = window.brioPage.drawings[0], t = d.told, l = d.layer, far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+            return { balls: t.poles.filter(p => Number.isFinite(p.radius)).map(p => far(p.centre, t.place) / p.radius), tetrahedra: t.tetrahedra.length,
+                taken: [...l.triangles].filter(v => far([0, 1, 2].map(k => l.meta.low[k] + l.meta.step * l.positions[3 * v + k]), t.place) < 1e-4).length };
+        });
+        const rows = await page.evaluate(() => [...document.querySelectorAll(".told dt")].map(e => [e.textContent, e.nextSibling.textContent]));
+        expect(facts.balls.length > 0 && facts.balls.every(x => Math.abs(x - 1) < 1e-9) && facts.tetrahedra > 3, `${method}: ${JSON.stringify(facts)}`);
+        if (method !== "power-crust") expect(rows.find(r => r[0] === "faces taken")?.[1] === String(facts.taken), `${method}: ${JSON.stringify(rows)}, ${facts.taken} faces`);
+    }
+    const before = await page.evaluate(() => window.brioPage.drawings[0].told.point), box = await page.locator("#canvas").boundingBox();
+    await page.touchscreen.tap(box.x + box.width / 2 + 20, box.y + box.height / 2 - 20);
+    await page.waitForFunction(was => window.brioPage.drawings[0].told.point !== was, before, { timeout: 5000 });
+    await accessible(page, "explained");
+    await page.getByRole("button", { name: "Dark" }).tap();
+    await accessible(page, "explained and dark");
+    expect(await page.evaluate(() => document.documentElement.scrollWidth) <= 400, "wider than the window");
+    await page.context().close();
+}
+
 /** Cancel ends a call; the page goes on. A broken file says what is wrong; what was there stays. */
 async function stopped() {
     run("generate", "sphere", "-n", length === "short" ? "30000" : "200000", "-o", "many.npy");
@@ -194,12 +233,13 @@ async function measured() {
     await page.getByRole("button", { name: "Reconstruct" }).click();
     await page.evaluate(() => window.brioDrop.ready);
     const all = (Date.now() - began) / 1000, last = await page.evaluate(() => window.brioDrop.last);
+    expect(last.seconds < 5, `the surface of 60,000 points took ${last.seconds} s`);
     console.log(`60,000 points: ${last.seconds.toFixed(2)} s for the surface and its certificate, ${all.toFixed(2)} s until it is shown, ${used() - before} s of processor time of the whole browser; ${await done(page)}`);
     await page.context().close();
 }
 
 try {
-    for (const [name, test] of Object.entries(length === "bench" ? { measured } : { formats, surface, stopped, narrow })) {
+    for (const [name, test] of Object.entries(length === "bench" ? { measured } : { formats, surface, explained, stopped, narrow })) {
         const began = Date.now();
         try { await test(); } catch (error) { expect(false, `${name}: ${error.stack}`); }
         if (length === "long") console.log(`${name}: ${((Date.now() - began) / 1000).toFixed(1)} s`);

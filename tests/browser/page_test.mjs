@@ -147,6 +147,88 @@ async function silhouetteAndColour() {
     await page.context().close();
 }
 
+/** The colours of the picture that at least one in a hundred of its pixels has, and how many have each; pixels in `where`, or all. */
+const colours = (page, where = "() => true") => page.evaluate(where => {
+    const app = window.brioPage, gl = app.renderer.gl, { width, height } = app.canvas, p = new Uint8Array(4 * width * height), inside = eval(where), count = new Map();
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, p);
+    const back = app.look().background.map(c => Math.round(255 * c));
+    let all = 0;
+    for (let i = 0; i < width * height; i++) {
+        if ([0, 1, 2].every(k => Math.abs(p[4 * i + k] - back[k]) < 3) || !inside(i % width, height - 1 - Math.floor(i / width))) continue;
+        const colour = [0, 1, 2].map(k => p[4 * i + k] >> 2).join();
+        count.set(colour, (count.get(colour) || 0) + 1);
+        all++;
+    }
+    return [...count].filter(([, n]) => n > 0.01 * all).map(([c, n]) => [c.split(",").map(x => 4 * x), n]);
+}, where);
+
+/** At first, after a reset, in a window of another shape, and side by side, things fill the picture, and none is cut off. */
+async function filled() {
+    ply("tall.ply", [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 5]], [[0, 2, 1], [0, 3, 2], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
+    run("view", "tall.ply", "tall.ply", "-o", "tall.html");
+    const page = await open("tall.html"), fills = async (words, parts = 1) => {
+        await settled(page);
+        const { width, height, box } = await picture(page), share = Math.max((box[2] - box[0]) / (width / parts), (box[3] - box[1]) / height);
+        expect(share > (parts > 1 ? 0.5 : 0.78) && box[0] > 1 && box[1] > 1 && box[2] < width - 2 && box[3] < height - 2, `${words}: ${box} of ${width} by ${height}`);
+    };
+    await fills("at first");
+    await page.setViewportSize({ width: 520, height: 900 });
+    await fills("in a tall window");
+    await page.focus("#canvas");
+    await press(page, "s");
+    await fills("side by side", 2);
+    await press(page, "s", "+", "+", "ArrowLeft");
+    const moved = await camera(page);
+    await page.setViewportSize({ width: 900, height: 600 });
+    await settled(page);
+    expect(JSON.stringify(await camera(page)) === JSON.stringify(moved), "a window of another size takes back where one moved to");
+    await press(page, "0");
+    await fills("after a reset");
+    await page.context().close();
+}
+
+/** Of a cloud without normals, what is behind something near it is darker; of a mesh with a crease, each side has its own shade. */
+async function shades() {
+    const rows = ["x,y,z"];
+    for (let i = 0; i < 120; i++) for (let j = 0; j < 120; j++) rows.push(`${i / 119},${j / 119},0`);
+    for (let i = 0; i < 70; i++) for (let j = 0; j < 70; j++) rows.push(`${0.3 + 0.4 * i / 69},${0.3 + 0.4 * j / 69},0.6`);
+    writeFileSync(at("steps.csv"), rows.join("\n") + "\n");
+    run("view", "steps.csv", "-o", "steps.html");
+    for (const parallel of [false, true]) {
+        const page = await open("steps.html");
+        await page.getByLabel("Colour by").selectOption("plain");
+        await page.getByRole("slider", { name: "Point size" }).fill("7");
+        await page.focus("#canvas");
+        await press(page, "5", ...(parallel ? ["o"] : []));
+        const [[x0, y1], [x1, y0]] = [await placeOf(page, [0.3, 0.3, 0.6]), await placeOf(page, [0.7, 0.7, 0.6])], box = await page.locator("#canvas").boundingBox();
+        const square = [x0 - box.x, y0 - box.y, x1 - box.x, y1 - box.y], brightest = list => Math.max(...list.map(([c]) => c[0])), out = (d, e) => `(x, y) => { const [a, b, c, d] = ${JSON.stringify(square)}, far = Math.max(a - x, x - c, b - y, y - d); return far > ${d} && far < ${e}; }`;
+        const on = brightest(await colours(page, out(-200, -8))), beside = await colours(page, out(2, 6)), away = await colours(page, out(20, 200));
+        expect(Math.abs(brightest(away) - on) < 6, `far from the step ${brightest(away)}, on it ${on}`);
+        const dark = beside.filter(([c]) => c[0] < 0.8 * on).reduce((n, [, m]) => n + m, 0), all = beside.reduce((n, [, m]) => n + m, 0);
+        expect(dark > 0.15 * all, `behind the step ${dark} of ${all} pixels are darker`);
+        await page.context().close();
+    }
+    const vertices = [], faces = [], n = 9;
+    for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) vertices.push([i, j, 0]);
+    for (let i = 1; i < n; i++) for (let j = 0; j < n; j++) vertices.push([0, j, i]);
+    const number = (side, i, j) => side && i ? n * n + (i - 1) * n + j : i * n + j;
+    for (const side of [0, 1]) for (let i = 0; i + 1 < n; i++) for (let j = 0; j + 1 < n; j++) {
+        const q = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => number(side && a ? 1 : 0, side && !a ? 0 : a, b));
+        faces.push(...(side ? [[q[0], q[2], q[1]], [q[0], q[3], q[2]]] : [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]));
+    }
+    ply("crease.ply", vertices, faces);
+    run("view", "crease.ply", "-o", "crease.html");
+    const page = await open("crease.html");
+    await page.uncheck("text=boundary");
+    await settled(page);
+    const { flat, sharp } = await page.evaluate(() => ({ flat: window.brioPage.drawings[0].state.flat, sharp: window.brioPage.drawings[0].layer.sharp }));
+    const shown = await colours(page);
+    expect(!flat && sharp > 0.03, `the crease has ${sharp} of the corners`);
+    expect(shown.length === 2, `two sides have the colours ${JSON.stringify(shown)}`);
+    await page.context().close();
+}
+
 /** Picking ten vertices gives the coordinates of the file, to the last bit, with number and properties. */
 async function picking() {
     const [vertices, faces] = bumps(14);
@@ -186,12 +268,12 @@ async function controls() {
         { vertex: "double depth", rows: i => i / 3, face: "uchar bridge", marks: i => i % 5 === 0 ? 1 : 0 });
     run("view", "flaws.ply", "bumps.ply", "--self-intersections", "-o", "flaws.html");
     const page = await open("flaws.html");
-    const colours = () => picture(page).then(p => JSON.stringify([p.count, p.mean.map(x => x.toFixed(3))]));
-    let before = await colours();
+    const seen = () => picture(page).then(p => JSON.stringify([p.count, p.mean.map(x => x.toFixed(3))]));
+    let before = await seen();
     const changes = async (words, act) => {
         await act();
         await settled(page);
-        const after = await colours();
+        const after = await seen();
         expect(after !== before, `${words} changes nothing in the picture`);
         before = after;
     };
@@ -201,7 +283,7 @@ async function controls() {
         await changes(name, () => part.getByLabel(name, { exact: true }).click());
     await part.getByLabel("faces", { exact: true }).check();
     await settled(page);
-    before = await colours();
+    before = await seen();
     for (const value of ["z", "v0", "f0", "plain"]) await changes(`colour by ${value}`, () => part.getByLabel("Colour by").selectOption(value));
     await changes("colour by depth", () => part.getByLabel("Colour by").selectOption("v0"));
     await changes("the colour map", () => part.getByLabel("Colour map").selectOption("turbo"));
@@ -703,8 +785,8 @@ async function large() {
     return mesh;
 }
 
-const SHORT = { silhouetteAndColour, picking, explained, takenOnTheHull, narrowed: () => narrow("explained.html"), injection, alphas, apart, figures };
-const LONG = { silhouetteAndColour, picking, controls, moving, tetrahedra, alphas, apart, balls, explained, takenOnTheHull, labeled: () => explained("labeled-delaunay"), figures, narrow, narrowed: () => narrow("explained.html"), injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
+const SHORT = { silhouetteAndColour, filled, shades, picking, explained, takenOnTheHull, narrowed: () => narrow("explained.html"), injection, alphas, apart, figures };
+const LONG = { silhouetteAndColour, filled, shades, picking, controls, moving, tetrahedra, alphas, apart, balls, explained, takenOnTheHull, labeled: () => explained("labeled-delaunay"), figures, narrow, narrowed: () => narrow("explained.html"), injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
     for (const [name, test] of Object.entries({ short: SHORT, long: LONG, bench: { bench } }[length])) {
         const began = Date.now();

@@ -1,13 +1,28 @@
 """The README shows the reports of the program as they are."""
 
+import json
 import pathlib
 import re
+import subprocess
 
-from brio_cli import CliTest, main
+from brio_cli import BRIO, CliTest, main
 
 README = pathlib.Path(__file__).resolve().parents[2] / "README.md"
 # What a run costs: different each time.
 COSTS = ("seconds", "memory")
+
+
+class Demonstration(CliTest):
+    def test_a_page_of_the_scan_and_its_surface(self):
+        """What `make demo` runs, which is the first command of the README."""
+        script = README.parent / "scripts" / "demo.sh"
+        said = subprocess.run(["sh", str(script), BRIO, self.folder], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True).stdout
+        self.assertRegex(said, r"open \S+/demo.html in a browser\n$")
+        page = pathlib.Path(self.path("demo.html")).read_text(encoding="utf-8")
+        layers = [json.loads(text) for text in re.findall(r'class="layer">(.*?)</script>', page)]
+        self.assertEqual([layer["name"] for layer in layers], ["scan.ply", "demo.ply"])
+        self.assertEqual((layers[1]["certificate"]["closed"], layers[1]["certificate"]["genus"]), (True, 3))
+        self.assertTrue(pathlib.Path(self.path("demo.png")).read_bytes().startswith(b"\x89PNG"))
 
 
 class Readme(CliTest):

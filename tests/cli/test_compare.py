@@ -1,5 +1,8 @@
 """brio compare: distances of two surfaces."""
 
+import json
+import re
+
 from brio_cli import CliTest, COMMON_FACTS, CUBE, main, number, OCTAHEDRON, OCTAHEDRON_FACES
 
 
@@ -27,7 +30,22 @@ class Compare(CliTest):
         b = self.off("b.off", [(x + 0.1, y, z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
         self.assertIs(self.facts("compare", a, b, "--samples", 500, "--within", 0.2)["within"], True)
         self.assertIn("more than 0.01", self.expect(5, "compare", a, b, "--samples", 500, "--within", 0.01).err)
-        self.usage("-o is for points", "compare", a, b, "-o", self.path("c.ply"))
+
+    def test_two_surfaces_are_shown_by_the_distances_of_the_first(self):
+        a = self.off("a.off", [(1.25 * x, 1.25 * y, 1.25 * z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
+        b = self.off("b.off", OCTAHEDRON, OCTAHEDRON_FACES)
+        facts = self.facts("compare", a, b, "--samples", 500, "-o", self.path("c.ply"), "--view", self.path("c.html"), "--picture",
+                           self.path("c.png"), "--picture-size", "90x60")
+        self.assertLessEqual(facts["hausdorff"], 0.25 + 1e-12)
+        ranges = self.facts("info", self.path("c.ply"))["ranges"]["distance"]
+        self.assertEqual(ranges, [0.25, 0.25])
+        with open(self.path("c.html"), encoding="utf-8") as f:
+            layer = json.loads(re.search(r'class="layer">(.*?)</script>', f.read()).group(1))
+        self.assertEqual((layer["faces"], [p["name"] for p in layer["properties"]]), (8, ["distance"]))
+        moved = self.off("d.off", [(1.1 * x, y, 0.8 * z) for x, y, z in OCTAHEDRON], OCTAHEDRON_FACES)
+        picture = self.facts("compare", moved, b, "--samples", 500, "--picture", self.path("d.png"))["picture"]
+        self.assertAlmostEqual(picture["high"], 0.1, 9)
+        self.assertLess(picture["low"], 0)
 
 
 class Cloud(CliTest):

@@ -32,6 +32,9 @@ RUNS = {
     "delaunay {p} --verify": ("0000000", None),
     "delaunay {p} --plane xy": ("0000000", None),
     "delaunay {p} -o {o}.vtu": ("0000000", None),
+    "delaunay {p} --tiles 2 --scratch {d} --view {o}.html": ("0000000", None),
+    "delaunay {p} --cell 9,9,9 --view {o}.html": ("0000000", None),
+    "voronoi {p} --tiles 2 --scratch {d} --view {o}.html": ("3333333", r"no cell ends|their cells are computed without tiles only"),
     "voronoi {p} -o {o}.csv": ("0000000", None),
     "voronoi {p} --box 0,0,0,9,9,9 -o {o}.csv": ("0000000", None),
     "locate {p} --at {p} -o {o}.csv": ("0000000", None),
@@ -84,7 +87,7 @@ class Degenerate(CliTest):
         for line, (codes, sentence) in RUNS.items():
             for (name, path), code in zip(paths.items(), codes):
                 with self.subTest("%s: %s" % (line, name)):
-                    run = self.expect(int(code), *line.format(p=path, o=self.path("out")).split())
+                    run = self.expect(int(code), *line.format(p=path, o=self.path("out"), d=self.folder).split())
                     if code != "0":
                         self.assertRegex(run.err, sentence)
 

@@ -15,7 +15,7 @@ class Info(CliTest):
                                    "estimate_bytes": {"delaunay": count, "surface": count, "medial": count,
                                                       "offset": count, "plane": count, "voronoi": count,
                                                       "hull": count, "alpha": count, "locate": count,
-                                                      "interpolate": count, "cocone": count}, "properties": dict})
+                                                      "interpolate": count, "cocone": count, "explained": count}, "properties": dict})
 
     def test_info_of_an_empty_file(self):
         facts = self.facts("info", self.file("a.xyz", ""))

@@ -43,6 +43,8 @@ class Memory(CliTest):
         surface = self.path("surface.ply")
         points = self.cloud("few.ply", 20000, "scan")
         self.assert_estimated(self.facts("info", points)["estimate_bytes"]["surface"], "surface", points, "-o", surface)
+        explained = self.facts("surface", points, "-o", surface, "--explain", "--view", self.path("v.html"))["peak_bytes"]
+        self.assertLess(explained, 1.15 * self.facts("info", points)["estimate_bytes"]["explained"])  # which adds what is not needed at once
         self.assert_estimated(self.facts("info", points)["estimate_bytes"]["medial"], "medial", points)
         self.assert_estimated(self.facts("info", points)["estimate_bytes"]["offset"], "offset", points, "-o", surface,
                               "--distance", "0.01")

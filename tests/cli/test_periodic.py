@@ -1,5 +1,7 @@
 """brio delaunay and voronoi --cell: points in space that repeats."""
 
+import json
+import os
 import random
 import re
 
@@ -115,6 +117,17 @@ class Periodic(CliTest):
             self.assertTrue({"point", "shift_a", "sheet"} <= set(self.facts("info", out)["properties"]))
         self.expect(3, "alpha", self.xyz("b.xyz", grid[:2]), "--cell", "4,4,4", "--alpha", "1", "--filtration", values, "-o", out)
         self.usage("has no cell", "alpha", points, "--periodic", "xyz", "--alpha", "1", "-o", out)
+
+    def test_what_is_shown_are_the_tetrahedra_of_the_output(self):
+        points, cell = self.xyz("atoms.xyz", [(x + 0.1 * y, y, z) for x in range(3) for y in range(3) for z in range(3)]), ("--cell", "3,3,3")
+        facts = self.facts("delaunay", points, *cell, "-o", self.path("x.vtu"), "--view", self.path("x.html"), "--picture", self.path("x.png"), "--picture-size", "60x40")
+        written = self.facts("info", self.path("x.vtu"))
+        with open(self.path("x.html"), encoding="utf-8") as f:
+            layer = json.loads(re.search(r'class="layer">(.*?)</script>', f.read()).group(1))
+        self.assertEqual((layer["tetrahedra"], layer["vertices"]), (facts["tetrahedra"], written["points"]))
+        self.assertEqual([p["name"] for p in layer["properties"]], ["point", "shift_a", "shift_b", "shift_c"])
+        self.assertEqual(self.facts("delaunay", points, *cell, "--view", self.path("y.html"))["checksum"], facts["checksum"])
+        self.assertEqual(os.path.getsize(self.path("x.png")), facts["picture"]["bytes"])
 
     def test_memory_is_estimated(self):
         points = self.xyz("a.xyz", self.points(20000))

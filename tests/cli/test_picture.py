@@ -1,8 +1,11 @@
 """--picture: the picture shows what the mesh is. PNG files are read here by other code. The oracle for triangles projects them anew,
 by what include/brio/page.h says of the projection, and finds the nearest one for each sample of a pixel."""
 
+import json
 import math
+import pathlib
 import random
+import re
 import struct
 import zlib
 
@@ -181,6 +184,18 @@ class Shows(PictureTest):
             self.assertTrue(all(math.hypot(x + 0.5 - centre, y + 0.5 - 20) < 4.5 for x, y in mine))
         self.assertAlmostEqual(facts["pixel"], 1 / 92)
 
+    def test_colours_of_16_bits_that_are_all_dark_were_bright(self):
+        """White is what the type and the whole file tell, in pictures and on pages, as it is for files that are written."""
+        look = ("--look", "0,-1,0")
+        for kind, value, seen in (("ushort", 255, 0), ("ushort", 65280, 255), ("uchar", 255, 255), ("float", 1, 255), ("float", 255, 255), ("double", 0.5, 128)):
+            cloud = self.ply("p.ply", [(0, 0, 0), (1, 0, 0)], vertex=[kind + " red", kind + " green", kind + " blue"], rows=lambda i: "%r 0 0" % value)
+            rows, _ = self.picture(cloud, *look, size="100x40")
+            brightest = max(p[0] - p[1] for row in rows for p in row)
+            self.assertLess(abs(brightest - seen), 30, (kind, value, brightest))
+            self.expect(0, "view", cloud, "-o", self.path("p.html"), "--quiet")
+            white = json.loads(re.search(r'class="layer">(.*?)</script>', pathlib.Path(self.path("p.html")).read_text(encoding="utf-8")).group(1))["white"]
+            self.assertEqual(white, {"ushort": 65535, "uchar": 255, "double": 1}.get(kind, 255 if value > 1 else 1))
+
     def test_faces_that_cross_others_are_red_where_they_are_looked_for(self):
         points = [(0, -1, 0), (2, -1, 0), (1, 1, 2), (0, 1, 0), (2, 1, 0), (1, -1, 2)]
         mesh = self.off("cross.off", points, [(0, 1, 2), (3, 4, 5)])
@@ -194,6 +209,12 @@ class Shows(PictureTest):
         rows, _ = self.picture(cells, "--look", "0,-1,0.0001", size="90x90")
         self.assertGreater(sum(p != BACKGROUND for row in rows for p in row), 4000)
         self.assertGreater(len({p for row in rows for p in row}), 40, "facets of many directions, not one side of a cube")
+
+    def test_a_complex_was_hidden_by_marks_of_faults_that_are_none(self):
+        rows, _ = self.picture(self.cloud("scan.ply", 300, "scan"), command="medial", size="180x120")
+        colours = {p for row in rows for p in row}
+        self.assertFalse(colours & {BOUNDARY, (255, 61, 166), (242, 217, 26)}, "marks")
+        self.assertFalse(any(r > b + 30 for r, g, b in colours), "another side")
 
     def test_edges_are_lines(self):
         rows, _ = self.picture(self.cloud("c.xyz", 50), command="tree", size="160x120")

@@ -1,6 +1,7 @@
 """--tiles: the same report as without, and the same cells; files for each tile, runs that are killed and resumed."""
 
 import fcntl
+import json
 import os
 import random
 import re
@@ -102,6 +103,51 @@ class Tiles(CliTest):
         self.assertIn("without tiles only", run.err)
         self.assertFalse(os.path.exists(self.path("x.csv")))
         self.assertEqual(os.listdir(folder), [])
+
+    def layer(self, name):
+        with open(self.path(name), encoding="utf-8") as f:
+            return json.loads(re.search(r'class="layer">(.*?)</script>', f.read()).group(1))
+
+    def test_what_is_shown_is_what_is_shown_without_tiles(self):
+        cloud, how = self.rows("a.csv", 2000), ("--tiles", "5", "--scratch", self.scratch())
+        for command, more in (("delaunay", ()), ("delaunay", ("--weights-mod", "-9")), ("voronoi", ("--box", "-1,-1,-1,1,1.5,2"))):
+            facts = self.facts(command, cloud, *more, *how, "--view", self.path("tiled.html"), "--picture", self.path("p.png"), "--picture-size", "90x60")
+            plain = self.facts(command, cloud, *more, "--view", self.path("whole.html"))
+            tiled, whole = self.layer("tiled.html"), self.layer("whole.html")
+            for key in ("all_vertices" if command == "voronoi" else "hull", "tetrahedra", "faces"):
+                self.assertEqual(tiled[key], whole[key], (command, key))
+            self.assertEqual(tiled["name"], "a.csv")
+            self.assertEqual(os.path.getsize(self.path("p.png")), facts["picture"]["bytes"])
+            left_out, plainly = ([w for w in f.get("warnings", []) if w.startswith("--view")] for f in (facts, plain))
+            self.assertEqual((left_out, len(left_out)), (plainly, command == "voronoi"))
+            if command == "delaunay":
+                self.assertEqual((tiled["tetrahedra"], tiled["hull"]), (facts["tetrahedra"], facts["hull_facets"]))
+                self.assertEqual([p["name"] for p in tiled["properties"]], ["point", "weight"] if more else ["point"])
+            else:
+                for key in ("components", "closed", "manifold"):
+                    self.assertEqual(tiled["certificate"][key], whole["certificate"][key], key)
+                self.assertAlmostEqual(tiled["certificate"]["volume"], whole["certificate"]["volume"], delta=1e-9)
+        both = self.facts("voronoi", cloud, *how, "-o", self.path("c.csv"), "--view", self.path("v.html"))
+        self.facts("voronoi", cloud, "-o", self.path("d.csv"))
+        self.assertEqual(self.bytes_of("c.csv"), self.bytes_of("d.csv"))
+        self.facts("voronoi", cloud, "--view", self.path("w.html"))
+        tiled, whole = (self.layer(name)["certificate"] for name in ("v.html", "w.html"))
+        self.assertEqual(tiled["components"], whole["components"])
+        self.assertLess(tiled["components"], both["bounded"])
+        self.assertAlmostEqual(tiled["volume"], whole["volume"], delta=1e-9)
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_of_many_tetrahedra_and_cells_an_even_choice_is_shown(self):
+        how = ("--tiles", "3", "--scratch", self.scratch())
+        run = self.expect(0, "delaunay", self.cloud("many.npy", 32000), *how, "--view", self.path("t.html"), "--json")
+        all_of_them, layer = json.loads(run.out)["tetrahedra"], self.layer("t.html")
+        self.assertIn("--view: shows an even choice of 200000 of %d tetrahedra" % all_of_them, run.err)
+        self.assertGreater(all_of_them, layer["tetrahedra"])
+        self.assertEqual(layer["tetrahedra"], 200000)
+        run = self.expect(0, "voronoi", self.cloud("sites.npy", 8500), *how, "--box", "0,0,0,1,1,1", "--view", self.path("c.html"))
+        self.assertIn("500 of 8500 cells are not shown", run.err)
+        self.assertEqual(self.layer("c.html")["certificate"]["components"], 8000)
+        self.assertLess(abs(self.layer("c.html")["certificate"]["volume"] - 8000 / 8500), 0.01)
 
     def test_standard_input(self):
         with open(self.rows("a.csv", 500), "rb") as f:

@@ -398,16 +398,37 @@ class Command(ViewTest):
         self.usage("no output: -o FILE is missing", "view", p)
         self.usage("p.ply: a page is .html or .htm", "view", p, "-o", self.path("p.ply"))
         self.usage("--view and the input name the same file|a page is .html", "hull", p, "--view", p)
-        self.usage("--view has no meaning for check", "check", p, "--view", self.path("v.html"))
+        self.usage("--view has no meaning for info", "info", p, "--view", self.path("v.html"))
         self.usage("--view has no meaning for convert", "convert", p, self.path("q.ply"), "--view", self.path("v.html"))
-        for given in (["--tiles", 2, "--scratch", self.folder], ["--cell", "2,2,2"]):  # before the work
-            self.usage("--view: not with " + given[0], "delaunay", self.path("missing.xyz"), *given, "--view", self.path("v.html"))
         self.usage("name the same file", "hull", p, "-o", self.path("v.html"), "--view", self.path("v.html"), "--format", "ply")
         self.usage("--ascii has no meaning here", "view", p, "-o", self.path("page.html"), "--ascii")
         self.usage("too many: '13'", "view", *range(1, 14), "-o", self.path("page.html"))
         self.expect(6, "view", p, "-o", self.path("nowhere/page.html"))
         self.expect(2, "view", p, self.path("missing.ply"), "-o", self.path("page.html"))
         self.assertFalse(os.path.exists(self.path("page.html")))
+
+    def test_faces_that_cross_others_were_counted_and_not_shown(self):
+        points = [(0, -1, 0), (2, -1, 0), (1, 1, 2), (0, 1, 0), (2, 1, 0), (1, -1, 2)]
+        mesh = self.off("cross.off", points, [(0, 1, 2), (3, 4, 5)])
+        for more, count in ((), -1), (("--self-intersections",), 1):
+            self.expect(5, "check", mesh, *more, "--view", self.path("flaws.html"), "--picture", self.path("flaws.png"), "--quiet")
+            page = self.read("flaws.html")
+            self.assertEqual(page.layers[0]["certificate"]["self_intersections"], count)
+            self.assertEqual((0, "crossing") in page.blocks, count > 0)
+            self.assertTrue(os.path.exists(self.path("flaws.png")))
+
+    def test_tetrahedra_that_fail_were_not_shown(self):
+        mesh = self.path("t.vtu")
+        self.expect(0, "delaunay", self.cloud("c.xyz", 50), "-o", mesh, "--quiet")
+        for more, code in ((), 0), (("--weights-mod", "3"), 5):
+            page = self.path("t%d.html" % code)
+            self.expect(code, "check", mesh, *more, "--view", page, "--quiet")
+            self.assertGreater(self.read("t%d.html" % code).layers[0]["tetrahedra"], 0)
+        if os.path.exists("/dev/full"):
+            os.symlink("/dev/full", self.path("full.html"))
+            run = self.expect(6, "check", mesh, "--weights-mod", "3", "--view", self.path("full.html"))
+            self.assertIn("full.html: ", run.err, "why there is no page was not said")
+            self.assertNotIn("inside the sphere", run.err)
 
     def test_names_are_not_taken_for_html(self):
         evil = "a<img src=x onerror=alert(1)>.xyz"

@@ -153,7 +153,22 @@ class Voronoi(CliTest):
             self.assertGreater(os.path.getsize(self.path("p.png")), 1000)
         run = self.expect(3, "voronoi", self.xyz("b.xyz", CUBE), "--view", self.path("q.html"))
         self.assertIn("nothing to show", run.err)
-        self.expect(1, "voronoi", points, "--tiles", "2", "--scratch", self.path("."), "--view", self.path("q.html"), "-o", self.path("c.csv"))
+
+    def test_cells_of_open_sets_were_shown_as_long_needles(self):
+        """Those that reach beyond the points' box by more than a quarter of its longest side are not shown, and it is said."""
+        points = self.cloud("a.ply", 500, "ball")
+        facts = self.facts("voronoi", points, "--view", self.path("p.html"))
+        with open(self.path("p.html"), encoding="utf-8") as f:
+            layer = json.loads(re.search(r'class="layer">(.*?)</script>', f.read()).group(1))
+        shown = layer["certificate"]["components"]
+        self.assertTrue(0 < shown < facts["bounded"])
+        self.assertIn("--view: %d of 500 cells are not shown" % (500 - shown), facts["warnings"][0])
+        box = self.facts("info", points)["box"]
+        low, high = box["min"], box["max"]
+        far = max(h - l for l, h in zip(low, high)) / 4
+        for k in range(3):
+            self.assertGreaterEqual(layer["low"][k], low[k] - far)
+        self.assertLessEqual(layer["certificate"]["volume"], math.prod(h - l + 2 * far for l, h in zip(low, high)))
 
     def test_faces(self):
         points, out = self.xyz("a.xyz", LATTICE), self.path("faces.csv")

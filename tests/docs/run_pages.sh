@@ -19,6 +19,8 @@ export PKG_CONFIG_PATH PYTHONPATH="$build/python" PATH="$folder/bin:$folder/pref
 for page; do
     case $page in
     docs/start/c.md) command -v pkg-config >/dev/null || { echo "skipped: $page: there is no pkg-config"; continue; } ;;
+    README.md) command -v pkg-config >/dev/null && python3 -c 'import brio' 2>/dev/null ||
+        { echo "skipped: $page: there is no pkg-config, or no Python package"; continue; } ;;
     docs/start/python.md) python3 -c 'import brio' 2>/dev/null || { echo "skipped: $page: there is no Python package"; continue; } ;;
     esac
     /usr/bin/python3 "$source/scripts/run_page.py" "$folder/pages" "$source/$page"

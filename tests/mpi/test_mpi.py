@@ -36,8 +36,8 @@ class Mpi(unittest.TestCase):
     def tearDown(self):
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def mpi(self, ranks, *arguments, launch=(), check=True):
-        line = [*MPIRUN, *launch, "-n", str(ranks), MPI, "delaunay", *map(str, arguments), "--scratch", str(self.scratch),
+    def mpi(self, ranks, *arguments, launch=(), check=True, command="delaunay"):
+        line = [*MPIRUN, *launch, "-n", str(ranks), MPI, command, *map(str, arguments), "--scratch", str(self.scratch),
                 "--json"]
         result = subprocess.run(line, capture_output=True, text=True, timeout=300, check=False)
         if check:
@@ -46,8 +46,8 @@ class Mpi(unittest.TestCase):
             return facts_of(result)
         return result
 
-    def one(self, *arguments):
-        line = [BRIO, "delaunay", *map(str, arguments), "--json"]
+    def one(self, *arguments, command="delaunay"):
+        line = [BRIO, command, *map(str, arguments), "--json"]
         return json.loads(subprocess.run(line, capture_output=True, text=True, check=True).stdout)
 
     def same(self, ranks, *arguments, tiles=2, launch=()):
@@ -87,6 +87,30 @@ class Mpi(unittest.TestCase):
         self.same(5, self.rows("ties.xyz", ties), tiles=1)
         self.same(2, self.rows("same.xyz", [[1, 2, 3]] * 500))
         self.same(3, self.rows("plane.xyz", [[x, y, 4] for x in range(20) for y in range(20)]))
+
+    def test_cells_of_ranks_are_counted_and_summed(self):
+        counts = "weighted points duplicates hidden dimension cells bounded faces box_volume".split()
+        sets = [(self.generate("cube", 8000), "--box=0,0,0,1,1,1"), (self.generate("clusters", 4000, "b.ply"),),
+                (self.generate("grid", 2000, "c.ply"), "--box=-1,-1,-1,20,20,20", "--weights-mod=-12")]
+        for arguments in sets:
+            plain = self.one(*arguments, command="voronoi")
+            sums = set()
+            for ranks, tiles in ((1, 1), (1, 4), (2, 3), (3, 2), (5, 1), (8, 2)):
+                many = self.mpi(ranks, *arguments, "--tiles-per-rank", tiles, command="voronoi")
+                self.assertEqual({k: plain.get(k) for k in counts}, {k: many.get(k) for k in counts}, (ranks, arguments))
+                self.assertEqual(many["ranks"]["count"], ranks)
+                sums.add(many["volume"])
+            self.assertEqual(len(sums), 1, "the sum is exact")
+            self.assertAlmostEqual(sums.pop() / plain["volume"], 1, delta=1e-14)
+
+    def test_wrong_calls_for_cells(self):
+        path = self.generate("cube", 300)
+        plane = self.rows("plane.xyz", [[x, y, 4] for x in range(9) for y in range(9)])
+        for code, text, *arguments in ((1, "not x0,y0,z0", path, "--box=1"), (1, "not written", path, "-o", "x.npy"),
+                                       (3, "in a plane", plane)):
+            result = self.mpi(2, *arguments, check=False, command="voronoi")
+            self.assertIn(text, result.stderr)
+            self.assertEqual(facts_of(result)["exit"], code, result.stderr)
 
     def test_scans_and_lidar(self):
         files = [SHARED / "data" / name for name in ("lidar/csite4.ply", "scan/bunny_raw.ply")]

@@ -2,13 +2,13 @@
  *
  * operations COUNT [SEED]: inserts, removes, moves and reweights points, one in most calls, some hundred in some of them, by one
  * to four threads. Points are uniform, on a grid, cospherical, clustered, on a scan's lines, or all of these, with weights and
- * without; a triangulation gets 10,000 calls, then another one begins. After every 1,000th call the snapshot is compared with what
+ * without; a triangulation gets 10,000 calls, or a 32nd of them, then another one begins. After every 1,000th call the snapshot is compared with what
  * brio_delaunay makes of the points that are left, byte by byte, and checked exactly. Prints a line for each kind of points; fails
  * if there was a difference. A quarter of the operations are in space that repeats, in one to three directions of three cells, where
  * the checksum is compared with that of a fresh build of the positions on the grid. */
 #include "../unit/wrapped_world.h"
 
-enum { EACH = 10000, EVERY = 1000 };
+enum { EACH = 10000, TURNS = 32, EVERY = 1000 };
 
 static void change_some(world *w, size_t usual) {
     static const double STEP[] = {1e-9, 1e-3, 0.125, 1};
@@ -64,17 +64,18 @@ int main(int argc, char **argv) {
     static const shape WRAPPED[] = {UNIFORM, GRID, CLUSTERS};
     size_t calls[NUM_SHAPES][2] = {{0}}, compared[NUM_SHAPES][2] = {{0}}, differ[NUM_SHAPES][2] = {{0}};
     size_t wrapped_calls = 0, wrapped_compared = 0, wrapped_differ = 0;
+    size_t each = count / TURNS < EACH ? count / TURNS + 1 : EACH;
     state = argc > 2 ? (uint64_t)atoll(argv[2]) : 1;
     for (size_t turn = 0; all < count; turn++) {
         if (turn % 4 == 3) {
-            size_t left = count - all, n = left < EACH ? left : EACH;
+            size_t left = count - all, n = left < each ? left : each;
             wrapped_differ += run_wrapped(WRAPPED[turn / 4 % 3], (int)(turn / 12 % 2), n, &wrapped_compared);
             wrapped_calls += n;
             all += n;
             continue;
         }
         size_t s = (turn - turn / 4) / 2 % NUM_SHAPES, weighted = (turn - turn / 4) % 2, left = count - all,
-               n = left < EACH ? left : EACH;
+               n = left < each ? left : each;
         differ[s][weighted] += run((shape)s, (int)weighted, n, &compared[s][weighted]);
         calls[s][weighted] += n;
         all += n;

@@ -381,6 +381,47 @@ static void the_order_of_answers_has_no_trace(void) {
     }
 }
 
+/* Writes which points of the set are the vertices of a ball, in ascending order. */
+static void name_vertices(const brio_ball *b, uint32_t name[4]) {
+    for (uint32_t k = 0; k < 4; k++) {
+        uint32_t v = b->infinite && k == 3 ? BRIO_INFINITE : 0, at = k;
+        while (v < set.count && memcmp(b->vertex[k], set.point[v].record, sizeof b->vertex[k]) != 0) v++;
+        for (; at > 0 && name[at - 1] > v; at--) name[at] = name[at - 1];
+        name[at] = v;
+    }
+}
+
+/* What is asked of other machines, and in which order, must not depend on the threads that made the tetrahedra. Results do not:
+ * without the order of questions all other tests pass. */
+static void questions_come_in_the_order_of_their_vertices(void) {
+    enum { COUNT = 200 };
+    brio_rng rng = brio_rng_new(21);
+    for (int weighted = 0; weighted < 2; weighted++) {
+        brio_context *ctx = new_context();
+        brio_completion *c = NULL;
+        brio_ball ball;
+        size_t questions = 0, wrong = 0;
+        uint32_t before[4] = {0}, name[4] = {0};
+        set_up(&rng, COUNT, 0, weighted != 0);
+        brio_completion_task task = {set.point, COUNT, COUNT,   weighted != 0, set.box, NULL,
+                                     NULL,      NULL,  collect, &ours,         false,   false};
+        EXPECT(brio_completion_new(ctx, &task, &c) == BRIO_OK);
+        EXPECT(brio_completion_begin(c, &questions) == BRIO_OK && questions > COUNT);
+        for (size_t q = 0; q < questions; q++) {
+            brio_completion_balls(c, q, 1, &ball);
+            name_vertices(&ball, name);
+            int k = 0;
+            while (k < 3 && name[k] == before[k]) k++;
+            wrong += q > 0 && name[k] <= before[k];
+            memcpy(before, name, sizeof before);
+        }
+        EXPECT(wrong == 0, "%zu of %zu questions, weighted %d", wrong, questions, weighted);
+        brio_completion_delete(c);
+        EXPECT(brio_context_memory(ctx) == 0);
+        brio_context_free(ctx);
+    }
+}
+
 static brio_status failing(void *user, brio_ball *balls, size_t count, brio_found *found) {
     (void)balls, (void)count;
     return brio_fail(found->ctx, BRIO_ERR_OPEN, "%s", (const char *)user);
@@ -401,6 +442,7 @@ static void an_error_of_the_source_ends_it(void) {
 SUITE(test_completion) {
     RUN(stars_are_those_of_the_whole);
     RUN(the_order_of_answers_has_no_trace);
+    RUN(questions_come_in_the_order_of_their_vertices);
     RUN(an_error_of_the_source_ends_it);
     return harness_end();
 }

@@ -173,7 +173,7 @@ static void hold_slacks(const brio_engine *engine, bool weighted, bool wide) {
         brio_filter_for(&filter, (const brio_record *)record, INFINITE_ROW, weighted);
         if (wide) brio_filter_set(&filter, (double[3]){1e6, 1e6, 1e6}, 1, weighted);
         for (uint32_t i = 0; i < BRIO_BATCH; i++) which[i] = i;
-        unsigned bits = engine->sound(&t, &filter, which, slack);
+        uint64_t bits = engine->sound(&t, &filter, which, BRIO_BATCH, slack);
         for (uint32_t i = 0; i < BRIO_BATCH; i++) {
             if (!(bits >> i & 1) || !(slack[i] > 0)) continue;
             sound++;
@@ -214,13 +214,60 @@ static void a_lift_that_is_no_number_is_not_sound(void) {
                 far[0] = 1.4e154, far[1] = far[2] = 0, far[3] = 1.7e308;
             }
             brio_filter_for(&filter, (const brio_record *)record, INFINITE_ROW, true);
-            EXPECT(brio_engine_choose(true)->sound(&t, &filter, which, slack) == 0, "facet %u", facet);
+            EXPECT(brio_engine_choose(true)->sound(&t, &filter, which, BRIO_BATCH, slack) == 0, "facet %u", facet);
         }
+}
+
+/* Tests a full batch of the stars from number `first` on. Returns the bits of the first BRIO_BATCH of them; all others are the same
+ * again. */
+static uint64_t test_full_batch(const brio_engine *engine, const brio_tetrahedra *t, uint32_t first) {
+    uint32_t which[BRIO_SOUND_BATCH];
+    double slack[BRIO_SOUND_BATCH];
+    brio_filter filter;
+    brio_filter_for(&filter, t->record, INFINITE_ROW, false);
+    for (uint32_t i = 0; i < BRIO_SOUND_BATCH; i++) which[i] = first + i % BRIO_BATCH;
+    uint64_t bits = engine->sound(t, &filter, which, BRIO_SOUND_BATCH, slack), some = bits & ((1u << BRIO_BATCH) - 1);
+    for (int i = 0; i < BRIO_SOUND_BATCH; i += BRIO_BATCH)
+        EXPECT((bits >> i & ((1u << BRIO_BATCH) - 1)) == some, "batch at %d", i);
+    return some;
+}
+
+/* Every vertex behind a facet is in conflict: that counts where the tetrahedron behind is finite and has a higher number. */
+static void neighbours_of_higher_number_are_asked(void) {
+    enum { ALL = (1 << BRIO_BATCH) - 1, BEHIND = 4 * BRIO_BATCH };
+    static brio_record record[SOUND_ROWS];
+    static brio_tetrahedron tets[5 * BRIO_BATCH], lower[5 * BRIO_BATCH];
+    brio_tetrahedra t = {.tet = tets, .count = 5 * BRIO_BATCH, .infinite = INFINITE_ROW, .record = record}, u = t;
+    brio_rng rng = brio_rng_new(3);
+    draw_stars(&rng, false, record, tets);
+    for (uint32_t i = 0; i < BRIO_BATCH; i++)
+        for (uint32_t k = 0; k < 4; k++)
+            for (int c = 0; c < 3; c++) {
+                const brio_record *r = (const brio_record *)record + 8 * i;
+                record[8 * i + 4 + k][c] = r[0][c] / 4 + r[1][c] / 4 + r[2][c] / 4 + r[3][c] / 4;
+            }
+    u.tet = lower;
+    memcpy(lower, tets + BRIO_BATCH, BEHIND * sizeof *lower);
+    memcpy(lower + BEHIND, tets, BRIO_BATCH * sizeof *lower);
+    for (uint32_t i = 0; i < BRIO_BATCH; i++)
+        for (uint32_t k = 0; k < 4; k++) lower[BEHIND + i].mate[k] = brio_facet_of(4 * i + k, 0);
+    for (int set = 0; set < BRIO_INSTRUCTION_SETS; set++) {
+        if (!use_set(set)) continue;
+        const brio_engine *engine = brio_engine_choose(false);
+        EXPECT(test_full_batch(engine, &t, 0) == 0);
+        EXPECT(test_full_batch(engine, &u, BEHIND) == ALL);
+    }
+    for (uint32_t i = 0; i < BEHIND; i++) tets[BRIO_BATCH + i].vertex[3] = INFINITE_ROW;
+    for (uint32_t i = 0; i < BRIO_BATCH; i++)
+        for (int k = 0; k < 4; k++) tets[i].mate[k] |= 3;
+    for (int set = 0; set < BRIO_INSTRUCTION_SETS; set++)
+        if (use_set(set)) EXPECT(test_full_batch(brio_engine_choose(false), &t, 0) == ALL);
 }
 
 SUITE(test_engine) {
     RUN(exactly_cospherical_points_are_ties_in_lanes_too);
     RUN(no_move_within_the_slack_breaks_a_star);
+    RUN(neighbours_of_higher_number_are_asked);
     RUN(a_lift_that_is_no_number_is_not_sound);
     return harness_end();
 }

@@ -49,6 +49,29 @@ static void triangulations_take_what_was_estimated(void) {
     }
 }
 
+static void triangulations_that_repeat_take_what_was_estimated(void) {
+    static const double CUBE[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    uniform_points(1, N, points);
+    integer_weights(7, N, 5, weights);
+    for (size_t i = 0; i < N; i++) weights[i] *= 1e-6;
+    for (int way = 0; way < 4; way++) {
+        const brio_periodic_options o = {.size = sizeof o, .cell = CUBE};
+        const double *w = way % 2 ? weights : NULL;
+        brio_context *ctx = new_context(), *own = new_context();
+        brio_periodic *t = NULL;
+        uint64_t bytes;
+        brio_context_set_threads(ctx, 1 + way / 2);
+        brio_context_set_threads(own, 1 + way / 2);
+        EXPECT(brio_estimate_periodic(ctx, points, w, N, &o, &bytes) == BRIO_OK && brio_context_memory(ctx) == 0);
+        EXPECT(brio_delaunay_periodic(own, points, w, N, &o, &t) == BRIO_OK, "%s", brio_message(own));
+        double ratio = (double)bytes / (double)brio_context_memory_peak(own);
+        EXPECT(ratio > (way < 2 ? 0.8 : 0.6) && ratio < 1.3, "way %d: %g", way, ratio);
+        brio_periodic_free(t);
+        brio_context_free(own);
+        brio_context_free(ctx);
+    }
+}
+
 static int count_balls(const char *stage, double fraction, void *user) {
     (void)fraction;
     *(size_t *)user += !strcmp(stage, "estimate");
@@ -305,6 +328,7 @@ static void estimates_can_be_cancelled(void) {
 
 SUITE(test_estimate) {
     RUN(triangulations_take_what_was_estimated);
+    RUN(triangulations_that_repeat_take_what_was_estimated);
     RUN(points_on_a_line_take_few_balls);
     RUN(tetrahedra_on_curves_are_estimated);
     RUN(estimates_are_the_same_at_every_scale);

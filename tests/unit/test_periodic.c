@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-enum { MOST = 64, COPIES = 4, ALL = 1, SOME = 0 };
+enum { MOST = 200, COPIES = 4, ALL = 1, SOME = 0 };
 
 static brio_context *ctx;
 
@@ -223,6 +223,44 @@ static void any_cell_fills_its_volume(void) {
                 brio_cells_free(cells);
                 brio_periodic_free(t);
             }
+}
+
+/* Cells that meet may all be shown at other translates: a table that had room for twice the vertices was full. Corners
+ * are as far from their site as from the neighbour behind the face. */
+static void cells_of_skewed_domains_that_meet_move_apart(void) {
+    brio_rng rng = brio_rng_new(11);
+    brio_cells_options o = {.size = sizeof o, .vertices = 1};
+    for (int rank = 1; rank <= 3; rank++)
+        for (int i = 0; i < NUM_CELLS; i++) {
+            crystal c = random_crystal(&rng, CELLS[i], MOST, 1 << 20, false);
+            for (int k = 0; k < 3; k++) c.periodic[k] = k < rank;
+            brio_periodic *t = build(&c);
+            brio_cells *cells = NULL;
+            if (!t) continue;
+            EXPECT(brio_periodic_cells(ctx, t, &o, &cells) == BRIO_OK, "cell %d, rank %d: %s", i, rank,
+                   brio_message(ctx));
+            double worst = 0;
+            for (size_t n = 0; cells && n < cells->num_cells; n++)
+                for (uint64_t f = cells->face_offsets[n]; f < cells->face_offsets[n + 1]; f++)
+                    for (uint64_t at = cells->corner_offsets[f]; at < cells->corner_offsets[f + 1]; at++) {
+                        const double *site = c.points + 3 * (size_t)cells->site[n], *corner;
+                        double own = 0, other = 0;
+                        if (cells->face_neighbours[f] < 0) continue;
+                        EXPECT(cells->face_vertices[at] < cells->num_vertices);
+                        corner = cells->vertices + 3 * (size_t)cells->face_vertices[at];
+                        for (int k = 0; k < 3; k++) {
+                            double beyond = c.points[3 * (size_t)cells->face_neighbours[f] + (size_t)k];
+                            for (int j = 0; j < 3; j++)
+                                beyond += cells->face_shifts[3 * f + (size_t)j] * c.cell[3 * j + k];
+                            own += (corner[k] - site[k]) * (corner[k] - site[k]);
+                            other += (corner[k] - beyond) * (corner[k] - beyond);
+                        }
+                        worst = fmax(worst, fabs(own - other) / fmax(own, other));
+                    }
+            EXPECT(worst < 1e-6, "cell %d, rank %d: %g", i, rank, worst);
+            brio_cells_free(cells);
+            brio_periodic_free(t);
+        }
 }
 
 /* Volumes and neighbours alone, from a sweep, against cells with everything: also where points are hidden, tie, or have
@@ -642,6 +680,7 @@ SUITE(test_periodic) {
     RUN(faces_of_lattices_are_right);
     RUN(is_the_triangulation_of_many_copies);
     RUN(any_cell_fills_its_volume);
+    RUN(cells_of_skewed_domains_that_meet_move_apart);
     RUN(fractions_of_the_cell_stay_exact);
     RUN(origins_and_representatives_do_not_matter);
     RUN(checksum_tells_triangulations_apart);

@@ -393,6 +393,32 @@ static void memory_that_runs_out(void) {
     expect_clean_failures(run_shapes);
 }
 
+/* Cells from whole stars, and cells by a sweep, which leaves those on a grid to whole stars. */
+static brio_status run_cells(brio_context *own) {
+    enum { N = 60 };
+    static double points[3 * N];
+    brio_rng rng = brio_rng_new(32);
+    for (size_t i = 0; i < 3 * N; i++) points[i] = brio_rng_double(&rng);
+    for (size_t i = 0; i < N; i++) points[i] = floor(4 * points[i]) / 4;
+    brio_periodic_options o = {.size = sizeof o, .cell = CUBE};
+    brio_periodic *t = NULL;
+    brio_status status = brio_delaunay_periodic(own, points, NULL, N, &o, &t);
+    for (int whole = 0; whole < 2 && status == BRIO_OK; whole++) {
+        brio_cells_options co = {
+            .size = sizeof co, .vertices = whole, .no_face_sizes = !whole, .no_areas = !whole, .no_centroids = !whole};
+        brio_cells *cells = NULL;
+        status = brio_periodic_cells(own, t, &co, &cells);
+        brio_cells_free(cells);
+    }
+    brio_periodic_free(t);
+    return status;
+}
+
+/* Where memory ran out while tetrahedra were unfolded, those that were there were lost. */
+static void memory_that_runs_out_in_cells(void) {
+    expect_clean_failures(run_cells);
+}
+
 /* --- locations --- */
 
 static double power(const sample *s, size_t p, const int32_t *shift, const double *q) {
@@ -516,6 +542,7 @@ SUITE(test_periodic_queries) {
     RUN(shapes_in_a_wide_cell_are_the_usual_ones);
     RUN(simplices_have_names_by_points_where_they_differ);
     RUN(memory_that_runs_out);
+    RUN(memory_that_runs_out_in_cells);
     RUN(places_are_in_their_tetrahedra);
     RUN(queries_leave_the_context_of_the_triangulation_alone);
     brio_context_free(ctx);

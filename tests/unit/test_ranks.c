@@ -1,6 +1,7 @@
 /* Triangulations by many ranks, which are threads here: the same checksum and counts as by one process, whatever the
  * number of ranks and tiles and the order of messages. A failure of one rank is that of all. */
 #include "base/memory.h"
+#include "base/sort.h"
 #include "brio/ranks.h"
 #include "harness.h"
 #include "platform/thread.h"
@@ -85,8 +86,9 @@ static int post_end(void *user, brio_letter *received) {
 
 typedef struct {
     size_t n;
-    bool weighted, parts;
+    bool weighted, parts, cells;
     int ranks, fails; /* fails: the rank that does, or -1 */
+    int refuses;      /* 1 + the rank that ends the cells, or 0 */
     uint32_t tiles;
     uint64_t seed, key;
     brio_status expected_failure;
@@ -100,6 +102,8 @@ typedef struct {
     brio_tiles_stats facts;
     brio_ranks_traffic traffic;
     uint64_t checksum, parts; /* parts: a sum over the indices of the vertices of all tetrahedra */
+    uint64_t cells;           /* a sum over the sites and volumes of all cells */
+    brio_tiles_cells_stats sums;
     bool had_points;
     char sentence[512];
 } member;
@@ -118,6 +122,24 @@ static uint64_t hash_of_part(const brio_tile_part *p, bool weighted) {
     }
     return sum;
 }
+
+static uint64_t hash_of_cell(uint64_t site, const brio_cells *cells, size_t c) {
+    uint64_t faces = cells->face_offsets[c + 1] - cells->face_offsets[c];
+    return brio_mix(site ^ brio_mix(brio_double_key(cells->volume[c]) ^ brio_mix(faces)));
+}
+
+static int hash_cells(const brio_cells *cells, const uint64_t *site, void *user) {
+    uint64_t *sum = user;
+    for (size_t c = 0; c < cells->num_cells; c++) *sum += hash_of_cell(site[c], cells, c);
+    return 0;
+}
+
+static int refuse_cells(const brio_cells *cells, const uint64_t *site, void *user) {
+    (void)cells, (void)site, (void)user;
+    return 1;
+}
+
+static const double BOX[6] = {-0.5, -0.5, -0.5, 7, 7, 7};
 
 /* Blocks of 101 points go to the ranks in turn. */
 static brio_status add_share(brio_context *ctx, brio_ranks *r, const member *m) {
@@ -152,6 +174,12 @@ static brio_status run_member(brio_context *ctx, member *m, brio_ranks *r) {
         m->parts += hash_of_part(&part, p->weighted);
         brio_tile_part_free(ctx, &part);
     }
+    if (p->cells) {
+        brio_cells_options o = {.size = sizeof o, .box = BOX};
+        brio_tile_cells_fn take = p->refuses == m->man.rank + 1 ? refuse_cells : hash_cells;
+        BRIO_TRY(brio_ranks_cells(ctx, r, &o, take, &m->cells));
+        m->sums = *brio_ranks_cells_facts(r);
+    }
     m->facts = *brio_ranks_facts(r);
     m->traffic = *brio_ranks_sent(r);
 done:
@@ -169,7 +197,8 @@ static void work(void *argument) {
                         .user = &m->man,
                         .begin = post_begin,
                         .end = post_end};
-    brio_ranks_options o = {.size = sizeof o, .scratch = folder, .tiles = m->plan->tiles, .key = m->plan->key};
+    brio_ranks_options o = {
+        .size = sizeof o, .scratch = folder, .tiles = m->plan->tiles, .key = m->plan->key, .stars = m->plan->cells};
     brio_context_set_threads(ctx, 1);
     m->status = brio_ranks_new(ctx, &t, &o, &r);
     if (m->status == BRIO_OK) m->status = run_member(ctx, m, r);
@@ -198,6 +227,8 @@ static member run_ranks(const plan *p) {
                "rank 0: %s; rank %d: %s", members[0].sentence, i, members[i].sentence);
         EXPECT(members[i].checksum == members[0].checksum);
         members[0].parts += members[i].parts;
+        members[0].cells += members[i].cells;
+        EXPECT(!memcmp(&members[i].sums, &members[0].sums, sizeof members[0].sums));
     }
     brio_condition_free(&office.changed);
     brio_mutex_free(&office.lock);
@@ -291,6 +322,57 @@ static void ranks_give_what_one_process_gives(void) {
     }
 }
 
+/* Cells are those of one process. The sum of their volumes is exact, so it is the same for every number of ranks and
+ * tiles. */
+static void cells_are_those_of_one_process(void) {
+    static const int RANKS[] = {1, 2, 3, 5, 8};
+    for (int i = 0; i < (BRIEF_TESTS ? 6 : SHORT_TESTS ? 12 : 60); i++) {
+        size_t n = make_points(300 + (uint64_t)i, SHORT_TESTS ? 500 : 3000, i % 6, i / 6 % 2);
+        const double *w = i / 6 % 2 ? weights : NULL;
+        if (i % 6 == 2 && n > 400) n = 400;
+        brio_context *ctx = new_context();
+        brio_delaunay_options plain = {.size = sizeof plain, .leave_hidden = 1};
+        brio_cells_options o = {.size = sizeof o, .box = BOX};
+        brio_triangulation *t;
+        brio_cells *cells;
+        uint64_t sum = 0, bounded = 0;
+        long double volume = 0;
+        EXPECT(brio_delaunay(ctx, points, w, n, &plain, &t) == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_voronoi_cells(ctx, t, points, w, n, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
+        for (size_t c = 0; c < cells->num_cells; c++) {
+            sum += hash_of_cell(cells->site[c], cells, c);
+            bounded += cells->bounded[c];
+            if (cells->bounded[c]) volume += cells->volume[c];
+        }
+        double first = 0;
+        for (int k = 0; k < 3; k++) {
+            plan p = {.n = n, .weighted = w, .cells = true, .ranks = RANKS[(i + 2 * k) % 5], .fails = -1};
+            p.tiles = 1 + (uint32_t)(i + k) % 4, p.seed = (uint64_t)i;
+            member m = run_ranks(&p);
+            EXPECT(m.status == BRIO_OK, "%s", m.sentence);
+            EXPECT(m.cells == sum && m.sums.cells == cells->num_cells && m.sums.bounded == bounded &&
+                       m.sums.faces == cells->face_offsets[cells->num_cells] &&
+                       m.sums.region_volume == cells->region_volume,
+                   "set %d, %d ranks of %u tiles: %llu cells", i, p.ranks, p.tiles, (unsigned long long)m.sums.cells);
+            EXPECT(fabs(m.sums.volume_sum - (double)volume) <= 1e-15 * m.sums.volume_sum, "%.17g", m.sums.volume_sum);
+            if (k == 0) first = m.sums.volume_sum;
+            EXPECT(m.sums.volume_sum == first, "%.17g, not %.17g", m.sums.volume_sum, first);
+        }
+        brio_cells_free(cells);
+        brio_triangulation_free(t);
+        brio_context_free(ctx);
+    }
+}
+
+static void cells_of_ranks_are_refused(void) {
+    plan p = {.n = make_points(7, 400, 0, false), .cells = true, .ranks = 3, .fails = -1, .refuses = 2, .tiles = 2};
+    member m = run_ranks(&p);
+    EXPECT(m.status == BRIO_ERR_CANCELLED && strstr(m.sentence, "rank 1 on here"), "%s", m.sentence);
+    p.n = make_points(7, 400, 6, false), p.refuses = 0;
+    m = run_ranks(&p);
+    EXPECT(m.status == BRIO_ERR_NO_ANSWER && strstr(m.sentence, "in a plane"), "%s", m.sentence);
+}
+
 static void small_sets_with_shuffled_letters(void) {
     brio_rng rng = brio_rng_new(3);
     for (int i = 0; i < (BRIEF_TESTS ? 20 : SHORT_TESTS ? 40 : 1000); i++) {
@@ -341,6 +423,8 @@ SUITE(test_ranks) {
     snprintf(folder, sizeof folder, "/tmp/brio-test-ranks-%ld", (long)getpid());
     mkdir(folder, 0700);
     RUN(ranks_give_what_one_process_gives);
+    RUN(cells_are_those_of_one_process);
+    RUN(cells_of_ranks_are_refused);
     RUN(small_sets_with_shuffled_letters);
     RUN(a_rank_without_memory_ends_all_and_they_go_on);
     RUN(a_bad_point_of_one_rank_ends_all);

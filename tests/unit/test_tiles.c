@@ -224,6 +224,123 @@ static void parts_are_the_whole(void) {
     brio_context_free(ctx);
 }
 
+/* Returns the hash of a facet and of the vertex across it; `apex` is that vertex, or UINT64_MAX behind the hull. */
+static uint64_t hash_of_side(const uint64_t tet[4], int facet, uint64_t apex) {
+    uint64_t sum = 0;
+    for (int k = 0; k < 4; k++) sum += k == facet ? 0 : brio_mix(tet[k]);
+    return brio_mix(sum ^ brio_mix(apex + brio_mix(tet[facet])));
+}
+
+static uint64_t sides_of_the_whole(const brio_triangulation *t) {
+    const brio_tetrahedron *tet = brio_triangulation_tetrahedra(t);
+    uint64_t sum = 0;
+    for (size_t i = 0; i < brio_triangulation_stats(t)->tetrahedra; i++)
+        for (int k = 0; k < 4; k++) {
+            const uint32_t *v = tet[i].vertex, mate = tet[i].mate[k], apex = tet[mate / 4].vertex[mate % 4];
+            uint64_t name[4] = {v[0], v[1], v[2], v[3]};
+            sum += hash_of_side(name, k, apex == BRIO_INFINITE ? UINT64_MAX : apex);
+        }
+    return sum;
+}
+
+/* Returns the index of the vertex of a tetrahedron that is not in a facet of another one; counts what is wrong. */
+static uint64_t apex_of(const brio_tile_part *p, uint32_t tet, const uint64_t from[4], int facet, size_t *wrong) {
+    uint64_t apex = UINT64_MAX;
+    int others = 0;
+    if (tet >= p->num_tetrahedra) return ++*wrong;
+    for (int c = 0; c < 4; c++) {
+        uint64_t name = p->index[p->tetrahedra[tet][c]];
+        bool shared = false;
+        for (int k = 0; k < 4; k++) shared |= k != facet && from[k] == name;
+        if (!shared) apex = name, others++;
+    }
+    *wrong += others != 1;
+    return apex;
+}
+
+enum { MOST_PARTS = 64 };
+
+/* Neighbours, whatever tile they are of, are those of the whole. */
+static void compare_sides(uint64_t seed, size_t n, int kind, bool weighted, uint32_t tiles, size_t *across) {
+    static brio_tile_part part[MOST_PARTS];
+    static brio_tile_neighbour(*neighbour[MOST_PARTS])[4];
+    brio_context *ctx = new_context();
+    brio_triangulation *whole;
+    brio_delaunay_options o = {.size = sizeof o, .leave_hidden = 1};
+    uint64_t sum = 0;
+    size_t hull = 0, wrong = 0;
+    n = make_points(seed, n, kind);
+    if (weighted) integer_weights(seed, n, 5, weights);
+    EXPECT(brio_delaunay(ctx, points, weighted ? weights : NULL, n, &o, &whole) == BRIO_OK, "%s", brio_message(ctx));
+    brio_tiles *t = tiles_of(ctx, tiles, n, weighted, 0);
+    bool flat = weighted && brio_triangulation_stats(whole)->dimension < 3; /* refused */
+    if (!flat) EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    for (uint32_t i = 0; i < tiles && !flat; i++) {
+        part[i] = (brio_tile_part){.size = sizeof part[i]};
+        EXPECT(brio_tiles_part(ctx, t, i, &part[i]) == BRIO_OK, "%s", brio_message(ctx));
+        neighbour[i] = calloc(part[i].num_tetrahedra + 1, sizeof *neighbour[i]);
+        EXPECT(brio_tiles_neighbours(ctx, t, i, &part[i], neighbour[i]) == BRIO_OK, "%s", brio_message(ctx));
+    }
+    for (uint32_t i = 0; i < tiles && !flat; i++)
+        for (size_t k = 0; k < part[i].num_tetrahedra; k++)
+            for (int c = 0; c < 4; c++) {
+                brio_tile_neighbour other = neighbour[i][k][c];
+                uint64_t name[4], apex = UINT64_MAX;
+                for (int v = 0; v < 4; v++) name[v] = part[i].index[part[i].tetrahedra[k][v]];
+                hull += other.tile == BRIO_NO_TILE;
+                *across += other.tile != BRIO_NO_TILE && other.tile != i;
+                if (other.tile != BRIO_NO_TILE && other.tile >= tiles)
+                    wrong++;
+                else if (other.tile != BRIO_NO_TILE)
+                    apex = apex_of(&part[other.tile], other.tetrahedron, name, c, &wrong);
+                sum += hash_of_side(name, c, apex);
+            }
+    EXPECT(!wrong &&
+               (flat || (sum == sides_of_the_whole(whole) && hull == brio_triangulation_stats(whole)->hull_facets)),
+           "kind %d, %u tiles, %zu points: %zu wrong, %zu on the hull, not %zu", kind, tiles, n, wrong, hull,
+           brio_triangulation_stats(whole)->hull_facets);
+    for (uint32_t i = 0; i < tiles && !flat; i++) {
+        free(neighbour[i]);
+        brio_tile_part_free(ctx, &part[i]);
+    }
+    brio_triangulation_free(whole);
+    brio_tiles_free(t);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0, "%zu files are left", files_left());
+    brio_context_free(ctx);
+}
+
+static void neighbours_across_tiles_are_those_of_the_whole(void) {
+    static const uint32_t TILES[] = {1, 2, 3, 5, 12, 64};
+    for (int kind = 0; kind < KINDS; kind++) {
+        size_t across = 0;
+        for (size_t i = 0; i < sizeof TILES / sizeof *TILES; i++)
+            for (int weighted = 0; weighted < 2; weighted++)
+                compare_sides((uint64_t)(kind + 1) * (i + 1), kind == 2 ? 300 : 1500, kind, weighted, TILES[i],
+                              &across);
+        EXPECT(across > 100, "kind %d", kind);
+    }
+    for (uint64_t seed = 1; seed <= (BRIEF_TESTS ? 20 : SHORT_TESTS ? 50 : 1000); seed++) {
+        size_t across = 0;
+        compare_sides(seed, 4 + seed % 60, (int)(seed % KINDS), seed % 3 == 0, 1 + seed % 12, &across);
+    }
+}
+
+static void wrong_calls_for_neighbours_are_refused(void) {
+    brio_context *ctx = new_context();
+    brio_tile_neighbour some[4];
+    brio_tile_part p = {.size = sizeof p}, none = {.size = sizeof none};
+    brio_tiles *t = tiles_of(ctx, 2, make_points(5, 500, 0), false, 0);
+    EXPECT(brio_tiles_neighbours(ctx, t, 0, &none, &some) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "not tri"));
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_tiles_neighbours(ctx, t, 2, &none, &some) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "2 of 2"));
+    EXPECT(brio_tiles_part(ctx, t, 1, &p) == BRIO_OK, "%s", brio_message(ctx));
+    p.num_tetrahedra--;
+    EXPECT(brio_tiles_neighbours(ctx, t, 1, &p, &some) == BRIO_ERR_ARGUMENT && strstr(brio_message(ctx), "which has"));
+    brio_tile_part_free(ctx, &p);
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
 /* Hashes the parts of all tiles, every byte of them. */
 static uint64_t hash_parts(size_t n, int threads) {
     brio_context *ctx = new_context();
@@ -597,6 +714,8 @@ SUITE(test_tiles) {
     RUN(points_nearly_on_a_sphere);
     RUN(a_run_is_resumed);
     RUN(parts_are_the_whole);
+    RUN(neighbours_across_tiles_are_those_of_the_whole);
+    RUN(wrong_calls_for_neighbours_are_refused);
     RUN(parts_do_not_depend_on_threads);
     RUN(a_tile_with_one_tetrahedron_many_times_is_refused);
     RUN(vertices_of_cells_do_not_depend_on_threads);

@@ -162,6 +162,18 @@ test('what is written is read', () => {
   ok(brio.reads.includes('.laz') && brio.writes.includes('.glb') && !brio.writesFaces.includes('.laz'));
 });
 
+test('a surface tells how it came to be, and a page shows it', () => {
+  const told = surface(sphere(300), { explain: true }), text = new TextDecoder().decode(page([{ mesh: told, explanation: told.explanation }]));
+  strictEqual(told.explanation.samples, 300);
+  strictEqual(told.explanation.allSamples, 300);
+  ok(text.includes('"explanation":{') && text.includes('data-name="e-pole-0"'));
+  ok(!new TextDecoder().decode(page([{ mesh: told }])).includes('"explanation":{'));
+  told.explanation.free();
+  throws(() => page([{ mesh: told, explanation: told.explanation }]), /freed/);
+  throws(() => surface(sphere(300), { explain: true, method: 'offset', distance: 0.1 }), BrioError);
+  strictEqual(surface(sphere(50)).explanation, undefined);
+});
+
 test('failures have the sentence of the library, and leave nothing', () => {
   throws(() => read(new TextEncoder().encode('ply\nformat ascii 1.0\nelement vertex 2\n'), 'broken.ply'), (e) => e instanceof BrioError && e.message.startsWith('broken.ply: '));
   throws(() => delaunay(Float64Array.of(NaN, 0, 0)), BrioError);

@@ -26,6 +26,7 @@ class Drop {
         this.method = make("select", {}, ...METHODS.map(([value, words]) => make("option", { value }, words)));
         this.closed = make("input", { type: "checkbox" });
         this.simplify = make("input", { type: "checkbox" });
+        this.explain = make("input", { type: "checkbox" });
         this.go = button("Reconstruct", () => this.reconstruct(), { className: "go" });
         this.format = make("select", {}, ...SAVED.map(value => make("option", { value }, value.toUpperCase())));
         this.saving = button("Download", () => this.save());
@@ -35,7 +36,7 @@ class Drop {
         this.running = make("div", { className: "running", hidden: true }, this.stage, this.bar, this.stopping);
         this.wrong = make("p", { className: "wrong", role: "alert" });
         this.done = make("p", { className: "note done", role: "status" });
-        this.making = make("div", { hidden: true }, labelled("Method", this.method), labelled("close all holes", this.closed), labelled("fewer triangles", this.simplify), this.go);
+        this.making = make("div", { hidden: true }, labelled("Method", this.method), labelled("close all holes", this.closed), labelled("fewer triangles", this.simplify), labelled("tell how it comes to be", this.explain), this.go);
         this.keeping = make("div", { className: "keep", hidden: true }, labelled("Format", this.format), this.saving);
         app.first = [make("section", { className: "layer", "aria-label": "File" }, make("p", { className: "note" }, "Drop a file here, or choose one. It stays on this computer."),
             this.choose, this.input, this.wrong, this.making, this.running, this.done, this.keeping)];
@@ -123,7 +124,7 @@ class Drop {
             if (this.held !== this.file) await this.read(this.file, how); // its worker was ended
             const method = this.method.value, holes = this.closed.checked && method !== "cocone" ? "closed" : "auto";
             const simplify = this.simplify.checked && ["labeled", "power-crust"].includes(method);
-            const { page, certificate: c, facts, seconds } = await this.caller.call("reconstruct", [{ method, holes, simplify }], how);
+            const { page, certificate: c, facts, seconds } = await this.caller.call("reconstruct", [{ method, holes, simplify, explain: this.explain.checked }], how);
             await this.show(page, c.self_intersections);
             Object.assign(this.app.drawings[1].state, { visible: false });
             this.app.fillPanel();

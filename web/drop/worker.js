@@ -16,17 +16,17 @@ class Calls {
     async open(name, bytes) {
         const plain = await unpacked(bytes);
         const file = this.brio.read(plain, plain === bytes ? name : name.replace(/\.gz$/i, ""));
-        for (const old of [this.file, this.surface]) old?.free();
+        for (const old of [this.file, this.surface, this.surface?.explanation]) old?.free();
         Object.assign(this, { file, surface: null, name });
         return { page: this.brio.page([{ mesh: file, name }]), points: file.vertices.length / 3 };
     }
     /** Makes a surface through the points of the file. Returns the page of both, and what is certain of the surface. */
     reconstruct(options) {
         const began = performance.now(), surface = this.brio.surface(this.file, options);
-        this.surface?.free();
+        for (const old of [this.surface, this.surface?.explanation]) old?.free();
         this.surface = surface;
-        const { certificate, facts } = surface, seconds = (performance.now() - began) / 1000;
-        const page = this.brio.page([{ mesh: surface, name: `surface of ${this.name}` }, { mesh: this.file, name: this.name }], { selfIntersections: certificate.self_intersections > 0 });
+        const { certificate, facts, explanation } = surface, seconds = (performance.now() - began) / 1000;
+        const page = this.brio.page([{ mesh: surface, name: `surface of ${this.name}`, explanation }, { mesh: this.file, name: this.name }], { selfIntersections: certificate.self_intersections > 0 });
         return { page, certificate, facts, seconds };
     }
     /** Writes the surface, or the file where there is none. */

@@ -51,7 +51,7 @@ export class App {
     async show(source) {
         const metas = [...source.querySelectorAll("script.layer")].map(e => JSON.parse(e.textContent, plain));
         if (!globalThis.DecompressionStream && source.querySelector('script[data-packed="1"]')) throw new Error("This browser is too old for the page: it cannot decompress (DecompressionStream). Browsers of 2023 and later can.");
-        document.title = at("title").textContent = this.title || metas.map(m => m.name || "layer").join(", ");
+        document.title = at("title").textContent = this.title || metas.map(m => m.name).filter(Boolean).join(", ") || "brio";
         const layers = [];
         for (const [i, meta] of metas.entries()) {
             this.say(`Reading ${meta.name || `layer ${i + 1}`}`);
@@ -61,19 +61,20 @@ export class App {
             layers.push(new Layer(meta, blocks, i));
             await layers[i].load();
         }
-        const before = this.drawings || [], scene = new Scene(layers), drawings = layers.map(layer => new Drawing(this.renderer.gl, layer, defaultState(layer)));
+        this.size();
+        const before = this.drawings || [], scene = new Scene(layers), pixels = this.canvas.width * this.canvas.height / this.ratio ** 2 / (this.beside ? layers.length : 1);
+        const drawings = layers.map(layer => new Drawing(this.renderer.gl, layer, defaultState(layer, pixels)));
         for (const d of drawings) d.place = scene.placeOf(d.layer);
         if (layers.length === 2 && layers[1].filtration) drawings[0].state.visible = false; // the shape at one alpha, which the filtration has
-        this.camera.fit(scene.half, scene.front());
         this.renderer.queue = null; // a picture that was begun is of what was there before
-        Object.assign(this, { scene, drawings, initial: JSON.parse(JSON.stringify(drawings.map(d => d.state))) });
+        Object.assign(this, { scene, drawings, front: scene.front(), initial: JSON.parse(JSON.stringify(drawings.map(d => d.state))) });
+        this.fit();
         if (source === document) readAddress(this);
         for (const d of drawings) if (d.layer.hull.length && !d.layer.triangles.length && !this.addressed) Object.assign(scene.cutting, { on: true, axis: 1, flip: true });
         this.preparing = true;
         await this.prepare();
         this.preparing = false;
         for (const d of before) for (const name of Object.keys(d.buffers)) d.drop(name);
-        this.ratio ||= Math.min(2, devicePixelRatio || 1);
         this.picker.clear();
         this.fillPanel();
         this.tools = tools(this);
@@ -151,11 +152,22 @@ export class App {
         document.documentElement.dataset.theme = name;
         this.redraw();
     }
-    resize() {
+    /** Gives the picture the size of its place. */
+    size() {
         const box = at("stage").getBoundingClientRect();
         this.ratio = Math.min(2, devicePixelRatio || 1);
         const [w, h] = [Math.max(1, Math.round(box.width * this.ratio)), Math.max(1, Math.round(box.height * this.ratio))];
         if (w !== this.canvas.width || h !== this.canvas.height) [this.canvas.width, this.canvas.height] = [w, h];
+    }
+    /** Finds from where all is seen, in pictures of this size. */
+    fit() {
+        const [{ width, height }] = this.views(), apart = this.drawings.map(d => d.layer.hasPieces ? d.state.explode : 0);
+        this.camera.fit((axes, x, y) => this.scene.reach(axes, x, y, apart), this.front, width, height);
+    }
+    resize() {
+        const { width, height } = this.canvas;
+        this.size();
+        if (width !== this.canvas.width || height !== this.canvas.height) this.fit();
         this.redraw();
         this.frame(); // a canvas that changed its size is empty until it is drawn
     }
@@ -233,6 +245,7 @@ export class App {
         this.redraw(true);
     }
     resetView() {
+        this.fit();
         this.camera.reset();
         this.redraw(true);
     }

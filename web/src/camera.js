@@ -3,6 +3,8 @@ import { add, cross, dot, multiply, sub, unit } from "./matrix.js";
 
 const FIELD = 35 * Math.PI / 180; // of view, the shorter side
 const FIRST = [-0.6, 0.45];
+const FILLED = 0.9; // of the picture, at first
+const NEAR_HOME = 0.5; // of a scene of one point
 const NEAREST = 1e-5, FARTHEST = 200; // distances from the target
 
 export class Camera {
@@ -10,21 +12,17 @@ export class Camera {
         this.up = 2;
         this.parallel = false;
         this.first = FIRST; // yaw and pitch, and the distance, at first
-        this.home = 3.9;
+        this.home = 4;
         this.reset();
     }
-    /** Takes a box of half sides about the middle, and from where it is looked at first: it is seen whole then. Stays where it was moved to. */
-    fit(half, first = FIRST) {
-        const was = [...this.first, this.home], now = [this.yaw, this.pitch, this.distance], wide = Math.tan(FIELD / 2) * 0.95;
-        const there = new Camera();
+    /** Takes from where the scene is looked at first, [yaw, pitch], and the sides of the picture. All is seen then. Stays where it was
+     *  moved to.   reach  gives the distance that is needed, of the axes and the half sides of the picture at the distance 1. */
+    fit(reach, first = FIRST, width = 1, height = 1) {
+        const was = [...this.first, this.home, 0, 0, 0], now = [this.yaw, this.pitch, this.distance, ...this.target], there = new Camera();
         Object.assign(there, { up: this.up, yaw: first[0], pitch: first[1] });
-        const { right, up, back } = there.axes();
+        const half = FILLED * Math.tan(FIELD / 2) / Math.min(width, height); // for each pixel
         this.first = first;
-        this.home = 2;
-        for (let i = 0; i < 8; i++) {
-            const corner = half.map((x, k) => i >> k & 1 ? x : -x);
-            this.home = Math.max(this.home, dot(corner, back) + Math.max(Math.abs(dot(corner, right)), Math.abs(dot(corner, up))) / wide);
-        }
+        this.home = Math.max(NEAR_HOME, Math.min(FARTHEST, reach(there.axes(), half * width, half * height)));
         if (now.every((x, i) => x === was[i])) this.reset();
     }
     reset() {

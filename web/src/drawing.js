@@ -5,14 +5,17 @@ import { colourOf, pictureOf } from "./explanation.js";
 
 const NOTHING = 3.4e38; // a value that is no number
 
-/** How a layer is shown, at first. */
-export function defaultState(layer) {
+/** How large the points of a cloud are at first: between three and four times as far as they are apart, if they fill half of the picture. */
+const sizeOf = (points, pixels) => Math.max(2, Math.min(8, Math.round(3.6 * Math.sqrt(0.5 * pixels / Math.max(1, points)))));
+
+/** How a layer is shown, at first.   pixels  of the picture. */
+export function defaultState(layer, pixels) {
     const m = layer.meta, colours = layer.colours("v");
-    const few = edges => Math.max(edges, m.nonmanifold) < Math.max(1000, 0.1 * m.triangles); // more would hide the faces
+    const few = edges => edges < layer.many && layer.sided; // more would hide the faces
     const state = {
         visible: true, faces: m.triangles > 0 || m.hull > 0, points: layer.kind === "cloud", wire: false, edges: m.edges > 0,
         boundary: few(m.boundary), nonmanifold: few(m.nonmanifold), flipped: few(m.flipped), crossing: true, bridges: false,
-        flat: layer.sharp > 0.12, opacity: 1, pointSize: m.vertices < 5000 ? 6 : m.vertices < 100000 ? 4 : 3,
+        flat: layer.sharp > 0.12, opacity: 1, pointSize: layer.kind === "cloud" ? sizeOf(m.vertices, pixels) : m.vertices < 5000 ? 6 : m.vertices < 100000 ? 4 : 3,
         source: "plain", map: "viridis", low: 0, high: 1, alpha: 0.3, explode: 0, balls: false,
     };
     if (m.explanation) Object.assign(state, { explain: -1, cell: true, polar: true, cocone: true, labels: false, taken: true, power: true });
@@ -26,6 +29,8 @@ export function defaultState(layer) {
         const value = m.properties.find(p => ["confidence", "distance", "intensity", "value", "radius"].includes(p.name));
         state.source = value ? value.block : "z";
     }
+    const distance = m.properties.find(p => p.name === "distance"); // of brio compare
+    if (distance && state.source === "plain") state.source = distance.block;
     return state;
 }
 
@@ -202,13 +207,12 @@ export class Drawing {
         this.values = null;
         this.expanded = false;
         if (s.source === "colours" || byFace) {
-            const list = l.colours(byFace || "v"), count = byFace ? l.meta.faces : l.meta.vertices;
-            const channels = [];
-            for (const p of list) channels.push(await l.property(byFace || "v", p));
-            const most = channels.reduce((m, c) => c.reduce((a, x) => Math.max(a, x), m), 0);
-            const real = ["float32", "float64"].includes(list[0].type), scale = real && most <= 1 ? 255 : most > 255 ? 255 / 65535 : 1;
+            const { white, channels } = l.colours(byFace || "v"), count = byFace ? l.meta.faces : l.meta.vertices;
             const rgba = new Uint8ClampedArray(4 * count).fill(255); // wrong colours do not wrap
-            channels.forEach((c, k) => { for (let i = 0; i < count; i++) rgba[4 * i + k] = c[i] * scale; });
+            for (let k = 0; k < 3; k++) {
+                const c = await l.property(byFace || "v", channels[k]);
+                for (let i = 0; i < count; i++) rgba[4 * i + k] = white === 65535 ? Math.floor(c[i] / 256) : c[i] / white * 255;
+            }
             this.mode = 1;
             this.rows = { rgba, where: byFace || "v" };
             if (byFace) await this.expand("rgba", rgba, 4);
@@ -289,7 +293,9 @@ export class Drawing {
         if (!s.visible) return out;
         const put = (program, more) => out.push({ drawing: this, program, set: "", index: null, primitive: gl.TRIANGLES, mode: single,
             colour: this.colour, size: 1, lit: true, back: true, opacity: s.opacity, ...more });
+        const stroke = colours.background[0] > 0.5 ? this.colour.map(c => 0.55 * c) : this.colour; // lines of one colour stand out from the background
         const thin = this.told ? { veil: true, opacity: Math.min(s.opacity, 0.22) } : {}; // so that what is told of a sample is seen
+        const back = l.sided; // of faces without sides both look alike
         const solid = l.triangles.length ? "triangles" : "hull", apart = s.explode > 0 && b.placeE;
         if (s.faces && l.filtration) {
             if (b.shape.count) put("faces", { index: "shape", pick: "shape", mode: this.expanded ? 0 : this.mode });
@@ -297,9 +303,9 @@ export class Drawing {
             if (s.wire && b.shapeWire.count) put("lines", { index: "shapeWire", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, opacity: 0.55 });
         } else if (s.faces && apart) put("faces", { set: "E", mode: b.valueE || b.rgbaE ? this.mode : 0, count: b.placeE.count / 3, pick: "piece", uncut: true });
         else if (s.faces && b[solid]) {
-            if (moving && b.coarse) put("faces", { index: "coarse", pick: false, ...thin });
-            else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner", ...thin });
-            else put("faces", { index: solid, pick: "triangle", ...thin });
+            if (moving && b.coarse) put("faces", { index: "coarse", pick: false, back, ...thin });
+            else if (this.expanded) put("faces", { set: "X", mode: this.mode, count: b.placeX.count / 3, pick: "corner", back, ...thin });
+            else put("faces", { index: solid, pick: "triangle", back, ...thin });
         }
         if (s.balls && b.spheres) put("balls", { spheres: "spheres", count: b.spheres.count / 4, mode: 0, back: false });
         const small = (!moving || !b.coarse) && !apart;
@@ -310,15 +316,15 @@ export class Drawing {
             if (!moving || b.linesS.count < 2e5) put("lines", { set: "S", index: "linesS", primitive: gl.LINES, mode: 0, colour: colours.line, lit: false, uncut: true, opacity: this.section.of.length > 10000 ? 0.35 : 0.75 });
         }
         if (s.wire && b.wire && small) put("lines", { index: "wire", primitive: gl.LINES, mode: s.faces ? 0 : single, colour: s.faces ? colours.line : this.colour, lit: false, opacity: s.faces ? 0.55 : 1 });
-        if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, lit: false, pick: "edge", opacity: 1 });
-        if (s.edges && b.edgesWide && single === 0) put("wide", { wide: "edgesWide", count: b.edgesWide.count / 6, size: 1.8, lit: false, opacity: 1 });
+        if (s.edges && b.edges && (!moving || b.edges.count < 4 * budget)) put("lines", { index: "edges", primitive: gl.LINES, colour: stroke, lit: false, pick: "edge", opacity: s.faces && b[solid] ? 0.5 : 1 });
+        if (s.edges && b.edgesWide && single === 0 && !(s.faces && b[solid])) put("wide", { wide: "edgesWide", count: b.edgesWide.count / 6, colour: stroke, size: 1.8, lit: false, opacity: 1 });
         const wides = { boundary: [0.1, 0.62, 1], nonmanifold: [1, 0.24, 0.65], flipped: [0.95, 0.85, 0.1] };
         for (const [name, colour] of Object.entries(wides))
             if (s[name] && b[name] && s.faces && !apart) put("wide", { wide: name, count: b[name].count / 6, mode: 0, colour, size: 2.5, lit: false, opacity: 1 });
         if (this.told && b.placeC) this.toldItems(put, colours);
         if (s.points) {
             const all = l.meta.vertices, count = moving ? Math.min(all, 2 * budget) : all;
-            put("points", { count, primitive: gl.POINTS, size: s.pointSize, pick: "point" });
+            put("points", { count, primitive: gl.POINTS, size: s.pointSize, pick: "point", deep: l.kind === "cloud" && !l.normals });
         }
         return out;
     }

@@ -5,6 +5,8 @@
 import { Explanation } from "./explanation.js";
 import { bytesOf, differences, inParts, reals, trianglesOf, valuesOf } from "./decode.js";
 
+const CREASED = 0.03; // share of corners from which on a mesh has creases, not noise: chosen
+
 export class Layer {
     constructor(meta, blocks, number) {
         this.meta = meta;
@@ -13,6 +15,11 @@ export class Layer {
         this.cache = new Map();
         this.kind = meta.tetrahedra ? "tetrahedra" : meta.triangles ? "mesh" : meta.edges ? "edges" : "cloud";
     }
+    get name() { return this.meta.name || `layer ${this.number + 1}`; }
+    /** How many edges of a kind are too many to be marked. */
+    get many() { return Math.max(1000, 0.1 * this.meta.triangles); }
+    /** Whether faces have sides: not in a complex, where many edges have more than two faces. */
+    get sided() { return this.meta.nonmanifold < this.many; }
     has(name) { return name in this.blocks; }
 
     /** Coordinate k of a step, in halves: boxes may be wider than the largest double. */
@@ -172,15 +179,28 @@ export class Layer {
         });
         const step = 3 * Math.max(1, Math.floor(triangles.length / 3 / 20000));
         let far = 0, all = 0;
-        for (let t = 0; t < triangles.length; t += step) {
+        // Bit k: the face is far from the normal at its corner k.
+        const bends = t => {
+            let out = 0;
             face(t);
-            const l = Math.hypot(...normal);
-            for (let k = 0; k < 3 && l > 0; k++, all++) {
+            const l = Math.hypot(normal[0], normal[1], normal[2]);
+            for (let k = 0; k < 3 && l > 0; k++) {
                 const v = 4 * triangles[t + k];
-                far += (normal[0] * this.normals[v] + normal[1] * this.normals[v + 1] + normal[2] * this.normals[v + 2]) < 0.8 * 127 * l;
+                if (normal[0] * this.normals[v] + normal[1] * this.normals[v + 1] + normal[2] * this.normals[v + 2] < 0.8 * 127 * l) out |= 1 << k;
             }
-        }
+            return out;
+        };
+        for (let t = 0; t < triangles.length; t += step, all += 3) for (let k = 0, b = bends(t); k < 3; k++) far += b >> k & 1;
         this.sharp = all ? far / all : 0;
+        if (this.sharp > CREASED) await this.dropNormals(triangles, bends);
+    }
+    /** Leaves vertices at creases without normals: the shades of a face are its own there. */
+    async dropNormals(triangles, bends) {
+        const at = new Uint8Array(this.meta.vertices);
+        await inParts(triangles.length / 3, (from, to) => {
+            for (let t = 3 * from; t < 3 * to; t += 3) for (let k = 0, b = bends(t); b >> k; k++) if (b >> k & 1) at[triangles[t + k]] = 1;
+        });
+        await inParts(at.length, (from, to) => { for (let v = from; v < to; v++) if (at[v]) this.normals.fill(0, 4 * v, 4 * v + 3); });
     }
     async takeNormals() {
         const list = ["nx", "ny", "nz"].map(name => this.meta.properties.find(p => p.name === name));
@@ -213,11 +233,10 @@ export class Layer {
             list.push({ id: p.block, label: `${p.name} of faces`, where: "f", values: () => this.property("f", p) });
         return list;
     }
-    /** The properties that are colours, of the vertices or of the faces: three of them, or null. */
+    /** The properties that are colours, of the vertices or of the faces, and what white is in them (src/io/colour.h); or null. */
     colours(where) {
-        const list = where === "v" ? this.meta.properties : this.meta.face_properties;
-        const found = ["red", "green", "blue"].map(name => list.find(p => p.name === name));
-        return found.every(Boolean) ? found : null;
+        const [list, white] = where === "v" ? [this.meta.properties, this.meta.white] : [this.meta.face_properties, this.meta.face_white];
+        return white ? { white, channels: ["red", "green", "blue"].map(name => list.find(p => p.name === name)) } : null;
     }
 
     /** What is known of a vertex: its number in the file, its coordinates, and its properties, each with its value. */

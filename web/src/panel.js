@@ -101,7 +101,7 @@ function explanationPanel(drawing, app, tick) {
 
 /** The part of the panel about one layer.   app  has redraw() and recolour(drawing). */
 export function layerPanel(drawing, app) {
-    const { layer, state } = drawing, m = layer.meta, name = m.name || `layer ${layer.number + 1}`;
+    const { layer, state } = drawing, m = layer.meta, name = layer.name;
     const tick = (key, words, there, then = () => {}) => there ? labelled(words, make("input", {
         type: "checkbox", checked: state[key], onchange: async e => { state[key] = e.target.checked; await then(); app.redraw(); },
     })) : null;
@@ -135,7 +135,7 @@ export function layerPanel(drawing, app) {
         shown.draw();
         range.append(labelled("Colour map", map), shown.canvas, make("div", { className: "pair" }, number("low", "from"), number("high", "to")));
     };
-    const sources = [["plain", "one colour"], layer.colours("v") && ["colours", "colours of the file"], layer.colours("f") && ["face-colours", "colours of the faces"],
+    const sources = [["plain", "one colour"], layer.colours("v") && ["colours", "colours of the file"], layer.colours("f") && ["face-colours", "colours of faces"],
         ...layer.sources().map(s => [s.id, s.label])].filter(Boolean);
     const source = make("select", {
         onchange: async e => { state.source = e.target.value; await app.recolour(drawing); refresh(); app.redraw(); },

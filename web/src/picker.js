@@ -52,7 +52,7 @@ export class Picker {
         if (pick.tetrahedron !== null) list.push(["tetrahedron", String(pick.tetrahedron)]);
         const title = pick.number === null ? "a vertex" : `vertex ${pick.number}`;
         at("card").replaceChildren(
-            make("h2", {}, make("span", {}, `${title} of ${m.name || `layer ${pick.drawing.layer.number + 1}`}`),
+            make("h2", {}, make("span", {}, `${title} of ${pick.drawing.layer.name}`),
                 make("button", { "aria-label": "Close", onclick: () => { this.clear(); at("canvas").focus(); } }, "×")),
             make("dl", {}, ...list.flatMap(([k, v]) => [make("dt", {}, k), make("dd", {}, v)])),
             ...(pick.exact ? [] : [make("p", { className: "note" }, `Rounded: coordinates to ${short(m.step)}, properties in floating point to 16 bits of their range.`)]));
@@ -83,7 +83,7 @@ export class Picker {
                 put("text", { x: (ends[0][0] + ends[1][0]) / 2 + 8, y: (ends[0][1] + ends[1][1]) / 2 - 8 }, short(this.distance));
             }
         }
-        at("names").replaceChildren(...(views.length > 1 ? views.map(v => make("span", { style: `left: ${v.x / app.ratio + 8}px; top: ${height - (v.y + v.height) / app.ratio + 8}px` }, v.drawings[0].layer.meta.name || "")) : []));
+        at("names").replaceChildren(...(views.length > 1 ? views.map(v => make("span", { style: `left: ${v.x / app.ratio + 8}px; top: ${height - (v.y + v.height) / app.ratio + 8}px` }, v.drawings[0].layer.name)) : []));
         for (const v of views.slice(1)) {
             const [x, y] = [v.x / app.ratio, height - (v.y + v.height) / app.ratio];
             if (v.x) put("line", { class: "edge", x1: x, y1: y, x2: x, y2: y + v.height / app.ratio });

@@ -41,7 +41,7 @@ export class Renderer {
     forget() {
         this.programs = {};
         this.palettes = {};
-        this.target = this.picked = this.queue = null;
+        this.target = this.shaded = this.picked = this.queue = null;
     }
     program(name) { return this.programs[name] ||= compile(this.gl, PROGRAMS[name]); }
     palette(name) {
@@ -71,6 +71,55 @@ export class Renderer {
         }
     }
 
+    /** A copy of the picture in memory, with one sample a pixel, that programs can read. */
+    makeShaded(width, height) {
+        const gl = this.gl, t = this.shaded ||= { frame: gl.createFramebuffer(), colour: gl.createTexture(), depth: gl.createTexture() };
+        gl.bindFramebuffer(gl.FRAMEBUFFER, t.frame);
+        for (const [texture, inside, format, type, at] of [[t.colour, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, gl.COLOR_ATTACHMENT0], [t.depth, gl.DEPTH_COMPONENT24, gl.DEPTH_COMPONENT, gl.UNSIGNED_INT, gl.DEPTH_ATTACHMENT]]) {
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.texImage2D(gl.TEXTURE_2D, 0, inside, width, height, 0, format, type, null);
+            for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+            gl.framebufferTexture2D(gl.FRAMEBUFFER, at, gl.TEXTURE_2D, texture, 0);
+        }
+        Object.assign(t, { width, height });
+    }
+    /** Copies the picture in memory to the page. Views of clouds without normals get shades by depth: what is behind something near it is
+     *  darker (Boucheny. Visualisation scientifique de grands volumes de donnees. Thesis, 2009: eye-dome lighting). */
+    present() {
+        const gl = this.gl, { width, height } = this.target;
+        const copy = (to, what) => {
+            gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.target.frame);
+            gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, to);
+            gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, what, gl.NEAREST);
+        };
+        gl.disable(gl.SCISSOR_TEST);
+        copy(null, gl.COLOR_BUFFER_BIT);
+        if (this.deep.length) {
+            if (this.shaded?.width !== width || this.shaded?.height !== height) this.makeShaded(width, height);
+            copy(this.shaded.frame, gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+        }
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        for (const view of this.deep) this.shade(view);
+    }
+    shade({ x, y, width, height, projection, parallel, distance }) {
+        const gl = this.gl, { program, uniforms: u } = this.program("depths");
+        gl.useProgram(program);
+        gl.viewport(x, y, width, height);
+        gl.disable(gl.DEPTH_TEST);
+        gl.disable(gl.BLEND);
+        gl.colorMask(true, true, true, true);
+        for (let i = 0; i < 4; i++) gl.disableVertexAttribArray(i);
+        for (const [unit, texture, at] of [[1, this.shaded.depth, u.uDepth], [0, this.shaded.colour, u.uColours]]) {
+            gl.activeTexture(gl.TEXTURE0 + unit);
+            gl.bindTexture(gl.TEXTURE_2D, texture);
+            gl.uniform1i(at, unit);
+        }
+        gl.uniform4i(u.uBox, x, y, x + width - 1, y + height - 1);
+        gl.uniform4f(u.uLens, projection[10], projection[14], +parallel, distance);
+        gl.uniform1i(u.uApart, Math.max(1, Math.round(this.scene.ratio)));
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
     /** Begins a picture.   views  [{x, y, width, height, drawings}], in pixels from the lower left corner. */
     begin(views, camera, scene, moving) {
         const gl = this.gl, { width, height } = this.canvas;
@@ -83,6 +132,7 @@ export class Renderer {
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
         this.scene = scene;
         this.queue = [];
+        this.deep = [];
         for (const view of views) {
             const matrix = camera.matrix(view.width, view.height), look = camera.view(), clear = [];
             for (const d of view.drawings)
@@ -93,6 +143,8 @@ export class Renderer {
                     else this.queue.push(item.opacity < 1 ? { ...whole, blended: true } : whole);
                 }
             this.queue.push(...clear);
+            if (this.queue.some(item => item.deep && item.view === view))
+                this.deep.push({ ...view, projection: camera.projection(view.width, view.height), parallel: camera.parallel, distance: camera.distance });
         }
         this.moving = moving;
     }
@@ -108,12 +160,7 @@ export class Renderer {
         }
         gl.bindVertexArray(null);
         if (this.queue.length) return false;
-        const { width, height } = this.target;
-        gl.disable(gl.SCISSOR_TEST);
-        gl.bindFramebuffer(gl.READ_FRAMEBUFFER, this.target.frame);
-        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
-        gl.blitFramebuffer(0, 0, width, height, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
-        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        this.present();
         this.queue = null;
         return true;
     }

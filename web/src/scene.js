@@ -1,5 +1,5 @@
 // The scene: all layers in one box of about [-1, 1], the cutting plane, and what stands at a place of the picture.
-import { cross, dot, length, sub } from "./matrix.js";
+import { add, cross, dot, length, sub } from "./matrix.js";
 
 export class Scene {
     constructor(layers) {
@@ -36,6 +36,24 @@ export class Scene {
         }
         const [usual] = sums.values(), best = [...sums].reduce((a, b) => b[1] > a[1] + 1e-6 ? b : a);
         return best[1] > usual + 0.25 ? best[0] : undefined;
+    }
+    /** The distance from the middle at which an eye sees all vertices, in a picture whose half sides are x and y at the distance 1.
+     *  apart  by which part the pieces of each layer are farther from its middle. */
+    reach({ right, up, back }, x, y, apart) {
+        let most = 0;
+        this.layers.forEach((l, i) => {
+            const place = this.placeOf(l), p = l.positions, middle = l.size.map(s => s / 2), wider = 1 + apart[i];
+            for (const side of [right.map(r => r / x), right.map(r => -r / x), up.map(u => u / y), up.map(u => -u / y)]) {
+                const way = add(back, side), [a, b, c] = way.map(w => w * place[3]);
+                let far = -Infinity;
+                for (let v = 0; v < p.length; v += 3) {
+                    const d = a * p[v] + b * p[v + 1] + c * p[v + 2];
+                    if (d > far) far = d;
+                }
+                most = Math.max(most, dot(way, place) + (1 - wider) * dot([a, b, c], middle) + wider * far);
+            }
+        });
+        return most;
     }
     /** Where the whole numbers of a layer are in the scene: xyz, and the length of a step. */
     placeOf(layer) {

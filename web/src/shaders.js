@@ -87,6 +87,23 @@ void main() {
     float light = 0.28 + 0.62 * max(0.0, dot(n, normalize(vec3(-0.35, 0.55, 0.8)))) + 0.22 * max(0.0, dot(n, normalize(vec3(0.7, -0.3, 0.5))));
     drawn = vec4(uColour.rgb * light, uOpacity);
 }`],
+    // Shades by depth: of a pixel, by how far it is behind its eight neighbours, as parts of its own distance. uLens has two numbers of
+    // the projection, whether that is parallel, and the camera's distance.
+    depths: [`${COMMON}
+void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`, `${COMMON}${DRAWN}
+uniform sampler2D uColours; uniform sampler2D uDepth; uniform ivec4 uBox; uniform vec4 uLens; uniform int uApart;
+float far(ivec2 at) {
+    float z = 2.0 * texelFetch(uDepth, clamp(at, uBox.xy, uBox.zw), 0).r - 1.0;
+    return uLens.z > 0.5 ? (uLens.y - z) / uLens.x : uLens.y / (z + uLens.x);
+}
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 colour = texelFetch(uColours, at, 0);
+    float here = far(at), scale = uLens.z > 0.5 ? uLens.w : here, behind = 0.0;
+    if (texelFetch(uDepth, at, 0).r < 1.0)
+        for (int i = 0; i < 9; i++) behind += max(0.0, here - far(at + uApart * ivec2(i % 3 - 1, i / 3 - 1)));
+    drawn = vec4(colour.rgb * (0.35 + 0.65 * exp(-20.0 * behind / scale)), 1.0);
+}`],
     // Wide lines: two triangles for each pair of ends, as wide as uSize pixels.
     wide: [`${COMMON}${PLACED}
 layout(location = 0) in vec3 aFrom; layout(location = 1) in vec3 aTo; uniform float uSize; uniform vec2 uPixels;

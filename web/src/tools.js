@@ -33,7 +33,7 @@ export function tools(app) {
     const list = [
         ["Reset the view", "r", "M4 12a8 8 0 1 0 2.6-5.9M4 4v5h5", () => app.resetView()],
         ["Parallel projection", "o", "M4 8l8-4 8 4v8l-8 4-8-4zM4 8l8 4 8-4M12 12v8", on => { app.camera.parallel = on; app.redraw(true); }, () => app.camera.parallel],
-        app.drawings.length > 1 && ["Side by side", "s", "M4 5h7v14H4zM13 5h7v14h-7z", on => { app.beside = on; app.redraw(); }, () => app.beside],
+        app.drawings.length > 1 && ["Side by side", "s", "M4 5h7v14H4zM13 5h7v14h-7z", on => { app.beside = on; app.fit(); app.redraw(); }, () => app.beside],
         ["Measure between two vertices", "m", "M4 17L17 4l3 3L7 20zM8 13l2 2M11 10l2 2M14 7l2 2", on => { app.picker.measuring = on; document.body.classList.toggle("measuring", on); app.say(on ? "Pick two vertices." : app.summary()); }, () => app.picker.measuring],
         ["Save a picture", "p", "M12 4v11m-4-4l4 4 4-4M4 19h16", () => save(app)],
         ["Copy the address of this view", "c", "M10 14l4-4M8.5 11.5l-3 3a3 3 0 0 0 4 4l3-3M15.5 12.5l3-3a3 3 0 0 0-4-4l-3 3", () => copy(app)],

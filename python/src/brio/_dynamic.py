@@ -132,10 +132,7 @@ class DynamicDelaunay:
         return self.facts["points"]
 
     def _arrays(self) -> tuple[Indices, Floats, Floats]:
-        n = len(self)
-        arrays = np.empty(n, np.uint32), np.empty((n, 3)), np.empty(n)
-        _native.dynamic_points(self._handle, *arrays)
-        return arrays
+        return _of_bytes(_native.dynamic_points(self._handle))
 
     @property
     def indices(self) -> Indices:
@@ -166,11 +163,16 @@ class DynamicDelaunay:
         found[out == np.iinfo(np.uint32).max] = -1
         return found
 
+    def _snapshot(self) -> tuple[Any, Floats, Floats | None]:
+        """Returns the triangulation, its points and its weights, of one moment: another thread may change what comes after."""
+        with reporting(self.progress) as report:
+            handle, arrays = _native.dynamic_snapshot(self._handle, self.threads, report)
+        _, points, weights = _of_bytes(arrays)
+        return handle, points, weights if self.weighted else None
+
     def snapshot(self) -> Delaunay:
         """Returns the triangulation as it is now: rows of its points are those of `indices`."""
-        points, weights = self.points, self.weights
-        with reporting(self.progress) as report:
-            handle = _native.dynamic_snapshot(self._handle, self.threads, report)
+        handle, points, weights = self._snapshot()
         same = object.__new__(Delaunay)
         same.__dict__ = {"threads": self.threads, "progress": self.progress, "_closed": False, "points": points,
                          "weights": weights, "_handle": handle}
@@ -256,10 +258,13 @@ class PeriodicDynamicDelaunay(DynamicDelaunay):
 
     def snapshot(self) -> PeriodicDelaunay:  # type: ignore[override]
         """Returns the triangulation as it is now: rows of its points are those of `indices`."""
-        points, weights = self.points, self.weights
-        with reporting(self.progress) as report:
-            handle = _native.dynamic_snapshot(self._handle, self.threads, report)
+        handle, points, weights = self._snapshot()
         return of_handle(handle, points, weights, self._given, self.periodic)
+
+
+def _of_bytes(arrays: tuple[bytearray, bytearray, bytearray]) -> tuple[Indices, Floats, Floats]:
+    indices, points, weights = arrays
+    return np.frombuffer(indices, np.uint32), np.frombuffer(points).reshape(-1, 3), np.frombuffer(weights)
 
 
 def _as_indices(indices: Any) -> Indices:

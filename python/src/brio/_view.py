@@ -15,7 +15,7 @@ from . import _native
 from ._arrays import as_count, as_path, as_rows, as_text
 from ._calls import Progress, reporting
 from ._files import Path
-from ._mesh import Mesh
+from ._shown import mesh_of
 from .errors import ArgumentError
 
 __all__ = ["Page", "Picture", "picture", "view"]
@@ -90,8 +90,8 @@ class Picture:
 
 
 def layers_of(meshes: Sequence[Any], names: Sequence[str] | None) -> tuple[tuple[Any, str | None, None], ...]:
-    """Takes meshes or arrays of points, with their names, as the native functions want them."""
-    list_of = [m if isinstance(m, Mesh) else Mesh(m) for m in meshes]
+    """Takes what is to be shown, with its names, as the native functions want it."""
+    list_of = [mesh_of(m) for m in meshes]
     words = [as_text(name, "names") for name in names] if names is not None else [None] * len(list_of)
     if len(words) != len(list_of):
         raise ArgumentError("names: %d for %d meshes" % (len(words), len(list_of)))
@@ -105,8 +105,9 @@ def picture(*meshes: Any, look: Any = None, colour_by: str | None = None, size: 
 
     Parameters
     ----------
-    meshes : Mesh or array_like, shape (n, 3)
-        One to twelve: over each other, or side by side.
+    meshes : Mesh, Delaunay, Voronoi, ConvexHull, or array_like, shape (n, 3)
+        One to twelve: over each other, or side by side; of space that repeats and living ones, too. Cells are those that
+        end; without a box not those that reach beyond the points by over a quarter of their extent; of over 8,000 an even choice.
     look : array_like, shape (3,), optional
         The direction of the eye; by default, of some directions the one that shows most.
     colour_by : str, optional
@@ -155,8 +156,9 @@ def view(*meshes: Any, names: Sequence[str] | None = None, title: str | None = N
 
     Parameters
     ----------
-    meshes : Mesh or array_like, shape (n, 3)
-        One to twelve: layers of one scene.
+    meshes : Mesh, Delaunay, Voronoi, ConvexHull, or array_like, shape (n, 3)
+        One to twelve: layers of one scene; of space that repeats and living ones, too. Cells are those that end; without a
+        box not those that reach beyond the points by over a quarter of their extent; of over 8,000 an even choice.
     names : sequence of str, optional
         A name for each.
     title : str, optional

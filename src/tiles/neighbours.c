@@ -1,0 +1,298 @@
+/* Neighbours of tetrahedra across tiles.
+ *
+ * Two tetrahedra are neighbours if they share a facet. The facets of a part are put into buckets by their least vertex,
+ * and those of a bucket are sorted: equal ones are next to each other. What is left alone is a facet of the hull, or
+ * its other side is of another tile. These facets go to files by a hash of the indices of their vertices, as many files
+ * as tiles. Each file is sorted in memory, and each side of a pair is told the other one, in a file of its tile. So no
+ * more than the borders of all tiles is written, and neighbours within a tile are found anew when they are asked for.
+ *
+ * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988. */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/rng.h"
+#include "base/sort.h"
+#include "tiles/work.h"
+#include "triangulation/tetrahedra.h"
+#include <stdio.h>
+#include <string.h>
+
+enum { WAITING = 1 << 14, ALL_WAITING = 1 << 22, LEAST_WAITING = 1 << 10 /* bytes for a file. Chosen */ };
+
+/* --- facets of a part --- */
+
+static void sort_three(uint32_t v[3]) {
+    for (int i = 0; i < 2; i++)
+        for (int k = 0; k < 2 - i; k++)
+            if (v[k] > v[k + 1]) {
+                uint32_t swap = v[k];
+                v[k] = v[k + 1], v[k + 1] = swap;
+            }
+}
+
+/* Writes the rows of the vertices of a facet, in ascending order. */
+static inline void vertices_of(const brio_tile_part *p, uint32_t facet, uint32_t v[3]) {
+    const uint32_t *tet = p->tetrahedra[brio_tet_of(facet)];
+    for (int k = 0; k < 3; k++) v[k] = tet[BRIO_FACET[brio_slot_of(facet)][k]];
+    sort_three(v);
+}
+
+static int compare_facets(uint32_t i, uint32_t j, const void *user) {
+    uint32_t a[3], b[3];
+    vertices_of(user, i, a);
+    vertices_of(user, j, b);
+    for (int k = 1; k < 3; k++) /* the least vertices are the same */
+        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+    return 0;
+}
+
+/* Lists the facets of a part by their least vertex.   end  receives where those of each vertex end. */
+static void list_facets(const brio_tile_part *p, size_t *end, uint32_t *facet) {
+    uint32_t v[3];
+    for (size_t f = 0; f < 4 * p->num_tetrahedra; f++) {
+        vertices_of(p, (uint32_t)f, v);
+        end[v[0] + 1]++;
+    }
+    for (size_t i = 0; i < p->num_vertices; i++) end[i + 1] += end[i]; /* where the next vertex begins */
+    for (size_t f = 0; f < 4 * p->num_tetrahedra; f++) {
+        vertices_of(p, (uint32_t)f, v);
+        facet[end[v[0]]++] = (uint32_t)f;
+    }
+}
+
+/* Names the neighbours that are in the same part. The others become those that a facet of the hull has. */
+static brio_status match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
+                                brio_tile_neighbour (*neighbours)[4]) {
+    uint32_t *facet = NULL;
+    size_t *end = NULL;
+    brio_status status = BRIO_OK;
+    memset(neighbours, 0xff, p->num_tetrahedra * sizeof *neighbours); /* BRIO_NO_TILE */
+    BRIO_TRY(BRIO_ALLOC(ctx, facet, 4 * p->num_tetrahedra + 1));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, end, p->num_vertices + 1));
+    list_facets(p, end, facet);
+    for (size_t v = 0, begin = 0; v < p->num_vertices; begin = end[v++]) {
+        brio_sort_indices(facet + begin, end[v] - begin, compare_facets, p);
+        for (size_t i = begin + 1; i < end[v]; i++) {
+            uint32_t a = facet[i - 1], b = facet[i];
+            if (compare_facets(a, b, p)) continue;
+            neighbours[brio_tet_of(a)][brio_slot_of(a)] = (brio_tile_neighbour){tile, brio_tet_of(b)};
+            neighbours[brio_tet_of(b)][brio_slot_of(b)] = (brio_tile_neighbour){tile, brio_tet_of(a)};
+        }
+        BRIO_TRY(brio_look(ctx, end[v] - begin));
+    }
+done:
+    brio_release(ctx, facet);
+    brio_release(ctx, end);
+    return status;
+}
+
+/* --- files that rows are divided into --- */
+
+typedef struct {
+    brio_store_file file;
+    uint8_t *bytes;
+    size_t size;
+} tray;
+
+typedef struct {
+    brio_tiles *t;
+    tray *tray; /* one for each tile */
+    size_t room;
+} trays;
+
+static brio_status open_trays(brio_tiles *t, const char *name, trays *out) {
+    size_t share = ALL_WAITING / t->num_tiles;
+    *out = (trays){.t = t, .room = share < LEAST_WAITING ? LEAST_WAITING : share < WAITING ? share : WAITING};
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, out->tray, t->num_tiles));
+    for (uint32_t i = 0; i < t->num_tiles; i++) out->tray[i].file.file = -1;
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        char full[32];
+        snprintf(full, sizeof full, "%s-%u", name, i);
+        BRIO_FORWARD(brio_store_create(&t->folder, full, &out->tray[i].file));
+        brio_store_shut(&out->tray[i].file);
+        BRIO_FORWARD(BRIO_ALLOC(t->ctx, out->tray[i].bytes, out->room));
+    }
+    return BRIO_OK;
+}
+
+static brio_status flush(tray *tr) {
+    brio_status status = brio_store_append(&tr->file, tr->bytes, tr->size);
+    tr->size = 0;
+    return status;
+}
+
+static brio_status put(trays *all, uint32_t into, const void *row, size_t size) {
+    tray *tr = &all->tray[into];
+    if (tr->size + size > all->room) BRIO_FORWARD(flush(tr));
+    memcpy(tr->bytes + tr->size, row, size);
+    tr->size += size;
+    return BRIO_OK;
+}
+
+static void close_trays(trays *all) {
+    for (uint32_t i = 0; all->tray && i < all->t->num_tiles; i++) {
+        brio_store_close(&all->tray[i].file);
+        brio_release(all->t->ctx, all->tray[i].bytes);
+    }
+    if (all->t) brio_release(all->t->ctx, all->tray);
+}
+
+/* Reads a whole file of rows.   rows  receives them, the caller's. */
+static brio_status read_rows(brio_tiles *t, const char *name, size_t size, void **rows, size_t *count) {
+    brio_store_file f = {.file = -1};
+    brio_status status = BRIO_OK;
+    uint8_t *bytes = NULL;
+    BRIO_TRY(brio_store_open(&t->folder, name, &f));
+    *count = (size_t)(f.size / size);
+    BRIO_TRY(BRIO_ALLOC(t->ctx, bytes, *count * size + 1));
+    *rows = bytes;
+    status = brio_store_read(&f, 0, bytes, *count * size);
+done:
+    brio_store_close(&f);
+    return status;
+}
+
+/* --- facets without a neighbour in their part --- */
+
+typedef struct {
+    uint64_t index[3]; /* of the vertices, ascending */
+    uint32_t tile, facet;
+} lone_facet;
+
+/* Says to a facet of a tile what its neighbour is. */
+typedef struct {
+    uint32_t facet;
+    brio_tile_neighbour neighbour;
+} answer;
+
+static lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t facet) {
+    lone_facet l = {.tile = tile, .facet = facet};
+    uint32_t v[3];
+    vertices_of(p, facet, v);
+    for (int k = 0; k < 3; k++) l.index[k] = p->index[v[k]];
+    brio_sort_keys(l.index, 3);
+    return l;
+}
+
+/* Puts the lone facets of a tile into the files. */
+static brio_status put_lone(brio_tiles *t, uint32_t tile, trays *all) {
+    brio_tile_part p = {.size = sizeof p};
+    brio_tile_neighbour(*neighbours)[4] = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_tiles_part(t->ctx, t, tile, &p));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, neighbours, p.num_tetrahedra + 1));
+    BRIO_TRY(match_inside(t->ctx, tile, &p, neighbours));
+    for (size_t f = 0; f < 4 * p.num_tetrahedra; f++) {
+        if (neighbours[f / 4][f % 4].tile != BRIO_NO_TILE) continue;
+        lone_facet l = lone_facet_of(&p, tile, (uint32_t)f);
+        uint64_t hash = brio_mix(l.index[0] ^ brio_mix(l.index[1] ^ brio_mix(l.index[2])));
+        BRIO_TRY(put(all, (uint32_t)(hash % t->num_tiles), &l, sizeof l));
+    }
+done:
+    brio_tile_part_free(t->ctx, &p);
+    brio_release(t->ctx, neighbours);
+    return status;
+}
+
+static int compare_lone(uint32_t i, uint32_t j, const void *user) {
+    const lone_facet *a = (const lone_facet *)user + i, *b = (const lone_facet *)user + j;
+    for (int k = 0; k < 3; k++)
+        if (a->index[k] != b->index[k]) return a->index[k] < b->index[k] ? -1 : 1;
+    return 0;
+}
+
+/* Tells each side of the pairs of a file the other one. */
+static brio_status answer_pairs(brio_tiles *t, const char *name, trays *all) {
+    lone_facet *l = NULL;
+    uint32_t *row = NULL;
+    size_t n = 0;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(read_rows(t, name, sizeof *l, (void **)&l, &n));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, row, n + 1));
+    for (size_t i = 0; i < n; i++) row[i] = (uint32_t)i;
+    BRIO_TRY(brio_sort_many_indices(t->ctx, row, n, compare_lone, l));
+    for (size_t i = 1; i < n; i++) {
+        const lone_facet *a = &l[row[i - 1]], *b = &l[row[i]];
+        if (compare_lone(row[i - 1], row[i], l)) continue;
+        BRIO_TRY(put(all, a->tile, &(answer){a->facet, {b->tile, brio_tet_of(b->facet)}}, sizeof(answer)));
+        BRIO_TRY(put(all, b->tile, &(answer){b->facet, {a->tile, brio_tet_of(a->facet)}}, sizeof(answer)));
+    }
+done:
+    brio_release(t->ctx, l);
+    brio_release(t->ctx, row);
+    return status;
+}
+
+static brio_status divide_lone(brio_tiles *t) {
+    trays lone = {0};
+    brio_status status = BRIO_OK;
+    BRIO_TRY(open_trays(t, "lone", &lone));
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 * i / t->num_tiles));
+        BRIO_TRY(put_lone(t, i, &lone));
+    }
+    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(flush(&lone.tray[i]));
+done:
+    close_trays(&lone);
+    return status;
+}
+
+static brio_status join_lone(brio_tiles *t) {
+    trays joined = {0};
+    brio_status status = BRIO_OK;
+    BRIO_TRY(open_trays(t, "joined", &joined));
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "lone-%u", i);
+        BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 + 0.1 * i / t->num_tiles));
+        BRIO_TRY(answer_pairs(t, name, &joined));
+        brio_store_remove(&t->folder, name);
+    }
+    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(flush(&joined.tray[i]));
+done:
+    close_trays(&joined);
+    return status;
+}
+
+/* Finds all neighbours that are of another tile. */
+static brio_status join_tiles(brio_tiles *t) {
+    BRIO_FORWARD(divide_lone(t));
+    BRIO_FORWARD(join_lone(t));
+    t->has_neighbours = true;
+    return BRIO_OK;
+}
+
+/* Names the neighbours of a part that are of other tiles. */
+static brio_status take_answers(brio_tiles *t, uint32_t tile, const brio_tile_part *p,
+                                brio_tile_neighbour (*neighbours)[4]) {
+    answer *a = NULL;
+    size_t n = 0;
+    brio_status status = BRIO_OK;
+    char name[32];
+    snprintf(name, sizeof name, "joined-%u", tile);
+    BRIO_TRY(read_rows(t, name, sizeof *a, (void **)&a, &n));
+    for (size_t i = 0; i < n; i++) {
+        uint32_t tet = brio_tet_of(a[i].facet);
+        BRIO_REQUIRE(t->ctx, tet < p->num_tetrahedra && a[i].neighbour.tile < t->num_tiles, BRIO_ERR_OPEN,
+                     "%s/%s was changed from outside", t->folder.path, name);
+        neighbours[tet][brio_slot_of(a[i].facet)] = a[i].neighbour;
+    }
+done:
+    brio_release(t->ctx, a);
+    return status;
+}
+
+brio_status brio_tiles_neighbours(brio_context *ctx, brio_tiles *t, uint32_t tile, const brio_tile_part *part,
+                                  brio_tile_neighbour (*neighbours)[4]) {
+    BRIO_DOOR;
+    BRIO_EXPECT(ctx, ctx == t->ctx, BRIO_ERR_ARGUMENT, "the tiles are of another context");
+    BRIO_EXPECT(ctx, t->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    BRIO_EXPECT(ctx, tile < t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, t->num_tiles);
+    BRIO_EXPECT(ctx, part->num_tetrahedra == t->tile[tile].tetrahedra, BRIO_ERR_ARGUMENT,
+                "%zu tetrahedra of tile %u, which has %llu", part->num_tetrahedra, tile,
+                (unsigned long long)t->tile[tile].tetrahedra);
+    if (!part->num_tetrahedra) return BRIO_OK;
+    if (!t->has_neighbours) BRIO_FORWARD(join_tiles(t));
+    t->stats.scratch_bytes = t->folder.most;
+    BRIO_FORWARD(match_inside(ctx, tile, part, neighbours));
+    return take_answers(t, tile, part, neighbours);
+}
