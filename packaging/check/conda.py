@@ -13,11 +13,11 @@ for platform in platforms:
     needs = variant.recipe.requirements.to_dict()
     asked = asked or needs['build'] + needs['host']
     print(platform, needs)
-channel = out / 'channel'
+channel = out / 'built'  # whose packages rattler-build lists itself
 for need in asked:
     name, _, version = need.partition(' ')
     assemble_package(name, version.lstrip('>=') or '1.0', platforms[0], '0', channel / platforms[0])
-(channel / 'noarch').mkdir()
-build_recipes([folder], channel=[channel.as_uri()], output_dir=out / 'built', test='native', target_platform=platforms[0])
+(channel / 'noarch').mkdir(exist_ok=True)
+build_recipes([folder / 'recipe.yaml'], channel=[channel.as_uri()], output_dir=out / 'built', test='native', target_platform=platforms[0])
 (package,) = (out / 'built' / platforms[0]).glob('brio-*.conda')
 print('read for %s; built for %s, %d bytes, its tests passed' % (', '.join(platforms), platforms[0], package.stat().st_size))

@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+from conftest import PYTHON
 
 posix = pytest.mark.skipif(os.name == "nt", reason="Windows has no fork, no timers by signals, no module resource")
 
@@ -329,7 +330,7 @@ except KeyboardInterrupt:
     print("interrupted")
 """
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
-    process = subprocess.Popen([sys.executable, "-c", program], env=environment, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen([*PYTHON, "-c", program], env=environment, stdout=subprocess.PIPE, text=True)
     assert process.stdout.readline() == "ready\n"
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)

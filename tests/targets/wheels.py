@@ -168,6 +168,7 @@ def try_wheel(root, out, wheel, target, files, seconds, again):
     environment = {**os.environ, 'PYTHONDONTWRITEBYTECODE': '1', 'PIP_CACHE_DIR': str(folder / 'cache'), 'LD_LIBRARY_PATH': library}
     if targets.RUNS[target.name][0] == 'qemu-aarch64':  # the library's path is for the emulated program alone
         environment['QEMU_SET_ENV'] = 'LD_LIBRARY_PATH=' + environment.pop('LD_LIBRARY_PATH')
+        environment['BRIO_EMULATOR'] = ' '.join(str(w) for w in python[:-1])
 
     def install(where, *what):
         return timed([*python, seen_by(target, pip / 'pip'), 'install', '-q', '--no-compile', '--no-index', '--find-links', seen_by(target, packages),
