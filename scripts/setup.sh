@@ -211,11 +211,8 @@ may_install() {
 # Brings the lists of packages up to date, and waits up to two minutes for another process that does.
 update_lists() {
     said=$(mktemp)
-    for _ in $(seq 24); do
-        apt-get update >"$said" 2>&1 && break
-        grep -q lists/lock "$said" || break
-        sleep 5
-    done
+    tries=24
+    until apt-get update >"$said" 2>&1 || ! grep -q lists/lock "$said" || [ $((tries -= 1)) = 0 ]; do sleep 5; done
     rm -f "$said"
 }
 
@@ -223,7 +220,7 @@ install() {
     export DEBIAN_FRONTEND=noninteractive
     log=$(mktemp)
     update_lists
-    apt-get -o DPkg::Lock::Timeout=120 install -y --no-install-recommends "$@" >"$log" 2>&1 || tail -n 20 "$log" >&2
+    apt-get install -o DPkg::Lock::Timeout=120 -y --no-install-recommends "$@" >"$log" 2>&1 || tail -n 20 "$log" >&2
     rm -f "$log"
 }
 
