@@ -473,7 +473,9 @@ async function explained(method = "power-crust") {
     await panel.getByLabel("show a sample").check();
     let same = 0, shown = 0;
     for (let i = 0; i < 10; i++) {
-        await slider.fill(String(Math.floor(i * samples / 10)));
+        const e = Math.floor(i * samples / 10);
+        await slider.fill(String(e));
+        await page.waitForFunction(async e => { const d = window.brioPage.drawings[0]; return d.told?.point === (await d.layer.explained()).points[e]; }, e);
         const rows = await page.evaluate(() => [...document.querySelectorAll(".told dt")].map(e => [e.textContent, e.nextSibling.textContent])), t = await told();
         rows.forEach(([name, value], k) => {
             if (name !== "centre") return;
