@@ -161,7 +161,7 @@ async function explained() {
         await make(method);
         await page.locator(".explanation").getByLabel("show a sample").tap();
         await page.getByRole("slider", { name: "Sample" }).fill("150");
-        await page.waitForFunction(() => window.brioPage.drawings[0].told && document.querySelectorAll(".told dt").length > 4);
+        await page.waitForFunction(async () => { const d = window.brioPage.drawings[0]; return d.told?.point === (await d.layer.explained()).points[150]; });
         const facts = await page.evaluate(() => {
             const d = window.brioPage.drawings[0], t = d.told, l = d.layer, far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
             return { balls: t.poles.filter(p => Number.isFinite(p.radius)).map(p => far(p.centre, t.place) / p.radius), tetrahedra: t.tetrahedra.length,

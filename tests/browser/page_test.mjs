@@ -525,7 +525,8 @@ async function explained(method = "power-crust") {
     expect(far[0] && far[1] < 1, `a click tells of a sample ${far} away`);
     await page.evaluate(() => { location.hash = encodeURIComponent('{"l":{"0":{"explain":7,"cocone":false}}}'); });
     await page.waitForFunction(() => window.brioPage.drawings[0].state.explain === 7 && +document.querySelector(".explanation input[type=range]").value === 7 && window.brioPage.drawings[0].told, null, { timeout: 5000 });
-    expect(!await page.locator(".explanation").getByLabel("co-cone").isChecked(), "a new address unticks the co-cone");
+    const unticked = await page.locator(".explanation").getByLabel("co-cone", { checked: false }).waitFor({ timeout: 5000 }).then(() => true, () => false);
+    expect(unticked, "a new address unticks the co-cone");
     await page.context().close();
 }
 
