@@ -95,6 +95,7 @@ brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
     if (folder) {
         BRIO_FORWARD(BRIO_ALLOC(ctx, ctx->scratch, strlen(folder) + 1));
         strcpy(ctx->scratch, folder);
+        ctx->scratch_in_runs = brio_scratch_in_runs(ctx);
     }
     return BRIO_OK;
 }

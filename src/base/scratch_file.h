@@ -10,6 +10,7 @@ enum { BRIO_SCRATCH_PAGE = 4096 }; /* transfers that bypass the system's cache a
 typedef struct {
     int cached, direct; /* descriptors; direct is -1 unless brio_scratch_direct opened it */
     size_t size;        /* bytes; the mark behind them is lost if somebody else cuts the file */
+    bool in_runs;       /* missing pages are read with those about them */
 } brio_scratch_file;
 
 /** Makes an empty file in a folder, as brio_scratch_open does, and closes it.
@@ -19,6 +20,10 @@ brio_status brio_scratch_try(brio_context *ctx, const char *folder);
 /** Finds how many bytes the context's scratch folder has room for. Returns false if that is not known, or there is no
  *  such folder. */
 bool brio_scratch_room(const brio_context *ctx, uint64_t *bytes);
+
+/** Finds whether missing pages of scratch files are to be read with those about them: where the disk's window for that
+ *  is known, and small enough for the memory. */
+bool brio_scratch_in_runs(const brio_context *ctx);
 
 /** Makes a file of `size` bytes in the context's scratch folder. Its space is allocated on disk, so that a full disk
  *  fails here.

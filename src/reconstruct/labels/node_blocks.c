@@ -293,10 +293,14 @@ done:
     return status;
 }
 
+/* Joins the blocks that begin at some of the places: along the curve, since what is near is read together. */
 static void join_part(void *user, size_t begin, size_t end, int thread) {
     finder *f = user;
-    for (size_t block = begin; block < end; block++)
-        if (f->trouble[block]) brio_report(&f->joined, join(f, &f->joiners[thread], (uint32_t)block));
+    for (size_t i = begin; i < end; i++) {
+        uint32_t block = f->out->of[i];
+        if (f->out->begin[block] == i && f->trouble[block])
+            brio_report(&f->joined, join(f, &f->joiners[thread], block));
+    }
 }
 
 static brio_status join_all(finder *f) {
@@ -304,7 +308,7 @@ static brio_status join_all(finder *f) {
     brio_context *ctx = f->out->ctx;
     size_t n = f->out->num_blocks;
     for (int t = 0; t < f->threads; t++) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f->joiners[t].seen, n));
-    BRIO_TRY(brio_for_chunks(ctx, n < (size_t)f->threads ? (int)n : f->threads, n, 1, join_part, f));
+    BRIO_TRY(brio_for_chunks(ctx, f->threads, f->out->count, NODES_A_CHUNK, join_part, f));
     status = f->joined;
 done:
     return status;
