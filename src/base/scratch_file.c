@@ -7,7 +7,6 @@
  * Somebody else may cut a file, and the next call that grows it fills what is lost with zeros. So each file ends with a
  * mark, which is lost with anything before it, and every call here looks for it after its work. */
 #include "base/scratch_file.h"
-#include "base/memory.h"
 #include "platform/disk.h"
 #include "platform/file.h"
 #include "platform/folder.h"
@@ -15,10 +14,6 @@
 #include <errno.h>
 #include <stdint.h>
 #include <string.h>
-
-/* Missing pages are read in runs where the disk's window is at most MOST_WINDOW, and one in SHARE bytes of the memory.
- * MOST_WINDOW: measured (docs/decisions/032), 16 to 128 KiB are alike; the usual window of Linux. SHARE: chosen. */
-enum { MOST_WINDOW = 1 << 17, SHARE = 64 };
 
 /* --- transfers --- */
 
@@ -101,11 +96,6 @@ brio_status brio_scratch_try(brio_context *ctx, const char *folder) {
 
 bool brio_scratch_room(const brio_context *ctx, uint64_t *bytes) {
     return ctx->scratch && brio_free_bytes(ctx->scratch, bytes);
-}
-
-bool brio_scratch_in_runs(const brio_context *ctx) {
-    size_t window = brio_read_around(ctx->scratch);
-    return window > 0 && window <= MOST_WINDOW && window <= brio_memory_limit(ctx) / SHARE;
 }
 
 brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {

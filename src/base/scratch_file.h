@@ -21,10 +21,6 @@ brio_status brio_scratch_try(brio_context *ctx, const char *folder);
  *  such folder. */
 bool brio_scratch_room(const brio_context *ctx, uint64_t *bytes);
 
-/** Finds whether missing pages of scratch files are to be read with those about them: where the disk's window for that
- *  is known, and small enough for the memory. */
-bool brio_scratch_in_runs(const brio_context *ctx);
-
 /** Makes a file of `size` bytes in the context's scratch folder. Its space is allocated on disk, so that a full disk
  *  fails here.
  *  Returns BRIO_OK or BRIO_ERR_NO_MEMORY. */

@@ -1,6 +1,5 @@
 /* Scratch files: the same triangulation, array for array, as in memory. */
 #include "base/memory.h"
-#include "base/scratch_file.h"
 #include "base/team.h"
 #include "harness.h"
 #include "points.h"
@@ -149,9 +148,9 @@ static void a_sweep_waits_for_few_pages(void) {
         EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
         long without = copy_all(ctx, false), with = copy_all(ctx, true);
         EXPECT(with <= PAGES / 8, "%ld of %d", with, PAGES);
-        EXPECT(!brio_scratch_in_runs(ctx) || without <= PAGES / 8, "%ld of %d", without, PAGES);
+        EXPECT(!ctx->scratch_in_runs || without <= PAGES / 8, "%ld of %d", without, PAGES);
     }
-    if (!brio_scratch_in_runs(ctx)) printf("skipped: pages in runs, since this disk's window is unknown or large\n");
+    if (!ctx->scratch_in_runs) printf("skipped: pages in runs, since this disk's window is unknown or large\n");
     brio_context_free(ctx);
 }
 
