@@ -76,8 +76,10 @@ static size_t worked_on_together(const brio_signed_graph *g) {
 static brio_status settle_blocks(problem *pr, int pass) {
     brio_status status = BRIO_OK;
     brio_node_blocks b;
-    BRIO_TRY(brio_node_blocks_find(pr->g, pr->label, pr->fixed, pr->descent->first_bits + pass,
-                                   worked_on_together(pr->g), brio_hash(1, (uint64_t)pass), &b));
+    const brio_block_rule rule = {.bits = pr->descent->first_bits + pass,
+                                  .together = worked_on_together(pr->g),
+                                  .draw = brio_hash(1, (uint64_t)pass)};
+    BRIO_TRY(brio_node_blocks_find(pr->g, pr->label, pr->fixed, rule, &b));
     for (size_t round = 0; round < b.num_rounds; round++) {
         double part = (pass + (double)round / (double)b.num_rounds) / pr->descent->passes;
         BRIO_TRY(brio_progress(pr->g->ctx, "label", pr->descent->from + (1 - pr->descent->from) * part));

@@ -359,7 +359,7 @@ typedef struct {
     uint32_t *colour; /* #blocks */
     size_t *first;    /* #blocks + 1 */
     uint32_t *earlier;
-    uint8_t *listed;  /* #blocks */
+    uint8_t *listed; /* #blocks */
     const size_t *begin;
     size_t num_listed, room; /* blocks that have a round; room for rounds */
 } schedule;
@@ -403,8 +403,8 @@ static void list_block(schedule *s, brio_node_blocks *b, uint32_t block) {
         }
 }
 
-/* By colours, and along the curve of the cells: blocks of a colour do not touch, so their order does not matter, and
- * what is near is worked on together. */
+/* Compares colours, then places along the curve of the cells: blocks of a colour do not touch, so their order does not
+ * matter, and what is near is worked on together. */
 static int compare_turns(uint32_t a, uint32_t b, const void *user) {
     const schedule *s = user;
     if (s->colour[a] != s->colour[b]) return s->colour[a] < s->colour[b] ? -1 : 1;
@@ -466,14 +466,14 @@ done:
 
 /* --- the blocks --- */
 
-brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
-                                  size_t together, uint64_t draw, brio_node_blocks *out) {
+brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *label, const uint8_t *fixed,
+                                  brio_block_rule rule, brio_node_blocks *out) {
     brio_status status = BRIO_OK;
     int threads = brio_threads(g->ctx, g->count, NODES_A_THREAD);
-    finder f = {.g = g, .label = label, .fixed = fixed, .together = together, .threads = threads, .out = out};
-    *out = (brio_node_blocks){.ctx = g->ctx, .bits = bits};
+    finder f = {.g = g, .label = label, .fixed = fixed, .together = rule.together, .threads = threads, .out = out};
+    *out = (brio_node_blocks){.ctx = g->ctx, .bits = rule.bits};
     BRIO_TRY(list_region(&f));
-    BRIO_TRY(find_top(&f, draw));
+    BRIO_TRY(find_top(&f, rule.draw));
     BRIO_TRY(list_blocks(&f));
     BRIO_TRY(set_places(&f));
     BRIO_TRY(divide_into_rounds(&f));
