@@ -158,7 +158,7 @@ static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_
         for (int k = 0; k < (b->infinite ? 3 : 4); k++)
             memcpy(b->vertex[k], c->known[c->local[v[k]]].record, sizeof *b->vertex);
         if (!b->infinite) memcpy(b->centre, centre[f], sizeof b->centre);
-        brio_ball_set_square(b, b->infinite ? 0 : error[f], &c->task.all);
+        brio_ball_set_region(b, b->infinite ? 0 : error[f], &c->task.all);
         f += !b->infinite;
     }
 }

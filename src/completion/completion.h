@@ -24,6 +24,8 @@ typedef struct {
                  [4]; /* of the positive tetrahedron; of an infinite one three, and (a, b, c, x) is positive outside */
     double centre[3]; /* of a finite one: a point x of weight w in conflict has |x - centre|^2 - w at most */
     double square;    /* this; INFINITY where the tetrahedron is too flat to say */
+    double way[3];    /* from vertex[0] to the centre: a point of weight w in conflict, d away from vertex[0], has */
+    double least;     /* at least this as d (2 way - d) + w; -INFINITY where the tetrahedron is too flat to say */
     bool infinite;
     bool is_free; /* a source sets it if no point of the set conflicts with the tetrahedron; it need not */
 } brio_ball;
@@ -38,8 +40,8 @@ typedef struct {
  *  all  a box that holds all points that will ever be compared with the ball. */
 void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all);
 
-/* All roundings of a comparison together stay below a factor of 1 +- this. */
-#define BRIO_BALL_SLACK 0x1p-46
+/** Sets a ball's `way` and `least`, which brio_ball_meets needs, and its `square`. The parameters are the same. */
+void brio_ball_set_region(brio_ball *ball, double error, const brio_ball_box *all);
 
 /** Returns what brio_ball_meets does, for an infinite tetrahedron. */
 bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box);
@@ -47,13 +49,13 @@ bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box
 /** Returns whether a point in the box may be in conflict. Never false where one is.   f  as in brio_ball_takes. */
 static inline bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
     if (ball->infinite) return brio_facet_meets(f, ball, box);
-    double most = ball->square + box->weight + (fabs(ball->square) + fabs(box->weight)) * BRIO_BALL_SLACK, square = 0;
-    for (int k = 0; k < 3; k++) {
-        double below = box->low[k] - ball->centre[k], above = ball->centre[k] - box->high[k];
-        double d = below > above ? below : above;
-        square += d > 0 ? d * d : 0;
+    double sum = box->weight;
+    for (int k = 0; k < 3; k++) { /* of the box's point nearest to the centre */
+        double low = box->low[k] - ball->vertex[0][k], high = box->high[k] - ball->vertex[0][k], d = ball->way[k];
+        d = d < low ? low : d > high ? high : d;
+        sum += d * (2 * ball->way[k] - d);
     }
-    return !(square * (1 - BRIO_BALL_SLACK) > most); /* true for NaN */
+    return !(sum < ball->least); /* true for NaN */
 }
 
 /** Returns whether every point in conflict lies strictly inside the box, whose weight is that of the heaviest point.

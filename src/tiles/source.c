@@ -27,7 +27,6 @@ enum {
     BALLS_A_THREAD = 64
 };
 
-static const double SLACK = 0x1p-46;
 static const double NEAR = 0.6; /* a node is as far away as it is large, divided by this: then its sample suffices */
 
 /* Doubles side by side. */
@@ -209,11 +208,14 @@ static brio_set_point point_of(const block *b, uint32_t i) {
     return (brio_set_point){{b->x[i], b->y[i], b->z[i], b->w[i]}, b->place + i};
 }
 
-/* Returns whether a ball with a square may take a point. */
+/* Returns whether a ball may take a point. */
 static inline bool is_near(const brio_ball *ball, const double *record) {
-    double limit = ball->square + fabs(ball->square) * SLACK, square = 0;
-    for (int k = 0; k < 3; k++) square += (record[k] - ball->centre[k]) * (record[k] - ball->centre[k]);
-    return !(square * (1 - SLACK) > limit + record[3] + fabs(record[3]) * SLACK);
+    double sum = record[3];
+    for (int k = 0; k < 3; k++) {
+        double d = record[k] - ball->vertex[0][k];
+        sum += d * (2 * ball->way[k] - d);
+    }
+    return !(sum < ball->least);
 }
 
 static lanes load(const double *from) {
@@ -222,26 +224,27 @@ static lanes load(const double *from) {
     return v;
 }
 
-/* Returns whether one of the points of a group is at most that far from a centre, squared. */
-static bool is_group_near(const double *centre, double square, const block *b, uint32_t first) {
+/* Returns whether a ball may take one of the points of a group. */
+static bool is_group_near(const brio_ball *ball, const block *b, uint32_t first) {
+    const double *p = ball->vertex[0], *way = ball->way;
+    double least = ball->least - b->heaviest;
     lane_bits near = {0};
     for (uint32_t i = first; i < first + GROUP; i += LANES) {
-        lanes x = load(b->x + i) - centre[0], y = load(b->y + i) - centre[1], z = load(b->z + i) - centre[2];
-        near |= x * x + y * y + z * z <= square;
+        lanes x = load(b->x + i) - p[0], y = load(b->y + i) - p[1], z = load(b->z + i) - p[2];
+        near |= x * (2 * way[0] - x) + y * (2 * way[1] - y) + z * (2 * way[2] - z) >= least;
     }
     return (near[0] | near[1]) != 0;
 }
 
 /* Lists the points that a ball may take. Returns their number. */
 static uint32_t list_near(const brio_ball *ball, const block *b, uint32_t list[TILE_BLOCK]) {
-    double most = ball->square + b->heaviest, square = most + 4 * SLACK * (fabs(ball->square) + fabs(b->heaviest));
     uint32_t n = 0;
-    if (ball->infinite || !(square < INFINITY)) {
+    if (ball->infinite || !(ball->least > -INFINITY)) {
         for (uint32_t i = 0; i < b->points; i++) list[i] = i;
         return b->points;
     }
     for (uint32_t first = 0; first < b->points; first += GROUP) {
-        if (!is_group_near(ball->centre, square, b, first)) continue;
+        if (!is_group_near(ball, b, first)) continue;
         for (uint32_t i = first; i < first + GROUP && i < b->points; i++) {
             double record[4] = {b->x[i], b->y[i], b->z[i], b->w[i]};
             list[n] = i;
@@ -303,7 +306,7 @@ static brio_status search_block(brio_tile_source *s, search *se, const brio_ball
 /* Tests a node's sample. Where points lie nearly on the balls, all comparisons are exact and in vain: after many of
  * them, samples are not tested any more. */
 static brio_status try_sample(search *se, const brio_ball *ball, const brio_set_point *sample, int *hits) {
-    bool sure = ball->infinite || !(ball->square < INFINITY);
+    bool sure = ball->infinite || !(ball->least > -INFINITY);
     if (se->ties > MOST_TIES && se->ties > MOST_TIES_A_HIT * se->hits) return BRIO_OK;
     if (!sure && !is_near(ball, sample->record)) return BRIO_OK;
     if (!brio_ball_takes(&se->filter, ball, sample->record)) {
