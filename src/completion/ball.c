@@ -16,21 +16,7 @@
  * |d| <= |u| + sqrt(square + w), and |d| <= D. */
 #include "completion/completion.h"
 
-static const double SLACK = 0x1p-46, TINY = 1e-290, ROUNDINGS = 0x1p-48;
-
-void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all) {
-    const double *p = ball->vertex[0];
-    double diagonal = 0, square = 0;
-    ball->square = INFINITY;
-    if (ball->infinite || isnan(ball->centre[0])) return;
-    for (int k = 0; k < 3; k++) {
-        double d = p[k] - ball->centre[k];
-        diagonal += fabs(all->high[k] - all->low[k]);
-        square += d * d;
-    }
-    square += (square + fabs(p[3])) * SLACK - p[3] + 4 * error * diagonal + TINY;
-    if (!isnan(square)) ball->square = square; /* else differences of infinities */
-}
+static const double SLACK = BRIO_BALL_SLACK, TINY = BRIO_BALL_TINY, ROUNDINGS = 0x1p-48;
 
 void brio_ball_set_region(brio_ball *ball, double error, const brio_ball_box *all) {
     const double *p = ball->vertex[0];
@@ -74,19 +60,6 @@ bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box
                 if (brio_orient3d_sign(f, a, b, c, corner) > 0) return true;
             }
     return false;
-}
-
-bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box) {
-    if (ball->infinite || !(ball->square < INFINITY)) return false;
-    double square = ball->square + fabs(ball->square) * SLACK + box->weight + fabs(box->weight) * SLACK;
-    if (square < 0) return true; /* no point of the set is as heavy */
-    double radius = sqrt(square) * (1 + SLACK);
-    for (int k = 0; k < 3; k++) {
-        double slack = fabs(ball->centre[k]) * SLACK;
-        if (!(ball->centre[k] - radius - slack > box->low[k] && ball->centre[k] + radius + slack < box->high[k]))
-            return false;
-    }
-    return true;
 }
 
 bool brio_ball_takes(brio_filter *f, const brio_ball *ball, const double *record) {

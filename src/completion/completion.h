@@ -36,9 +36,27 @@ typedef struct {
     double weight;
 } brio_ball_box;
 
-/** Sets a ball's `square` from its vertices, its centre, and a bound of the error of each of the centre's coordinates.
+/* All roundings of a comparison of squares together stay below a factor of 1 +- BRIO_BALL_SLACK; what underflows is
+ * less than BRIO_BALL_TINY. */
+#define BRIO_BALL_SLACK 0x1p-46
+#define BRIO_BALL_TINY  1e-290
+
+/** Sets a ball's `square` from its first vertex, its centre, and a bound of the error of each of the centre's
+ *  coordinates.
  *  all  a box that holds all points that will ever be compared with the ball. */
-void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all);
+static inline void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all) {
+    const double *p = ball->vertex[0];
+    double diagonal = 0, square = 0;
+    ball->square = INFINITY;
+    if (ball->infinite || isnan(ball->centre[0])) return;
+    for (int k = 0; k < 3; k++) {
+        double d = p[k] - ball->centre[k];
+        diagonal += fabs(all->high[k] - all->low[k]);
+        square += d * d;
+    }
+    square += (square + fabs(p[3])) * BRIO_BALL_SLACK - p[3] + 4 * error * diagonal + BRIO_BALL_TINY;
+    if (!isnan(square)) ball->square = square; /* else differences of infinities */
+}
 
 /** Sets a ball's `way` and `least`, which brio_ball_meets needs, and its `square`. The parameters are the same. */
 void brio_ball_set_region(brio_ball *ball, double error, const brio_ball_box *all);
@@ -60,7 +78,18 @@ static inline bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const 
 
 /** Returns whether every point in conflict lies strictly inside the box, whose weight is that of the heaviest point.
  *  May be false where they do. Always false for a half-space. */
-bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box);
+static inline bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box) {
+    if (ball->infinite || !(ball->square < INFINITY)) return false;
+    double square = ball->square + (fabs(ball->square) + fabs(box->weight)) * BRIO_BALL_SLACK + box->weight;
+    double nearest = INFINITY; /* side of the box */
+    for (int k = 0; k < 3; k++) {
+        double below = ball->centre[k] - box->low[k], above = box->high[k] - ball->centre[k];
+        nearest = below < nearest ? below : nearest;
+        nearest = above < nearest ? above : nearest;
+    }
+    /* no point of the set is as heavy, or the square of the radius is less than that of the distance */
+    return square < 0 || (nearest > 0 && nearest * nearest * (1 - BRIO_BALL_SLACK) > square);
+}
 
 /** Returns whether a point conflicts with the tetrahedron, exactly. A point at the position of a vertex does if it is
  *  heavier.
