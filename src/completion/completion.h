@@ -189,8 +189,8 @@ brio_status brio_completion_new(brio_context *ctx, const brio_completion_task *t
 /** Begins a round: triangulates, and judges which tetrahedra must be asked for.   *questions  receives how many. */
 brio_status brio_completion_begin(brio_completion *c, size_t *questions);
 
-/** Sets the balls of `count` questions from `first` on. */
-void brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls);
+/** Sets the balls of `count` questions from `first` on. Returns BRIO_OK or BRIO_ERR_CANCELLED. */
+brio_status brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls);
 
 /** Notes that no point of the set conflicts with the ball of a question. It is not wrong to leave this out. */
 void brio_completion_is_free(brio_completion *c, size_t question);

@@ -307,7 +307,7 @@ static void answer(brio_context *ctx, member *m, brio_rng *rng, bool shuffled) {
     size_t at = shuffled ? brio_rng_below(rng, (uint32_t)m->num_pieces) : 0, first = m->first[at];
     size_t n = m->questions - first < PIECE ? m->questions - first : PIECE;
     memmove(m->first + at, m->first + at + 1, (--m->num_pieces - at) * sizeof *m->first);
-    brio_completion_balls(m->c, first, n, ball);
+    EXPECT(brio_completion_balls(m->c, first, n, ball) == BRIO_OK);
     EXPECT(conflicts(&set, ball, n, &found) == BRIO_OK);
     for (size_t i = found.count; shuffled && i-- > 0;)
         EXPECT(brio_completion_take(m->c, found.point + i, found.count - i > 2 ? 2 : 1) == BRIO_OK);
@@ -409,7 +409,7 @@ static void questions_come_in_the_order_of_their_vertices(void) {
         EXPECT(brio_completion_new(ctx, &task, &c) == BRIO_OK);
         EXPECT(brio_completion_begin(c, &questions) == BRIO_OK && questions > COUNT);
         for (size_t q = 0; q < questions; q++) {
-            brio_completion_balls(c, q, 1, &ball);
+            EXPECT(brio_completion_balls(c, q, 1, &ball) == BRIO_OK);
             name_vertices(&ball, name);
             int k = 0;
             while (k < 3 && name[k] == before[k]) k++;
