@@ -5,23 +5,33 @@
  *     |x - c'|^2 - w - (|p - c'|^2 - v) = (|x - c|^2 - w) - (|p - c|^2 - v) + 2 (x - p)(c - c').
  * If x is in conflict, the first two terms on the right are at most 0 together, so the left side is at most
  * 2 d |x - p|. So `square` is |p - c'|^2 - v + 2 d D for any vertex p, where D is the diagonal of the box of all
- * points. All roundings together stay below a factor of 1 +- 2^-46, and TINY stands for what underflows. */
+ * points. All roundings together stay below a factor of 1 +- 2^-46, and TINY stands for what underflows.
+ *
+ * Of a nearly flat tetrahedron |c - p| may be 10^13 times D. A comparison of squares as large as |c - p|^2 then says of
+ * no point that it is outside. So points and boxes are compared by the difference of the squares. With u = c - p and
+ * d = x - p,
+ *     |p - c|^2 - |x - c|^2 = d (2 u - d),
+ * and x is in conflict if this is at least v - w. The roundings of the sum over the coordinates stay below 2^-48 of
+ * |d| (2 |u| + |d|) + |v| + |w|, and the error of u changes it by at most 4 error |d|. What is in conflict has
+ * |d| <= |u| + sqrt(square + w), and |d| <= D. */
 #include "completion/completion.h"
 
-static const double SLACK = BRIO_BALL_SLACK, TINY = 1e-290;
+static const double SLACK = BRIO_BALL_SLACK, TINY = BRIO_BALL_TINY, ROUNDINGS = 0x1p-48;
 
-void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all) {
+void brio_ball_set_region(brio_ball *ball, double error, const brio_ball_box *all) {
     const double *p = ball->vertex[0];
-    double diagonal = 0, square = 0;
-    ball->square = INFINITY;
-    if (ball->infinite || isnan(ball->centre[0])) return;
+    double diagonal = 0, length = 0, heaviest = fabs(all->weight);
+    brio_ball_set_square(ball, error, all);
+    ball->least = -INFINITY;
+    if (!(ball->square < INFINITY)) return;
     for (int k = 0; k < 3; k++) {
-        double d = p[k] - ball->centre[k];
+        ball->way[k] = ball->centre[k] - p[k];
         diagonal += fabs(all->high[k] - all->low[k]);
-        square += d * d;
+        length += fabs(ball->way[k]) + error;
     }
-    square += (square + fabs(p[3])) * SLACK - p[3] + 4 * error * diagonal + TINY;
-    if (!isnan(square)) ball->square = square; /* else differences of infinities */
+    double most = fmin(diagonal, length + sqrt(fmax(0, ball->square + all->weight))) * (1 + SLACK);
+    double margin = (most * (2 * length + most) + fabs(p[3]) + heaviest) * ROUNDINGS + 4 * error * most + TINY;
+    if (margin < INFINITY) ball->least = p[3] - margin;
 }
 
 /* Returns whether a corner of the box may be behind the facet: the corners at which the facet's normal n is greatest.
@@ -50,19 +60,6 @@ bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box
                 if (brio_orient3d_sign(f, a, b, c, corner) > 0) return true;
             }
     return false;
-}
-
-bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box) {
-    if (ball->infinite || !(ball->square < INFINITY)) return false;
-    double square = ball->square + fabs(ball->square) * SLACK + box->weight + fabs(box->weight) * SLACK;
-    if (square < 0) return true; /* no point of the set is as heavy */
-    double radius = sqrt(square) * (1 + SLACK);
-    for (int k = 0; k < 3; k++) {
-        double slack = fabs(ball->centre[k]) * SLACK;
-        if (!(ball->centre[k] - radius - slack > box->low[k] && ball->centre[k] + radius + slack < box->high[k]))
-            return false;
-    }
-    return true;
 }
 
 bool brio_ball_takes(brio_filter *f, const brio_ball *ball, const double *record) {

@@ -28,7 +28,9 @@
 
 enum {
     SLAB = 1 << 17, /* tetrahedra looked at before some are handed on */
-    TETS_A_THREAD = 1 << 12
+    TETS_A_THREAD = 1 << 12,
+    POINTS_A_THREAD = 1 << 14,
+    BALLS_A_THREAD = 1 << 8
 };
 
 enum { STAR_OPEN, STAR_FINAL, NO_VERTEX }; /* of an own point */
@@ -76,17 +78,21 @@ static void end_round(completion *c) {
     c->open = c->not_final = c->to_ask = c->stays = NULL;
 }
 
+static void gather_some(void *user, size_t begin, size_t end, int thread) {
+    completion *c = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const double *r = c->known[c->local[i]].record;
+        memcpy(c->points + 3 * i, r, 3 * sizeof *r);
+        if (c->task.weighted) c->weights[i] = r[3];
+    }
+}
+
 static brio_status gather(completion *c) {
     size_t n = c->num_local;
     BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->points, c->points_capacity, 3 * n + 1));
     if (c->task.weighted) BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->weights, c->weights_capacity, n + 1));
-    for (size_t i = 0; i < n; i++) {
-        const double *r = c->known[c->local[i]].record;
-        memcpy(c->points + 3 * i, r, 3 * sizeof *r);
-        if (c->task.weighted) c->weights[i] = r[3];
-        BRIO_FORWARD(brio_look(c->ctx, 1));
-    }
-    return BRIO_OK;
+    return brio_for(c->ctx, brio_threads(c->ctx, n, POINTS_A_THREAD), n, gather_some, c);
 }
 
 static brio_status triangulate(completion *c) {
@@ -158,7 +164,7 @@ static void set_balls(const completion *c, const uint32_t *tets, size_t n, brio_
         for (int k = 0; k < (b->infinite ? 3 : 4); k++)
             memcpy(b->vertex[k], c->known[c->local[v[k]]].record, sizeof *b->vertex);
         if (!b->infinite) memcpy(b->centre, centre[f], sizeof b->centre);
-        brio_ball_set_square(b, b->infinite ? 0 : error[f], &c->task.all);
+        brio_ball_set_region(b, b->infinite ? 0 : error[f], &c->task.all);
         f += !b->infinite;
     }
 }
@@ -203,33 +209,33 @@ static void judge_some(void *user, size_t begin, size_t end, int thread) {
 
 /* --- asking --- */
 
-static int compare_tets(uint32_t i, uint32_t j, const void *user) {
-    const completion *c = user;
-    brio_tet_key a = key_of(c, &c->tet[i]), b = key_of(c, &c->tet[j]);
-    for (int k = 0; k < 4; k++)
-        if (a.v[k] != b.v[k]) return a.v[k] < b.v[k] ? -1 : 1;
-    return 0;
-}
-
-/* Orders the questions by their vertices: in which order the tetrahedra came is forgotten. */
+/* Orders the questions by their vertices: in which order the tetrahedra came is forgotten. The sort is stable, so it
+ * takes the last two vertices first. */
 static brio_status order_questions(completion *c) {
     uint64_t *key = NULL;
     brio_status status = BRIO_OK;
     size_t n = c->num_questions;
     BRIO_TRY(BRIO_ALLOC(c->ctx, key, n + 1));
-    for (size_t i = 0; i < n; i++) {
-        brio_tet_key k = key_of(c, &c->tet[c->question[i]]);
-        key[i] = (uint64_t)k.v[0] << 32 | k.v[1];
-    }
-    BRIO_TRY(brio_radix_sort(c->ctx, key, c->question, n, 64));
-    for (size_t begin = 0, end; begin < n; begin = end) {
-        for (end = begin + 1; end < n && key[end] == key[begin];) end++;
-        if (end - begin > 1)
-            BRIO_TRY(brio_sort_many_indices(c->ctx, c->question + begin, end - begin, compare_tets, c));
+    for (int first = 2; first >= 0; first -= 2) {
+        for (size_t i = 0; i < n; i++) {
+            brio_tet_key k = key_of(c, &c->tet[c->question[i]]);
+            key[i] = (uint64_t)k.v[first] << 32 | k.v[first + 1];
+        }
+        BRIO_TRY(brio_radix_sort(c->ctx, key, c->question, n, 64));
     }
 done:
     brio_release(c->ctx, key);
     return status;
+}
+
+/* Returns the first index from `from` on that is marked; n if there is none. Few are. */
+static size_t next_marked(const uint8_t *mark, size_t from, size_t n) {
+    for (uint64_t eight = 0; from + sizeof eight <= n; from += sizeof eight) {
+        memcpy(&eight, mark + from, sizeof eight);
+        if (eight) break;
+    }
+    while (from < n && !mark[from]) from++;
+    return from;
 }
 
 static brio_status list_questions(completion *c) {
@@ -237,8 +243,8 @@ static brio_status list_questions(completion *c) {
     for (size_t t = 0; t < c->num_tets; t++) n += c->to_ask[t];
     c->num_questions = 0;
     BRIO_FORWARD(BRIO_RESERVE(c->ctx, c->question, c->question_capacity, n));
-    for (size_t t = 0; t < c->num_tets; t++)
-        if (c->to_ask[t]) c->question[c->num_questions++] = (uint32_t)t;
+    for (size_t t = 0; (t = next_marked(c->to_ask, t, c->num_tets)) < c->num_tets; t++)
+        c->question[c->num_questions++] = (uint32_t)t;
     c->stats.asked += n;
     return order_questions(c);
 }
@@ -258,11 +264,24 @@ brio_status brio_completion_begin(brio_completion *c, size_t *questions) {
     return BRIO_OK;
 }
 
-void brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls) {
-    for (size_t i = 0; i < count; i += BRIO_CENTRE_BATCH) {
-        size_t n = count - i < BRIO_CENTRE_BATCH ? count - i : BRIO_CENTRE_BATCH;
-        set_balls(c, c->question + first + i, n, balls + i);
+typedef struct {
+    const completion *c;
+    const uint32_t *question;
+    brio_ball *balls;
+} wanted;
+
+static void set_some_balls(void *user, size_t begin, size_t end, int thread) {
+    const wanted *w = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i += BRIO_CENTRE_BATCH) {
+        size_t n = end - i < BRIO_CENTRE_BATCH ? end - i : BRIO_CENTRE_BATCH;
+        set_balls(w->c, w->question + i, n, w->balls + i);
     }
+}
+
+brio_status brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls) {
+    wanted w = {c, c->question + first, balls};
+    return brio_for(c->ctx, brio_threads(c->ctx, count, BALLS_A_THREAD), count, set_some_balls, &w);
 }
 
 void brio_completion_is_free(brio_completion *c, size_t question) {
@@ -439,9 +458,8 @@ static brio_status choose_points(completion *c, size_t before) {
     uint8_t *needed = NULL;
     size_t n = 0;
     BRIO_TRY(BRIO_ALLOC_ZERO(c->ctx, needed, c->num_local + 1));
-    for (size_t i = 0; i < c->num_tets; i++) {
+    for (size_t i = 0; (i = next_marked(c->stays, i, c->num_tets)) < c->num_tets; i++) {
         const brio_tetrahedron *t = &c->tet[i];
-        if (!c->stays[i]) continue;
         BRIO_TRY(brio_look(c->ctx, 1));
         for (int k = 0; k < (is_finite_tet(t) ? 4 : 3); k++) needed[t->vertex[k]] = 1;
         brio_tet_key key = key_of(c, t);
@@ -548,50 +566,4 @@ void brio_completion_vertices(const brio_completion *c, uint8_t *is_vertex) {
 const brio_set_point *brio_completion_known(const brio_completion *c, size_t *count) {
     *count = c->num_known;
     return c->known;
-}
-
-/* --- with one source --- */
-
-static brio_status ask_source(completion *c, size_t questions, brio_ball *balls, brio_found *found) {
-    found->count = 0;
-    for (size_t first = 0; first < questions; first += BRIO_COMPLETION_BALLS) {
-        size_t n = questions - first < BRIO_COMPLETION_BALLS ? questions - first : BRIO_COMPLETION_BALLS;
-        brio_completion_balls(c, first, n, balls);
-        BRIO_FORWARD(c->task.source(c->task.source_user, balls, n, found));
-        for (size_t i = 0; i < n; i++)
-            if (balls[i].is_free) brio_completion_is_free(c, first + i);
-    }
-    return brio_completion_take(c, found->point, found->count);
-}
-
-brio_status brio_complete(brio_context *ctx, const brio_completion_task *task, uint8_t *is_vertex,
-                          brio_completion_stats *stats) {
-    brio_status status = BRIO_OK;
-    brio_bar bar = brio_progress_bar(ctx);
-    completion *c = NULL;
-    brio_ball *balls = NULL;
-    brio_found found = {.ctx = ctx};
-    *stats = (brio_completion_stats){.dimension = -1};
-    BRIO_TRY(brio_completion_new(ctx, task, &c));
-    BRIO_TRY(BRIO_ALLOC(ctx, balls, BRIO_COMPLETION_BALLS));
-    for (bool goes_on = true; goes_on;) {
-        size_t questions;
-        BRIO_TRY(brio_completion_begin(c, &questions));
-        BRIO_TRY(ask_source(c, questions, balls, &found));
-        BRIO_TRY(brio_completion_end(c, &goes_on));
-    }
-    *stats = *brio_completion_facts(c);
-    if (is_vertex) brio_completion_vertices(c, is_vertex);
-done:
-    brio_completion_delete(c);
-    brio_release(ctx, balls);
-    brio_release(ctx, found.point);
-    brio_progress_part(ctx, bar, 0, 1);
-    return status;
-}
-
-brio_status brio_found_add(brio_found *found, const brio_set_point *point) {
-    BRIO_FORWARD(BRIO_RESERVE(found->ctx, found->point, found->capacity, found->count + 1));
-    found->point[found->count++] = *point;
-    return BRIO_OK;
 }

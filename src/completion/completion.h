@@ -24,6 +24,8 @@ typedef struct {
                  [4]; /* of the positive tetrahedron; of an infinite one three, and (a, b, c, x) is positive outside */
     double centre[3]; /* of a finite one: a point x of weight w in conflict has |x - centre|^2 - w at most */
     double square;    /* this; INFINITY where the tetrahedron is too flat to say */
+    double way[3];    /* from vertex[0] to the centre: a point of weight w in conflict, d away from vertex[0], has */
+    double least;     /* at least this as d (2 way - d) + w; -INFINITY where the tetrahedron is too flat to say */
     bool infinite;
     bool is_free; /* a source sets it if no point of the set conflicts with the tetrahedron; it need not */
 } brio_ball;
@@ -34,12 +36,30 @@ typedef struct {
     double weight;
 } brio_ball_box;
 
-/** Sets a ball's `square` from its vertices, its centre, and a bound of the error of each of the centre's coordinates.
- *  all  a box that holds all points that will ever be compared with the ball. */
-void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all);
-
-/* All roundings of a comparison together stay below a factor of 1 +- this. */
+/* All roundings of a comparison of squares together stay below a factor of 1 +- BRIO_BALL_SLACK; what underflows is
+ * less than BRIO_BALL_TINY. */
 #define BRIO_BALL_SLACK 0x1p-46
+#define BRIO_BALL_TINY  1e-290
+
+/** Sets a ball's `square` from its first vertex, its centre, and a bound of the error of each of the centre's
+ *  coordinates.
+ *  all  a box that holds all points that will ever be compared with the ball. */
+static inline void brio_ball_set_square(brio_ball *ball, double error, const brio_ball_box *all) {
+    const double *p = ball->vertex[0];
+    double diagonal = 0, square = 0;
+    ball->square = INFINITY;
+    if (ball->infinite || isnan(ball->centre[0])) return;
+    for (int k = 0; k < 3; k++) {
+        double d = p[k] - ball->centre[k];
+        diagonal += fabs(all->high[k] - all->low[k]);
+        square += d * d;
+    }
+    square += (square + fabs(p[3])) * BRIO_BALL_SLACK - p[3] + 4 * error * diagonal + BRIO_BALL_TINY;
+    if (!isnan(square)) ball->square = square; /* else differences of infinities */
+}
+
+/** Sets a ball's `way` and `least`, which brio_ball_meets needs, and its `square`. The parameters are the same. */
+void brio_ball_set_region(brio_ball *ball, double error, const brio_ball_box *all);
 
 /** Returns what brio_ball_meets does, for an infinite tetrahedron. */
 bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box);
@@ -47,18 +67,29 @@ bool brio_facet_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box
 /** Returns whether a point in the box may be in conflict. Never false where one is.   f  as in brio_ball_takes. */
 static inline bool brio_ball_meets(brio_filter *f, const brio_ball *ball, const brio_ball_box *box) {
     if (ball->infinite) return brio_facet_meets(f, ball, box);
-    double most = ball->square + box->weight + (fabs(ball->square) + fabs(box->weight)) * BRIO_BALL_SLACK, square = 0;
-    for (int k = 0; k < 3; k++) {
-        double below = box->low[k] - ball->centre[k], above = ball->centre[k] - box->high[k];
-        double d = below > above ? below : above;
-        square += d > 0 ? d * d : 0;
+    double sum = box->weight;
+    for (int k = 0; k < 3; k++) { /* of the box's point nearest to the centre */
+        double low = box->low[k] - ball->vertex[0][k], high = box->high[k] - ball->vertex[0][k], d = ball->way[k];
+        d = d < low ? low : d > high ? high : d;
+        sum += d * (2 * ball->way[k] - d);
     }
-    return !(square * (1 - BRIO_BALL_SLACK) > most); /* true for NaN */
+    return !(sum < ball->least); /* true for NaN */
 }
 
 /** Returns whether every point in conflict lies strictly inside the box, whose weight is that of the heaviest point.
  *  May be false where they do. Always false for a half-space. */
-bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box);
+static inline bool brio_ball_inside(const brio_ball *ball, const brio_ball_box *box) {
+    if (ball->infinite || !(ball->square < INFINITY)) return false;
+    double square = ball->square + (fabs(ball->square) + fabs(box->weight)) * BRIO_BALL_SLACK + box->weight;
+    double nearest = INFINITY; /* side of the box */
+    for (int k = 0; k < 3; k++) {
+        double below = ball->centre[k] - box->low[k], above = box->high[k] - ball->centre[k];
+        nearest = below < nearest ? below : nearest;
+        nearest = above < nearest ? above : nearest;
+    }
+    /* no point of the set is as heavy, or the square of the radius is less than that of the distance */
+    return square < 0 || (nearest > 0 && nearest * nearest * (1 - BRIO_BALL_SLACK) > square);
+}
 
 /** Returns whether a point conflicts with the tetrahedron, exactly. A point at the position of a vertex does if it is
  *  heavier.
@@ -158,8 +189,8 @@ brio_status brio_completion_new(brio_context *ctx, const brio_completion_task *t
 /** Begins a round: triangulates, and judges which tetrahedra must be asked for.   *questions  receives how many. */
 brio_status brio_completion_begin(brio_completion *c, size_t *questions);
 
-/** Sets the balls of `count` questions from `first` on. */
-void brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls);
+/** Sets the balls of `count` questions from `first` on. Returns BRIO_OK or BRIO_ERR_CANCELLED. */
+brio_status brio_completion_balls(const brio_completion *c, size_t first, size_t count, brio_ball *balls);
 
 /** Notes that no point of the set conflicts with the ball of a question. It is not wrong to leave this out. */
 void brio_completion_is_free(brio_completion *c, size_t question);

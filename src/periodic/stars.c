@@ -221,7 +221,7 @@ static void set_balls(const layer *y, const uint32_t *tets, size_t n, brio_ball 
             b->vertex[k][3] = m->weight ? m->weight[v[k]] : 0;
         }
         if (!b->infinite) memcpy(b->centre, centre[f], sizeof b->centre);
-        brio_ball_set_square(b, b->infinite ? 0 : error[f], &y->translates.all);
+        brio_ball_set_region(b, b->infinite ? 0 : error[f], &y->translates.all);
         f += !b->infinite;
     }
 }

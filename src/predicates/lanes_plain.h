@@ -9,6 +9,8 @@
 #include <string.h>
 #if defined(__aarch64__)
 #include <arm_neon.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 enum { LANES = 2 };
@@ -43,7 +45,11 @@ static inline lanes choose(lane_mask m, lanes x, lanes y) {
 }
 /* Returns x in the lanes where x > y, and y in the other lanes, which include the lanes with a NaN. */
 static inline lanes maximum(lanes x, lanes y) {
+#if defined(__SSE2__)
+    return (lanes)_mm_max_pd((__m128d)x, (__m128d)y);
+#else
     return choose(x > y, x, y);
+#endif
 }
 static inline unsigned bits_of(lane_mask m) {
     return (unsigned)(m[0] & 1) | (unsigned)(m[1] & 2);

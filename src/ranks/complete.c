@@ -62,7 +62,7 @@ static brio_status ask_some(completing *c, uint32_t number, size_t first, size_t
     brio_completion *completion = brio_tile_work_completion(s->work);
     brio_tile_source *source = brio_tile_work_source(s->work);
     size_t num_asked;
-    brio_completion_balls(completion, first, n, c->balls);
+    BRIO_FORWARD(brio_completion_balls(completion, first, n, c->balls));
     c->found.count = 0;
     BRIO_FORWARD(brio_tile_conflicts(source, c->balls, n, &c->found));
     BRIO_FORWARD(brio_completion_take(completion, c->found.point, c->found.count));

@@ -1,5 +1,5 @@
-/* The points of each tile come to their places: those that stand for their position, along a Hilbert curve, in blocks,
- * each of them shuffled. Extreme points and a basis are found on the way. */
+/* The points of each tile come to their places: those that stand for their position, along a Hilbert curve, in
+ * blocks. Extreme points and a basis are found on the way. */
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { POINTS_A_THREAD = 1 << 14, BLOCKS_A_THREAD = 1 << 8, KEY_BITS = 33 /* three digits of the sort. Chosen */ };
+enum { POINTS_A_THREAD = 1 << 14, KEY_BITS = 33 /* three digits of the sort. Chosen */ };
 
 /* --- one point for each position --- */
 
@@ -83,28 +83,6 @@ done:
 /* --- places --- */
 
 typedef struct {
-    brio_set_point *points;
-    size_t count;
-    uint64_t seed;
-} shuffle;
-
-/* Shuffles some blocks, each by itself. */
-static void shuffle_blocks(void *user, size_t begin, size_t end, int thread) {
-    const shuffle *s = user;
-    (void)thread;
-    for (size_t block = begin; block < end; block++) {
-        brio_set_point *points = s->points + block * TILE_BLOCK;
-        size_t left = s->count - block * TILE_BLOCK, size = left < TILE_BLOCK ? left : TILE_BLOCK;
-        brio_rng rng = brio_rng_new(brio_hash(s->seed, block));
-        for (size_t i = size; i > 1; i--) {
-            size_t j = brio_rng_below(&rng, (uint32_t)i);
-            brio_set_point swap = points[i - 1];
-            points[i - 1] = points[j], points[j] = swap;
-        }
-    }
-}
-
-typedef struct {
     const brio_set_point *from;
     brio_set_point *to;
     double *positions;
@@ -123,14 +101,13 @@ static void copy_in_order(void *user, size_t begin, size_t end, int thread) {
     for (size_t i = begin; i < end; i++) c->to[i] = c->from[c->order[i]];
 }
 
-/* Brings points into the order of a Hilbert curve, and shuffles each block. */
-static brio_status follow_curve(brio_tiles *t, brio_set_point **points, size_t n, uint64_t seed) {
+/* Brings points into the order of a Hilbert curve. */
+static brio_status follow_curve(brio_tiles *t, brio_set_point **points, size_t n) {
     uint32_t *order = NULL;
     copying c = {.from = *points};
     brio_status status = BRIO_OK;
     brio_delaunay_options o = {.size = sizeof o, .order = BRIO_ORDER_HILBERT, .seed = BRIO_SEED};
     int threads = brio_threads(t->ctx, n, POINTS_A_THREAD);
-    size_t blocks = (n + TILE_BLOCK - 1) / TILE_BLOCK;
     BRIO_TRY(BRIO_ALLOC(t->ctx, c.positions, 3 * n + 1));
     BRIO_TRY(BRIO_ALLOC(t->ctx, order, n + 1));
     c.order = order;
@@ -141,8 +118,6 @@ static brio_status follow_curve(brio_tiles *t, brio_set_point **points, size_t n
     brio_release(t->ctx, *points);
     *points = c.to;
     c.to = NULL;
-    shuffle s = {*points, n, seed};
-    status = brio_for(t->ctx, brio_threads(t->ctx, blocks, BLOCKS_A_THREAD), blocks, shuffle_blocks, &s);
 done:
     brio_release(t->ctx, c.positions);
     brio_release(t->ctx, order);
@@ -241,7 +216,7 @@ static brio_status arrange_tile(brio_tiles *t, uint32_t tile, brio_store_file *o
     size_t n = facts->raw, first_node = t->num_nodes;
     BRIO_TRY(read_divided(t, tile, &points));
     BRIO_TRY(drop_twins(t, points, &n));
-    BRIO_TRY(follow_curve(t, &points, n, tile));
+    BRIO_TRY(follow_curve(t, &points, n));
     facts->place = *place;
     facts->points = (uint32_t)n;
     BRIO_TRY(brio_tile_tree_add(t, tile, points));

@@ -321,7 +321,7 @@ static brio_status ask(brio_tile_work *w, size_t questions, brio_ball *balls, br
     brio_tile_source_round(w->source);
     for (size_t first = 0; first < questions; first += BRIO_COMPLETION_BALLS) {
         size_t n = questions - first < BRIO_COMPLETION_BALLS ? questions - first : BRIO_COMPLETION_BALLS;
-        brio_completion_balls(c, first, n, balls);
+        BRIO_FORWARD(brio_completion_balls(c, first, n, balls));
         found->count = 0;
         BRIO_FORWARD(brio_tile_conflicts(w->source, balls, n, found));
         BRIO_FORWARD(brio_completion_take(c, found->point, found->count));

@@ -9,11 +9,13 @@
  * as a whole; then its points are known, and known points are never in conflict. So the number of these comparisons is
  * in proportion to the points.
  *
- * Most balls are empty, and large: they touch the boxes of many blocks. So a block in memory has an array for each
- * coordinate, and a ball is compared with a group of its points at a time, in vector lanes. */
+ * Most balls are empty, and large: they touch the boxes of many blocks. So a block in memory is divided into groups of
+ * points that follow each other along the curve. A ball is compared with the boxes of all groups in vector lanes, and
+ * with the points of the groups whose boxes it meets. */
 #include "base/memory.h"
 #include "base/team.h"
 #include "platform/thread.h"
+#include "predicates/lanes_plain.h"
 #include "tiles/work.h"
 #include <assert.h>
 #include <string.h>
@@ -27,29 +29,39 @@ enum {
     BALLS_A_THREAD = 64
 };
 
-static const double SLACK = 0x1p-46;
 static const double NEAR = 0.6; /* a node is as far away as it is large, divided by this: then its sample suffices */
 
-/* Doubles side by side. */
-enum { LANES = 2, GROUP = 16 };
-typedef double lanes __attribute__((vector_size(8 * LANES), aligned(8)));
-_Static_assert(TILE_BLOCK % GROUP == 0 && GROUP % LANES == 0, "the last group ends where the arrays do");
-typedef int64_t lane_bits __attribute__((vector_size(8 * LANES), aligned(8)));
+/* Boxes that a ball is compared with at once: those of the nodes below a node, or of the groups of a block. */
+#define BOXES TILE_FAN
+enum { GROUPS = BOXES, GROUP = TILE_BLOCK / GROUPS /* points in a group */ };
+
+/* The points of a block are tried STEP places apart, so that the first of them are all over the block. STEP is near the
+ * golden section of TILE_BLOCK [Weyl 1916], and STEP * STEP_BACK is 1 modulo TILE_BLOCK. */
+enum { STEP = 79, STEP_BACK = 47 };
+_Static_assert(TILE_BLOCK == 128 && STEP * STEP_BACK % TILE_BLOCK == 1, "each place is tried once");
+_Static_assert(BOXES % LANES == 0 && GROUP % LANES == 0, "boxes and points come in whole lanes");
 
 enum { BLOCK_NEW, BLOCK_ADDED, BLOCK_KNOWN }; /* ADDED: in this round; the completion does not know it yet */
 
 typedef struct {
-    double x[TILE_BLOCK], y[TILE_BLOCK], z[TILE_BLOCK]; /* behind the points: INFINITY, which is near nothing */
-    double w[TILE_BLOCK], heaviest;
+    double low[3][GROUPS], high[3][GROUPS], weight[GROUPS]; /* of the groups; low is INFINITY where there is no point */
+    double x[TILE_BLOCK], y[TILE_BLOCK], z[TILE_BLOCK];     /* behind the points: INFINITY, which is near nothing */
+    double w[TILE_BLOCK];
     uint64_t place;
     uint32_t points;
     uint32_t wasted; /* comparisons; atomic */
     int state;       /* atomic */
 } block;
 
+/* A ball in lanes: see brio_ball_meets. */
+typedef struct {
+    lanes from[3], way[3], least;
+} ball_lanes;
+
 /* One thread's search. */
 typedef struct {
     brio_filter filter;
+    ball_lanes ball; /* that is searched for */
     brio_found found;
     uint64_t ties, hits;  /* of samples compared: those that are not in conflict by a hair, those that are */
     uint32_t *now, *next; /* nodes */
@@ -62,7 +74,8 @@ struct brio_tile_source {
     brio_tiles *t;
     uint32_t tile, root;
     brio_store_file points;
-    block **cache; /* of each node that is a block; atomic */
+    double *low[3], *high[3], *weight; /* boxes of the nodes; those of the tile are met by no ball */
+    block **cache;                     /* of each node that is a block; atomic */
     uint64_t num_read;
     uint32_t *read; /* nodes whose blocks are in memory */
     size_t read_capacity;
@@ -113,6 +126,26 @@ static brio_status count_blocks(brio_tile_source *s, const brio_ball_box *seen) 
     return BRIO_OK;
 }
 
+static brio_status set_node_boxes(brio_tile_source *s) {
+    const brio_tiles *t = s->t;
+    size_t n = t->num_nodes + BOXES; /* as many are read, whatever the first one is */
+    for (int k = 0; k < 3; k++) {
+        BRIO_FORWARD(BRIO_ALLOC(t->ctx, s->low[k], n));
+        BRIO_FORWARD(BRIO_ALLOC(t->ctx, s->high[k], n));
+    }
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, s->weight, n));
+    for (size_t i = 0; i < n; i++) {
+        const brio_tile_node *node = i < t->num_nodes ? &t->node[i] : NULL;
+        bool none = !node || node->tile == s->tile;
+        for (int k = 0; k < 3; k++) {
+            s->low[k][i] = none ? INFINITY : node->box.low[k];
+            s->high[k][i] = none ? -INFINITY : node->box.high[k];
+        }
+        s->weight[i] = none ? -INFINITY : node->box.weight;
+    }
+    return BRIO_OK;
+}
+
 brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, const brio_ball_box *seen,
                                  brio_tile_source **out) {
     brio_tile_source *s = NULL;
@@ -128,6 +161,7 @@ brio_status brio_tile_source_new(brio_tiles *t, uint32_t tile, uint32_t root, co
     BRIO_TRY(brio_store_open(&t->folder, "points", &s->points));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->cache, t->num_nodes + 1));
     BRIO_TRY(count_blocks(s, seen));
+    BRIO_TRY(set_node_boxes(s));
     BRIO_TRY(BRIO_ALLOC_ZERO(t->ctx, s->search, s->threads));
     for (int i = 0; i < s->threads; i++) {
         brio_tiles_filter(t, &s->search[i].filter);
@@ -155,6 +189,8 @@ void brio_tile_source_free(brio_tile_source *s) {
     brio_release(ctx, s->search);
     brio_release(ctx, s->read);
     brio_release(ctx, s->asked);
+    for (int k = 0; k < 3; k++) brio_release(ctx, s->low[k]), brio_release(ctx, s->high[k]);
+    brio_release(ctx, s->weight);
     brio_release(ctx, s->cache);
     brio_release(ctx, s->parent);
     brio_release(ctx, s->left);
@@ -166,7 +202,67 @@ uint64_t brio_tile_source_read(const brio_tile_source *s) {
     return s->num_read;
 }
 
+/* --- balls against boxes --- */
+
+/* Returns whether no comparison in floating point says more than that the ball may take a point. */
+static bool is_unsettled(const brio_ball *ball) {
+    return ball->infinite || !(ball->least > -INFINITY);
+}
+
+static ball_lanes lanes_of(const brio_ball *ball) {
+    ball_lanes wide = {.least = all(ball->least)};
+    for (int k = 0; k < 3; k++) wide.from[k] = all(ball->vertex[0][k]), wide.way[k] = all(ball->way[k]);
+    return wide;
+}
+
+/* Returns the lanes whose points may be in the ball.   d  from the ball's first vertex to them. */
+static inline lane_mask may_take(const ball_lanes *ball, const lanes d[3], lanes weight) {
+    for (int k = 0; k < 3; k++) weight += d[k] * (2 * ball->way[k] - d[k]);
+    return ~(weight < ball->least); /* also for NaN */
+}
+
+/* Boxes, an array for each coordinate. */
+typedef struct {
+    const double *low[3], *high[3], *weight;
+} boxes;
+
+/* Returns the bits of those of BOXES boxes that a ball meets. */
+static unsigned boxes_met(const ball_lanes *ball, const boxes *b) {
+    unsigned met = 0;
+    for (int i = 0; i < BOXES; i += LANES) {
+        lanes d[3];
+        for (int k = 0; k < 3; k++) {
+            lanes low = load_lanes(b->low[k] + i) - ball->from[k], high = load_lanes(b->high[k] + i) - ball->from[k];
+            d[k] = maximum(low, -maximum(-high, -ball->way[k])); /* nearest to the centre */
+        }
+        met |= bits_of(may_take(ball, d, load_lanes(b->weight + i))) << i;
+    }
+    return met;
+}
+
 /* --- blocks --- */
+
+static double most_of(const double *x, uint32_t count, double most) {
+    for (uint32_t i = 0; i < count; i++) most = x[i] > most ? x[i] : most;
+    return most;
+}
+
+static double least_of(const double *x, uint32_t count) {
+    double least = INFINITY;
+    for (uint32_t i = 0; i < count; i++) least = x[i] < least ? x[i] : least;
+    return least;
+}
+
+/* Sets the boxes of the groups. */
+static void set_boxes(block *b) {
+    const double *const x[3] = {b->x, b->y, b->z};
+    for (uint32_t g = 0; g < GROUPS; g++) {
+        uint32_t first = g * GROUP, left = b->points > first ? b->points - first : 0, n = left < GROUP ? left : GROUP;
+        for (int k = 0; k < 3; k++)
+            b->low[k][g] = least_of(x[k] + first, n), b->high[k][g] = most_of(x[k] + first, n, -INFINITY);
+        b->weight[g] = most_of(b->w + first, n, -INFINITY);
+    }
+}
 
 static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, block **out) {
     brio_set_point some[TILE_BLOCK];
@@ -174,7 +270,6 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
     block *b = *out;
     b->place = node->place;
     b->points = node->points;
-    b->heaviest = node->box.weight;
     b->wasted = 0;
     b->state = BLOCK_NEW;
     brio_status status = brio_store_read(&s->points, (node->place - s->t->first_place) * sizeof *some, some,
@@ -184,6 +279,7 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
         b->z[i] = some[i].record[2], b->w[i] = some[i].record[3];
     }
     for (uint32_t i = node->points; i < TILE_BLOCK; i++) b->x[i] = b->y[i] = b->z[i] = INFINITY, b->w[i] = 0;
+    set_boxes(b);
     if (status != BRIO_OK) brio_release(s->t->ctx, b);
     return status;
 }
@@ -209,46 +305,59 @@ static brio_set_point point_of(const block *b, uint32_t i) {
     return (brio_set_point){{b->x[i], b->y[i], b->z[i], b->w[i]}, b->place + i};
 }
 
-/* Returns whether a ball with a square may take a point. */
+/* Returns whether a ball may take a point. */
 static inline bool is_near(const brio_ball *ball, const double *record) {
-    double limit = ball->square + fabs(ball->square) * SLACK, square = 0;
-    for (int k = 0; k < 3; k++) square += (record[k] - ball->centre[k]) * (record[k] - ball->centre[k]);
-    return !(square * (1 - SLACK) > limit + record[3] + fabs(record[3]) * SLACK);
-}
-
-static lanes load(const double *from) {
-    lanes v;
-    memcpy(&v, from, sizeof v);
-    return v;
-}
-
-/* Returns whether one of the points of a group is at most that far from a centre, squared. */
-static bool is_group_near(const double *centre, double square, const block *b, uint32_t first) {
-    lane_bits near = {0};
-    for (uint32_t i = first; i < first + GROUP; i += LANES) {
-        lanes x = load(b->x + i) - centre[0], y = load(b->y + i) - centre[1], z = load(b->z + i) - centre[2];
-        near |= x * x + y * y + z * z <= square;
+    double sum = record[3];
+    for (int k = 0; k < 3; k++) {
+        double d = record[k] - ball->vertex[0][k];
+        sum += d * (2 * ball->way[k] - d);
     }
-    return (near[0] | near[1]) != 0;
+    return !(sum < ball->least);
 }
 
-/* Lists the points that a ball may take. Returns their number. */
-static uint32_t list_near(const brio_ball *ball, const block *b, uint32_t list[TILE_BLOCK]) {
-    double most = ball->square + b->heaviest, square = most + 4 * SLACK * (fabs(ball->square) + fabs(b->heaviest));
-    uint32_t n = 0;
-    if (ball->infinite || !(square < INFINITY)) {
-        for (uint32_t i = 0; i < b->points; i++) list[i] = i;
-        return b->points;
+/* Returns the bits of the points of a group that a ball may take. */
+static unsigned points_met(const ball_lanes *ball, const block *b, int group) {
+    const double *x = b->x + group * GROUP, *y = b->y + group * GROUP, *z = b->z + group * GROUP;
+    const double *w = b->w + group * GROUP;
+    unsigned met = 0;
+    for (int i = 0; i < GROUP; i += LANES) {
+        lanes d[3] = {load_lanes(x + i) - ball->from[0], load_lanes(y + i) - ball->from[1],
+                      load_lanes(z + i) - ball->from[2]};
+        met |= bits_of(may_take(ball, d, load_lanes(w + i))) << i;
     }
-    for (uint32_t first = 0; first < b->points; first += GROUP) {
-        if (!is_group_near(ball->centre, square, b, first)) continue;
-        for (uint32_t i = first; i < first + GROUP && i < b->points; i++) {
-            double record[4] = {b->x[i], b->y[i], b->z[i], b->w[i]};
-            list[n] = i;
-            n += is_near(ball, record);
+    return met;
+}
+
+/* A set of points of a block: bit i % 64 of word i / 64 is that of the point that is tried as number i. */
+typedef struct {
+    uint64_t word[TILE_BLOCK / 64];
+} tries;
+
+/* Lists the points of a block that a ball may take. */
+static tries list_near(const search *se, const brio_ball *ball, const block *b) {
+    const boxes groups = {{b->low[0], b->low[1], b->low[2]}, {b->high[0], b->high[1], b->high[2]}, b->weight};
+    bool whole = is_unsettled(ball);
+    tries list = {{0}};
+    for (unsigned met = whole ? (1U << GROUPS) - 1 : boxes_met(&se->ball, &groups); met; met &= met - 1) {
+        int group = __builtin_ctz(met);
+        unsigned near = whole ? (1U << GROUP) - 1 : points_met(&se->ball, b, group);
+        for (; near; near &= near - 1) {
+            uint32_t i = (uint32_t)(group * GROUP + __builtin_ctz(near)), number = i * STEP_BACK % TILE_BLOCK;
+            if (i < b->points) list.word[number / 64] |= UINT64_C(1) << number % 64;
         }
     }
-    return n;
+    return list;
+}
+
+/* Takes the first point off a list.   *i  receives it. Returns false if the list is empty. */
+static bool next_try(tries *list, uint32_t *i) {
+    for (uint32_t w = 0; w < TILE_BLOCK / 64; w++) {
+        if (!list->word[w]) continue;
+        *i = (64 * w + (uint32_t)__builtin_ctzll(list->word[w])) * STEP % TILE_BLOCK;
+        list->word[w] &= list->word[w] - 1;
+        return true;
+    }
+    return false;
 }
 
 /* Adds all points of a block. Nodes all of whose blocks were added are not gone down to any more. */
@@ -279,13 +388,13 @@ static brio_status search_block(brio_tile_source *s, search *se, const brio_ball
                                 bool *unsure) {
     block *b;
     BRIO_FORWARD(find_block(s, node, &b));
-    uint32_t list[TILE_BLOCK], wasted = 0;
+    uint32_t wasted = 0, i;
     int state = __atomic_load_n(&b->state, __ATOMIC_RELAXED), before = *hits;
     *unsure |= state == BLOCK_ADDED;
     if (state != BLOCK_NEW) return BRIO_OK;
-    uint32_t n = list_near(ball, b, list);
-    for (uint32_t i = 0; i < n && *hits < before + ENOUGH_OF_BLOCK; i++) {
-        brio_set_point p = point_of(b, list[i]);
+    tries list = list_near(se, ball, b);
+    while (*hits < before + ENOUGH_OF_BLOCK && next_try(&list, &i)) {
+        brio_set_point p = point_of(b, i);
         if (!brio_ball_takes(&se->filter, ball, p.record)) {
             wasted += !is_vertex(ball, p.record);
             continue;
@@ -303,11 +412,11 @@ static brio_status search_block(brio_tile_source *s, search *se, const brio_ball
 /* Tests a node's sample. Where points lie nearly on the balls, all comparisons are exact and in vain: after many of
  * them, samples are not tested any more. */
 static brio_status try_sample(search *se, const brio_ball *ball, const brio_set_point *sample, int *hits) {
-    bool sure = ball->infinite || !(ball->square < INFINITY);
+    bool unsettled = is_unsettled(ball);
     if (se->ties > MOST_TIES && se->ties > MOST_TIES_A_HIT * se->hits) return BRIO_OK;
-    if (!sure && !is_near(ball, sample->record)) return BRIO_OK;
+    if (!unsettled && !is_near(ball, sample->record)) return BRIO_OK;
     if (!brio_ball_takes(&se->filter, ball, sample->record)) {
-        se->ties += !sure;
+        se->ties += !unsettled;
         return BRIO_OK;
     }
     ++*hits;
@@ -315,20 +424,34 @@ static brio_status try_sample(search *se, const brio_ball *ball, const brio_set_
     return brio_found_add(&se->found, sample);
 }
 
+/* Returns the bits of the nodes below a node that the ball meets. */
+static unsigned children_met(brio_tile_source *s, search *se, const brio_ball *ball, const brio_tile_node *node) {
+    uint32_t c = node->first;
+    unsigned met = 0;
+    if (!is_unsettled(ball)) {
+        const boxes below = {{s->low[0] + c, s->low[1] + c, s->low[2] + c},
+                             {s->high[0] + c, s->high[1] + c, s->high[2] + c},
+                             s->weight + c};
+        return boxes_met(&se->ball, &below) & ((1U << node->children) - 1);
+    }
+    for (uint32_t i = 0; i < node->children; i++)
+        if (s->t->node[c + i].tile != s->tile && brio_ball_meets(&se->filter, ball, &s->t->node[c + i].box))
+            met |= 1U << i;
+    return met;
+}
+
 /* Goes from a node that the ball meets to its children. */
 static brio_status descend(brio_tile_source *s, search *se, const brio_ball *ball, const brio_tile_node *node,
                            int *hits, bool *unsure) {
-    for (uint32_t c = node->first; c < node->first + node->children; c++) {
-        const brio_tile_node *child = &s->t->node[c];
-        if (child->tile == s->tile) continue;
+    for (unsigned met = children_met(s, se, ball, node); met; met &= met - 1) {
+        uint32_t c = node->first + (uint32_t)__builtin_ctz(met);
         bool is_whole = !__atomic_load_n(&s->left[c], __ATOMIC_ACQUIRE);
         if (is_whole && __atomic_load_n(&s->last[c], __ATOMIC_RELAXED) < s->round) continue;
-        if (!brio_ball_meets(&se->filter, ball, &child->box)) continue;
         *unsure |= is_whole;
         if (is_whole) continue;
         BRIO_FORWARD(BRIO_RESERVE(s->t->ctx, se->next, se->next_capacity, se->num_next + 1));
         se->next[se->num_next++] = c;
-        if (*hits < ENOUGH) BRIO_FORWARD(try_sample(se, ball, &child->sample, hits));
+        if (*hits < ENOUGH) BRIO_FORWARD(try_sample(se, ball, &s->t->node[c].sample, hits));
     }
     return BRIO_OK;
 }
@@ -348,6 +471,7 @@ static brio_status search_ball(brio_tile_source *s, search *se, uint32_t number)
     int hits = 0;
     bool unsure = false;
     se->num_next = 0;
+    se->ball = lanes_of(ball);
     const brio_tile_node above = {.first = s->root, .children = 1};
     BRIO_FORWARD(descend(s, se, ball, &above, &hits, &unsure));
     while (se->num_next > 0 && hits < ENOUGH) {

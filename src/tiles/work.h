@@ -1,8 +1,8 @@
 /* A triangulation in tiles: what all its stages share.
  *
  * A point has two names. Its index is the caller's. Its place is where it lies in the file of points: tile after tile,
- * in a tile block after block along a Hilbert curve, in a block at random, so that the beginning of a block is a sample
- * of it. Of points at one position only the one that stands for it has a place. */
+ * in a tile along a Hilbert curve, which is cut into blocks. Of points at one position only the one that stands for it
+ * has a place. */
 #ifndef BRIO_TILES_WORK_H
 #define BRIO_TILES_WORK_H
 

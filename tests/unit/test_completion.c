@@ -4,6 +4,7 @@
 #include "completion/completion.h"
 #include "harness.h"
 #include "points.h"
+#include "predicates/circumcentre.h"
 
 enum { MOST = 400, MOST_TETS = 8 * MOST * 8 };
 
@@ -306,7 +307,7 @@ static void answer(brio_context *ctx, member *m, brio_rng *rng, bool shuffled) {
     size_t at = shuffled ? brio_rng_below(rng, (uint32_t)m->num_pieces) : 0, first = m->first[at];
     size_t n = m->questions - first < PIECE ? m->questions - first : PIECE;
     memmove(m->first + at, m->first + at + 1, (--m->num_pieces - at) * sizeof *m->first);
-    brio_completion_balls(m->c, first, n, ball);
+    EXPECT(brio_completion_balls(m->c, first, n, ball) == BRIO_OK);
     EXPECT(conflicts(&set, ball, n, &found) == BRIO_OK);
     for (size_t i = found.count; shuffled && i-- > 0;)
         EXPECT(brio_completion_take(m->c, found.point + i, found.count - i > 2 ? 2 : 1) == BRIO_OK);
@@ -408,7 +409,7 @@ static void questions_come_in_the_order_of_their_vertices(void) {
         EXPECT(brio_completion_new(ctx, &task, &c) == BRIO_OK);
         EXPECT(brio_completion_begin(c, &questions) == BRIO_OK && questions > COUNT);
         for (size_t q = 0; q < questions; q++) {
-            brio_completion_balls(c, q, 1, &ball);
+            EXPECT(brio_completion_balls(c, q, 1, &ball) == BRIO_OK);
             name_vertices(&ball, name);
             int k = 0;
             while (k < 3 && name[k] == before[k]) k++;
@@ -419,6 +420,27 @@ static void questions_come_in_the_order_of_their_vertices(void) {
         brio_completion_delete(c);
         EXPECT(brio_context_memory(ctx) == 0);
         brio_context_free(ctx);
+    }
+}
+
+/* Copies of a scan side by side have vertices that are in one plane up to rounding, and balls 10^15 times as large as all of them. A
+ * comparison of squares said of no point that it was outside: each such ball compared every point exactly, and tiles took all points. */
+static void huge_balls_meet_no_boxes_outside(void) {
+    static const double POINTS[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 2, 0x1p-52}};
+    static const uint32_t VERTEX[1][4] = {{0, 1, 2, 3}};
+    brio_ball_box all = {{-1, -1, -1}, {2, 2, 2}, 0};
+    brio_ball ball = {.infinite = false};
+    brio_filter f;
+    double error, extent[3] = {3, 3, 3};
+    brio_filter_set(&f, extent, 0, false);
+    for (int i = 0; i < 4; i++) memcpy(ball.vertex[i], POINTS[i], sizeof *POINTS);
+    brio_centres(&(brio_centre_batch){*POINTS, NULL, VERTEX, 1}, ball.centre, &error);
+    brio_ball_set_region(&ball, error, &all);
+    EXPECT(ball.square > 0x1p100 && ball.centre[2] > 0);
+    for (int i = 0; i < 30; i++) {
+        double apart = ldexp(1, -i);
+        brio_ball_box below = {{0, 0, -1}, {1, 1, -apart}, 0}, above = {{0, 0, apart}, {1, 1, 1}, 0};
+        EXPECT(!brio_ball_meets(&f, &ball, &below) && brio_ball_meets(&f, &ball, &above), "2^-%d", i);
     }
 }
 
@@ -443,6 +465,7 @@ SUITE(test_completion) {
     RUN(stars_are_those_of_the_whole);
     RUN(the_order_of_answers_has_no_trace);
     RUN(questions_come_in_the_order_of_their_vertices);
+    RUN(huge_balls_meet_no_boxes_outside);
     RUN(an_error_of_the_source_ends_it);
     return harness_end();
 }
