@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_TILES = 1 << 16 };
-
 static const char EXTENSION[] = ".pvtu", OF_TILES[] = ".vtu";
 
 static bool ends_with(const char *text, const char *end) {
@@ -23,9 +21,7 @@ static bool ends_with(const char *text, const char *end) {
 }
 
 brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t tiles) {
-    if (tiles > MOST_TILES)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles: %" PRIu64 " are more than %d", tiles, MOST_TILES);
-    if (!r->common.scratch) return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles needs --scratch DIR, where the tiles are");
+    FORWARD(cli_check_tile_count(r, tiles));
     if (weights->file)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles: not with --weights FILE; the points can have a property weight or radius");

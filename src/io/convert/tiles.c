@@ -1,0 +1,174 @@
+/* Converts a file to many: points of any number become tiles of about as many points each.
+ *
+ * The points that stay go to a scratch file (rows.h), which is divided. What all files have in common is found in the
+ * points of all before: the depth of colours, and the grid and the fields of LAS. So the files together are what one
+ * file of all would be. Then each tile is the source of a conversion. */
+#include "base/memory.h"
+#include "io/convert/conversion.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- what is taken --- */
+
+/* Bytes of memory beside a tile, and for each point of a tile that is in memory as a whole, beside its row. Measured:
+ * tiles.md. */
+static const double BESIDE = 64e6, BYTES_A_POINT = 100;
+
+/* Takes a block into the scratch file, the first one when the disk has room for all that are announced. */
+static brio_status keep_block(void *user, const brio_mesh *block) {
+    brio_conversion *c = user;
+    const brio_source *s = &c->source;
+    uint64_t points = block->num_vertices;
+    if (!c->rows.kind) {
+        BRIO_FORWARD(brio_rows_begin(&c->rows, block));
+        if (s->job.announced != BRIO_COUNT_UNKNOWN && !c->options->crop) points = s->job.announced;
+        BRIO_FORWARD(brio_rows_require_room(&c->rows, s->path, 2 * points)); /* as they came, and in tiles */
+        if (block->num_faces) brio_conversion_lose(c, "faces");
+        if (block->num_tetrahedra) brio_conversion_lose(c, "tetrahedra");
+        if (block->num_edges) brio_conversion_lose(c, "edges");
+    }
+    return brio_rows_append(&c->rows, block);
+}
+
+static brio_status look_at_colours(void *user, const brio_mesh *block) {
+    brio_conversion *c = user;
+    brio_colour_look(&c->colours, block);
+    return BRIO_OK;
+}
+
+/* Finds what all files have in common. */
+static brio_status find_common(brio_conversion *c) {
+    const brio_row_format *format = brio_row_format_of(c->format);
+    const brio_write_job job = {.options = &c->write, .points = BRIO_COUNT_UNKNOWN, .expected = BRIO_NO_PROGRESS};
+    const brio_sink looks = {look_at_colours, c}, surveys = {brio_conversion_survey, c};
+    if (brio_colour_is_open(&c->colours, c->rows.kind)) {
+        BRIO_FORWARD(brio_source_pass(&c->source, &looks));
+        c->colours.points.looked = true;
+    }
+    if (!format || !format->share) return BRIO_OK;
+    BRIO_FORWARD(brio_row_writer_new(&c->writer, c->ctx, c->format, &job));
+    c->writer.colours = c->colours;
+    while (c->writer.surveys) {
+        BRIO_FORWARD(brio_source_pass(&c->source, &surveys));
+        brio_row_writer_end_survey(&c->writer);
+    }
+    c->all = c->writer;
+    c->writer = (brio_row_writer){.ctx = c->ctx};
+    return BRIO_OK;
+}
+
+/* Refuses tiles that are in memory as a whole and do not fit. */
+static brio_status require_memory(const brio_conversion *c) {
+    double limit = (double)brio_memory_limit(c->ctx), most = (double)c->stats.largest_tile;
+    double each = brio_row_format_of(c->format) ? 0 : (double)c->rows.size + BYTES_A_POINT;
+    double need = BESIDE + most * each, all = (double)c->rows.count;
+    if (need <= limit) return BRIO_OK;
+    BRIO_EXPECT(c->ctx, BESIDE < limit, BRIO_ERR_NO_MEMORY,
+                "a conversion to tiles needs about %.0f MB of the %.0f MB that are allowed", BESIDE / 1e6, limit / 1e6);
+    return brio_fail(c->ctx, BRIO_ERR_NO_MEMORY,
+                     "the largest of %u tiles has %.0f points, and needs about %.0f MB of the %.0f MB that are "
+                     "allowed: take about %.0f tiles",
+                     c->options->tiles, most, need / 1e6, limit / 1e6,
+                     fmin(ceil(1.2 * all * each / (limit - BESIDE)), BRIO_MOST_TILES));
+}
+
+/* Makes the name of a tile's file: the number in place of the last # of the pattern.   out  owned by the caller. */
+static brio_status name_tile(brio_context *ctx, const char *pattern, unsigned number, char **out) {
+    const char *place = strrchr(pattern, '#');
+    size_t size = strlen(pattern) + 16;
+    BRIO_FORWARD(BRIO_ALLOC(ctx, *out, size));
+    snprintf(*out, size, "%.*s%u%s", (int)(place - pattern), pattern, number, place + 1);
+    return BRIO_OK;
+}
+
+static brio_status write_tile(brio_conversion *c, const brio_row_tile *t) {
+    brio_mesh *mesh = NULL;
+    brio_status status = BRIO_OK;
+    c->source.first = t->first;
+    c->source.num_rows = t->count;
+    if (brio_row_format_of(c->format)) return brio_conversion_stream(c);
+    BRIO_TRY(brio_rows_mesh(&c->rows, t->first, t->count, &mesh));
+    status = brio_conversion_write(c, mesh);
+done:
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static brio_status tell_tile(const brio_conversion *c, const brio_row_tile *t) {
+    brio_convert_tile told = {.size = sizeof told, .path = c->to, .points = t->count, .kind = c->rows.kind};
+    memcpy(told.low, t->low, sizeof told.low);
+    memcpy(told.high, t->high, sizeof told.high);
+    bool goes_on = !c->options->tile || !c->options->tile(&told, c->options->tile_user);
+    return goes_on ? BRIO_OK : brio_fail(c->ctx, BRIO_ERR_CANCELLED, "cancelled");
+}
+
+/* Writes a file for each tile that has points, or one without points if none has any. */
+static brio_status write_tiles(brio_conversion *c, const brio_row_tile *tile, brio_bar bar) {
+    const char *pattern = c->to;
+    brio_status status = BRIO_OK;
+    char *path = NULL;
+    uint64_t done = 0;
+    unsigned files = 0;
+    for (uint32_t i = 0; i < c->options->tiles; i++) {
+        double all = (double)c->rows.count + 1;
+        if (!tile[i].count && (c->rows.count || i)) continue;
+        BRIO_TRY(name_tile(c->ctx, pattern, files++, &path));
+        brio_progress_part(c->ctx, bar, 0.6 + 0.4 * (double)done / all,
+                           0.6 + 0.4 * (double)(done + tile[i].count) / all);
+        done += tile[i].count;
+        c->to = path;
+        c->more = done < c->rows.count;
+        BRIO_TRY(write_tile(c, &tile[i]));
+        BRIO_TRY(tell_tile(c, &tile[i]));
+        c->stats.tiles += tile[i].count > 0;
+        brio_release(c->ctx, path);
+        path = NULL;
+    }
+done:
+    c->to = pattern;
+    brio_release(c->ctx, path);
+    return status;
+}
+
+static void lap(double *seconds, double *since) {
+    double now = brio_seconds();
+    *seconds = now - *since;
+    *since = now;
+}
+
+brio_status brio_conversion_tiles(brio_conversion *c) {
+    brio_status status = BRIO_OK;
+    brio_row_tile *tile = NULL;
+    brio_source *s = &c->source;
+    const brio_sink keeps = {keep_block, c};
+    const brio_bar bar = brio_progress_bar(c->ctx);
+    double now = brio_seconds();
+    BRIO_TRY(BRIO_ALLOC(c->ctx, tile, c->options->tiles));
+    brio_progress_part(c->ctx, bar, 0, 0.4);
+    BRIO_TRY(brio_source_pass(s, &keeps));
+    brio_mesh_free(s->job.mesh); /* of a format that is not read in blocks */
+    s->job.mesh = NULL;
+    s->rows = &c->rows;
+    s->num_rows = c->rows.count;
+    lap(&c->stats.read_seconds, &now);
+    brio_progress_part(c->ctx, bar, 0.4, 0.5);
+    if (c->options->drop_outliers || c->options->thin > 0) BRIO_TRY(brio_source_choose(s));
+    lap(&c->stats.select_seconds, &now);
+    brio_progress_part(c->ctx, bar, 0.5, 0.6);
+    BRIO_TRY(brio_rows_require_room(&c->rows, s->path, c->rows.count));
+    BRIO_TRY(find_common(c));
+    BRIO_TRY(brio_rows_divide(&c->rows, s->chosen, c->options->tiles, tile));
+    brio_release(c->ctx, s->chosen);
+    s->chosen = NULL;
+    for (uint32_t i = 0; i < c->options->tiles; i++)
+        if (tile[i].count > c->stats.largest_tile) c->stats.largest_tile = tile[i].count;
+    c->stats.scratch_bytes = c->rows.most;
+    BRIO_TRY(require_memory(c));
+    lap(&c->stats.divide_seconds, &now);
+    status = write_tiles(c, tile, bar);
+done:
+    brio_progress_part(c->ctx, bar, 0, 1);
+    brio_release(c->ctx, tile);
+    return status;
+}
