@@ -140,6 +140,11 @@ static void report(run *r, const brio_convert_stats *stats, const brio_convert_o
 static brio_status check_output(run *r, uint64_t tiles) {
     const char *output = r->common.output;
     if (tiles) return cli_check_point_tiles(r, tiles);
+    if (r->num_operands == 2)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "two outputs: %s and -o %s; several inputs go with --tiles",
+                        r->operands[1], output);
+    if (r->num_operands > 2)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: %d inputs; several go with --tiles", r->num_operands);
     if (output && cli_is_point_index(output) && !r->common.format)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: an index of tiles, which --tiles N --scratch DIR writes", output);
     return cli_require_output(r, false);
@@ -181,7 +186,7 @@ static brio_status convert(run *r) {
     o.lost_user = &lost;
     o.renamed = on_name;
     o.renamed_user = &renamed;
-    TRY(cli_settle_conversion(r, r->operands[0], r->common.output, &o, &to, &merged));
+    TRY(cli_settle_conversion(r, r->num_operands, &o, &to, &merged));
     TRY(chosen->tiles ? cli_point_tiles(r, chosen->tiles, &o, &stats) : convert_file(r, &o, &stats));
     report_stages(r, &stats);
     report(r, &stats, &o);
@@ -196,7 +201,7 @@ done:
 
 const command cli_convert = {
     .name = "convert",
-    .operands = "A B",
+    .operands = "A... B",
     .summary = "any format to any other; crops, thins, drops outliers, merges vertices",
     .description =
         "Points go by in blocks, so that a file of any size needs some MiB; files with faces are read as a whole. "
@@ -210,7 +215,7 @@ const command cli_convert = {
     .output_optional = true,
     .group = GROUP_FILES,
     .min_operands = 1,
-    .max_operands = 2,
+    .max_operands = 1 << 20,
     .writes_last = true,
     .options = options,
     .defaults = &defaults,

@@ -183,10 +183,27 @@ static brio_status find_name(run *r, const new_folder *f, char path[BRIO_PATH_MO
                     f->stem, MOST_NAMES - 1);
 }
 
+/* Refuses inputs that are in the folder of the older output, which goes when the new one is complete. */
+static brio_status refuse_old_inputs(run *r, const new_folder *f) {
+    char folder[BRIO_PATH_MOST];
+    brio_place_facts old, of_input;
+    if (!*f->old || !brio_find_facts(f->old, &old)) return BRIO_OK;
+    for (int i = r->command->first_input; i < r->num_operands; i++) {
+        size_t length = brio_folder_length(r->operands[i]);
+        snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, length ? r->operands[i] : ".");
+        if (brio_find_facts(folder, &of_input) && brio_is_same_file(&old, &of_input))
+            return cli_fail(r, BRIO_ERR_ARGUMENT,
+                            "%s: a file of the older output that -o replaces; take another name for the new one",
+                            r->operands[i]);
+    }
+    return BRIO_OK;
+}
+
 brio_status cli_new_folder_check(run *r, const char *index, const char *extension) {
     new_folder f;
     char path[BRIO_PATH_MOST];
     FORWARD(begin(r, index, extension, &f));
+    FORWARD(refuse_old_inputs(r, &f));
     FORWARD(find_name(r, &f, path));
     snprintf(path, sizeof path, "%s.part", f.stem);
     errno = EEXIST;

@@ -294,6 +294,8 @@ brio_status cli_point_tiles(run *r, uint64_t tiles, brio_convert_options *o, bri
     TRY(cli_new_folder_open(r, r->common.output, extension, &folder));
     snprintf(pattern, sizeof pattern, "%s/#%s", folder.path, extension);
     o->tiles = (uint32_t)tiles;
+    o->num_more = (uint32_t)r->num_operands - 1;
+    o->more = (const char *const *)r->operands + 1;
     o->tile = keep_tile;
     o->tile_user = &w;
     TRY(brio_convert(r->ctx, r->operands[0], pattern, o, stats));

@@ -336,7 +336,7 @@ static brio_status settle_merging(merging *m, const brio_tiles *t) {
         return cli_fail(r, BRIO_ERR_TOO_LARGE,
                         "%s: %" PRIu64 " points; indices of this format reach 2^32 - 1: .pvtu has a file for each tile",
                         r->common.output, m->all);
-    return cli_settle_conversion(r, r->operands[0], r->common.output, &o, &m->how, &m->merged);
+    return cli_settle_conversion(r, 1, &o, &m->how, &m->merged);
 }
 
 static brio_status has_changed(const merging *m) {

@@ -282,10 +282,11 @@ typedef struct brio_convert_options {
     void *renamed_user;
     int merge; /* 1: brio_mesh_merge_vertices, within merge_distance */
     int reserved_int;
-    double merge_distance; /* 0: equal positions only */
-    const char *crs;       /* NULL: a file that receives the coordinate system as well-known text, such as scan.prj */
-    uint32_t tiles;        /* 0: one file; else the points are divided among as many, at most 65,536 */
-    uint32_t reserved_tiles;
+    double merge_distance;   /* 0: equal positions only */
+    const char *crs;         /* NULL: a file that receives the coordinate system as well-known text, such as scan.prj */
+    uint32_t tiles;          /* 0: one file; else the points are divided among as many, at most 65,536 */
+    uint32_t num_more;       /* with tiles: further inputs, */
+    const char *const *more; /* whose points follow those of the first one */
     brio_convert_tile_fn tile; /* NULL: called when the file of a tile has its name */
     void *tile_user;
 } brio_convert_options;
@@ -327,7 +328,8 @@ typedef struct brio_convert_stats {
  *  points have no file; if no tile has points, there is one empty file. Numbers are 0, 1 and so on. The points go to
  *  the scratch folder of the context (brio_context_set_scratch), twice: 24 bytes each and their properties. No tile is
  *  in memory for the formats that are written block by block; else the largest is. Faces, tetrahedra and edges are
- *  left out, and `merge` is refused. Files of tiles stay where a later one fails: the caller removes them.
+ *  left out, and `merge` is refused. Several inputs have the same properties, in any order, and the same coordinate
+ *  system; all else that the first one says is kept. Files of tiles stay where a later one fails: the caller removes them.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.
  *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and

@@ -307,6 +307,7 @@ static brio_status check(brio_conversion *c) {
     BRIO_EXPECT(c->ctx, !o->tiles || c->ctx->scratch, BRIO_ERR_ARGUMENT, "tiles need a scratch folder");
     BRIO_EXPECT(c->ctx, !o->tiles || strchr(c->to, '#'), BRIO_ERR_ARGUMENT,
                 "%s: files of tiles need a # in their name, where their number is to be", c->to);
+    BRIO_EXPECT(c->ctx, o->tiles || !o->num_more, BRIO_ERR_ARGUMENT, "several inputs are for tiles");
     BRIO_EXPECT(c->ctx, !o->tiles || !o->merge, BRIO_ERR_ARGUMENT,
                 "vertices are merged with all of them in memory, so not into tiles");
     BRIO_EXPECT(c->ctx, !is_one_file(c), BRIO_ERR_ARGUMENT, "%s and %s are the same file", from, c->to);

@@ -10,6 +10,7 @@
 #include "platform/disk.h"
 #include "platform/file.h"
 #include "tiles/cuts.h"
+#include <assert.h>
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -127,23 +128,30 @@ brio_status brio_rows_begin(brio_rows *r, const brio_mesh *first) {
     return BRIO_ALLOC(r->ctx, r->bytes, BRIO_BLOCK_ROWS * r->size);
 }
 
-static brio_status require_kind(const brio_rows *r, const brio_mesh *block) {
-    bool same = block->num_properties == r->kind->num_properties;
-    for (size_t i = 0; i < block->num_properties && same; i++)
-        same = block->properties[i].type == r->kind->properties[i].type &&
-               !strcmp(block->properties[i].name, r->kind->properties[i].name);
-    BRIO_EXPECT(r->ctx, same, BRIO_ERR_FORMAT, "blocks of points have different properties");
-    return BRIO_OK;
+/* Returns the first property that another mesh does not have so. */
+static const brio_property *find_missing(const brio_mesh *m, const brio_mesh *other) {
+    for (size_t i = 0; i < m->num_properties; i++) {
+        const brio_property *p = brio_mesh_property(other, m->properties[i].name);
+        if (!p || p->type != m->properties[i].type) return &m->properties[i];
+    }
+    return NULL;
 }
 
-/* Returns a view of some vertices of a mesh.   property  room for its properties. */
-static brio_mesh part_of(const brio_mesh *m, size_t first, size_t count, brio_property *property) {
+const brio_property *brio_rows_differ(const brio_rows *r, const brio_mesh *block) {
+    const brio_property *missing = find_missing(r->kind, block);
+    return missing ? missing : find_missing(block, r->kind);
+}
+
+/* Returns a view of some vertices of a mesh.   order  a mesh with the same properties, in the order of the view's.
+ * property  room for these. */
+static brio_mesh part_of(const brio_mesh *m, size_t first, size_t count, const brio_mesh *order,
+                         brio_property *property) {
     brio_mesh part = *m;
     part.vertices = m->num_vertices ? m->vertices + 3 * first : NULL;
     part.num_vertices = count;
     part.properties = property;
     for (size_t i = 0; i < m->num_properties; i++) {
-        property[i] = m->properties[i];
+        property[i] = *brio_mesh_property(m, order->properties[i].name);
         if (m->num_vertices) property[i].data = (char *)property[i].data + first * brio_scalar_size(property[i].type);
     }
     return part;
@@ -161,11 +169,11 @@ static brio_status append_part(brio_rows *r, const brio_mesh *part) {
 brio_status brio_rows_append(brio_rows *r, const brio_mesh *block) {
     brio_status status = BRIO_OK;
     brio_property *property = NULL;
-    BRIO_TRY(require_kind(r, block));
+    assert(!brio_rows_differ(r, block));
     BRIO_TRY(BRIO_ALLOC(r->ctx, property, block->num_properties + 1));
     for (size_t first = 0, n; first < block->num_vertices; first += n) {
         n = block->num_vertices - first < BRIO_BLOCK_ROWS ? block->num_vertices - first : BRIO_BLOCK_ROWS;
-        brio_mesh part = part_of(block, first, n, property);
+        brio_mesh part = part_of(block, first, n, r->kind, property);
         BRIO_TRY(append_part(r, &part));
     }
     if (r->count * r->size > r->most) r->most = r->count * r->size;
@@ -201,7 +209,7 @@ brio_status brio_rows_mesh(const brio_rows *r, uint64_t first, uint64_t count, b
     m->num_vertices = (size_t)count;
     for (size_t done = 0, n; done < count; done += n) {
         n = count - done < BRIO_BLOCK_ROWS ? (size_t)count - done : BRIO_BLOCK_ROWS;
-        brio_mesh part = part_of(m, done, n, property);
+        brio_mesh part = part_of(m, done, n, m, property);
         block_rows b = {&part, r->bytes, r->size};
         BRIO_TRY(read_rows(r, first + done, n));
         BRIO_TRY(brio_for(r->ctx, brio_threads(r->ctx, n, ROWS_A_THREAD), n, unpack, &b));

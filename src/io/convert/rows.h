@@ -29,9 +29,11 @@ typedef struct brio_row_tile {
 /** Begins, with the properties, the metadata and the grid of the first block.
  *  Returns BRIO_OK, BRIO_ERR_OPEN (the context's scratch folder takes no files), BRIO_ERR_NO_MEMORY. */
 brio_status brio_rows_begin(brio_rows *r, const brio_mesh *first);
+/** Returns the first property that is not in both the first block and another one, or of another type there; NULL if
+ *  they have the same, in any order. */
+const brio_property *brio_rows_differ(const brio_rows *r, const brio_mesh *block);
 /** Appends the points of a block, which has the properties of the first one.
- *  Returns BRIO_OK, BRIO_ERR_WRITE (full), BRIO_ERR_FORMAT (other properties), BRIO_ERR_NO_MEMORY,
- *  BRIO_ERR_CANCELLED. */
+ *  Returns BRIO_OK, BRIO_ERR_WRITE (full), BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
 brio_status brio_rows_append(brio_rows *r, const brio_mesh *block);
 /** Refuses rows for which the disk has no room.   name  of the input.   points  that are still to be written. */
 brio_status brio_rows_require_room(const brio_rows *r, const char *name, uint64_t points);

@@ -15,6 +15,31 @@
  * tiles.md. */
 static const double BESIDE = 64e6, BYTES_A_POINT = 100;
 
+/* Returns whether two files say the same by some metadata, or nothing by them. */
+static bool say_same(const brio_mesh *a, const brio_mesh *b, const char *name) {
+    const brio_metadata *x = brio_mesh_metadata(a, name), *y = brio_mesh_metadata(b, name);
+    return (!x && !y) || (x && y && x->size == y->size && !memcmp(x->bytes, y->bytes, x->size));
+}
+
+static bool are_in_one_system(const brio_mesh *a, const brio_mesh *b) {
+    if (brio_mesh_metadata(a, "crs.code") && say_same(a, b, "crs.code")) return true;
+    return say_same(a, b, "crs.wkt") && say_same(a, b, "crs.geokeys");
+}
+
+/* Refuses points that do not go into files with those of the first block. */
+static brio_status require_kind(const brio_conversion *c, const brio_mesh *block) {
+    const char *name = c->source.path;
+    const brio_property *other = brio_rows_differ(&c->rows, block);
+    BRIO_EXPECT(c->ctx, !other, BRIO_ERR_FORMAT,
+                "%s: other properties than the points before: %s is not in both, or of another type", name,
+                other->name);
+    BRIO_EXPECT(c->ctx, are_in_one_system(c->rows.kind, block), BRIO_ERR_FORMAT,
+                "%s: another coordinate system than that of the points before", name);
+    BRIO_EXPECT(c->ctx, say_same(c->rows.kind, block, "colour.depth"), BRIO_ERR_FORMAT,
+                "%s: colours of another depth than those before", name);
+    return BRIO_OK;
+}
+
 /* Takes a block into the scratch file, the first one when the disk has room for all that are announced. */
 static brio_status keep_block(void *user, const brio_mesh *block) {
     brio_conversion *c = user;
@@ -28,7 +53,59 @@ static brio_status keep_block(void *user, const brio_mesh *block) {
         if (block->num_tetrahedra) brio_conversion_lose(c, "tetrahedra");
         if (block->num_edges) brio_conversion_lose(c, "edges");
     }
+    BRIO_FORWARD(require_kind(c, block));
     return brio_rows_append(&c->rows, block);
+}
+
+/* Adds what a reader said of an input to what it said of those before. */
+static brio_status add_findings(brio_context *ctx, brio_read_job *all, const brio_read_job *job) {
+    all->dropped += job->dropped;
+    all->missing += job->missing;
+    all->streamed &= job->streamed;
+    all->notes.numbered |= job->notes.numbered;
+    if (!all->notes.rounded) {
+        int numbered = all->notes.numbered;
+        all->notes = job->notes;
+        all->notes.numbered = numbered;
+    }
+    for (size_t i = 0, k; i < job->num_left_out; i++) {
+        for (k = 0; k < all->num_left_out && strcmp(all->left_out[k], job->left_out[i]); k++) {}
+        if (k < all->num_left_out) continue;
+        BRIO_FORWARD(BRIO_RESIZE(ctx, all->left_out, all->num_left_out + 1));
+        memcpy(all->left_out[all->num_left_out++], job->left_out[i], sizeof *all->left_out);
+    }
+    return BRIO_OK;
+}
+
+/* Takes the points of all inputs into the scratch file. */
+static brio_status take_inputs(brio_conversion *c, brio_bar bar) {
+    brio_source *s = &c->source;
+    const brio_sink keeps = {keep_block, c};
+    const brio_read_job how = s->job;
+    const char *first = s->path;
+    brio_read_job all = {.streamed = true};
+    brio_status status = BRIO_OK;
+    uint64_t points_read = 0;
+    double part = 0.4 / (1 + c->options->num_more);
+    for (uint32_t i = 0; i <= c->options->num_more; i++) {
+        brio_progress_part(c->ctx, bar, part * i, part * (i + 1));
+        s->job = how;
+        s->job.path = s->path = i ? c->options->more[i - 1] : first;
+        s->has_facts = false;
+        BRIO_TRY(brio_source_pass(s, &keeps));
+        points_read += s->points_read;
+        BRIO_TRY(add_findings(c->ctx, &all, &s->job));
+        brio_read_job_free(c->ctx, &s->job);
+        brio_mesh_free(s->job.mesh); /* of a format that is not read in blocks */
+        s->job.mesh = NULL;
+    }
+    s->points_read = points_read;
+    s->job = all;
+    all.left_out = NULL;
+done:
+    s->path = first;
+    brio_read_job_free(c->ctx, &all);
+    return status;
 }
 
 static brio_status look_at_colours(void *user, const brio_mesh *block) {
@@ -141,14 +218,10 @@ brio_status brio_conversion_tiles(brio_conversion *c) {
     brio_status status = BRIO_OK;
     brio_row_tile *tile = NULL;
     brio_source *s = &c->source;
-    const brio_sink keeps = {keep_block, c};
     const brio_bar bar = brio_progress_bar(c->ctx);
     double now = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(c->ctx, tile, c->options->tiles));
-    brio_progress_part(c->ctx, bar, 0, 0.4);
-    BRIO_TRY(brio_source_pass(s, &keeps));
-    brio_mesh_free(s->job.mesh); /* of a format that is not read in blocks */
-    s->job.mesh = NULL;
+    BRIO_TRY(take_inputs(c, bar));
     s->rows = &c->rows;
     s->num_rows = c->rows.count;
     lap(&c->stats.read_seconds, &now);
