@@ -329,7 +329,8 @@ typedef struct brio_convert_stats {
  *  the scratch folder of the context (brio_context_set_scratch), twice: 24 bytes each and their properties. No tile is
  *  in memory for the formats that are written block by block; else the largest is. Faces, tetrahedra and edges are
  *  left out, and `merge` is refused. Several inputs have the same properties, in any order, and the same coordinate
- *  system; all else that the first one says is kept. Files of tiles stay where a later one fails: the caller removes them.
+ *  system; all else that the first one says is kept. Files of tiles stay where a later one fails: the caller removes
+ *  them.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.
  *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and

@@ -11,9 +11,25 @@
 
 /* --- what is taken --- */
 
-/* Bytes of memory beside a tile, and for each point of a tile that is in memory as a whole, beside its row. Measured:
- * tiles.md. */
-static const double BESIDE = 64e6, BYTES_A_POINT = 100;
+/* Returns the bytes of memory beside a tile: the buffers of all tiles and the sample, and a block as rows, in arrays, as
+ * it was read and as it is written. */
+static double bytes_beside(const brio_conversion *c) {
+    return 40e6 + 4.0 * BRIO_BLOCK_ROWS * (double)c->rows.size;
+}
+
+/* Returns the bytes of a point of a tile that is in memory as a whole: of its row, of the same compressed with VTK's
+ * three indices, and of four numbers of a colour in another depth. */
+static double bytes_of_point(const brio_conversion *c) {
+    return 2 * (double)c->rows.size + 12 + 32;
+}
+
+static brio_status require_least_memory(const brio_conversion *c) {
+    double limit = (double)brio_memory_limit(c->ctx), need = bytes_beside(c);
+    BRIO_EXPECT(c->ctx, need <= limit, BRIO_ERR_NO_MEMORY,
+                "points in tiles need about %.0f MB, for any number of points, of the %.0f MB that are allowed",
+                need / 1e6, limit / 1e6);
+    return BRIO_OK;
+}
 
 /* Returns whether two files say the same by some metadata, or nothing by them. */
 static bool say_same(const brio_mesh *a, const brio_mesh *b, const char *name) {
@@ -47,6 +63,7 @@ static brio_status keep_block(void *user, const brio_mesh *block) {
     uint64_t points = block->num_vertices;
     if (!c->rows.kind) {
         BRIO_FORWARD(brio_rows_begin(&c->rows, block));
+        BRIO_FORWARD(require_least_memory(c));
         if (s->job.announced != BRIO_COUNT_UNKNOWN && !c->options->crop) points = s->job.announced;
         BRIO_FORWARD(brio_rows_require_room(&c->rows, s->path, 2 * points)); /* as they came, and in tiles */
         if (block->num_faces) brio_conversion_lose(c, "faces");
@@ -138,16 +155,14 @@ static brio_status find_common(brio_conversion *c) {
 /* Refuses tiles that are in memory as a whole and do not fit. */
 static brio_status require_memory(const brio_conversion *c) {
     double limit = (double)brio_memory_limit(c->ctx), most = (double)c->stats.largest_tile;
-    double each = brio_row_format_of(c->format) ? 0 : (double)c->rows.size + BYTES_A_POINT;
-    double need = BESIDE + most * each, all = (double)c->rows.count;
+    double each = brio_row_format_of(c->format) ? 0 : bytes_of_point(c);
+    double beside = bytes_beside(c), need = beside + most * each, all = (double)c->rows.count;
     if (need <= limit) return BRIO_OK;
-    BRIO_EXPECT(c->ctx, BESIDE < limit, BRIO_ERR_NO_MEMORY,
-                "a conversion to tiles needs about %.0f MB of the %.0f MB that are allowed", BESIDE / 1e6, limit / 1e6);
     return brio_fail(c->ctx, BRIO_ERR_NO_MEMORY,
                      "the largest of %u tiles has %.0f points, and needs about %.0f MB of the %.0f MB that are "
                      "allowed: take about %.0f tiles",
                      c->options->tiles, most, need / 1e6, limit / 1e6,
-                     fmin(ceil(1.2 * all * each / (limit - BESIDE)), BRIO_MOST_TILES));
+                     fmin(ceil(1.2 * all * each / (limit - beside)), BRIO_MOST_TILES));
 }
 
 /* Makes the name of a tile's file: the number in place of the last # of the pattern.   out  owned by the caller. */
