@@ -296,8 +296,10 @@ brio_status cli_point_tiles(run *r, uint64_t tiles, brio_convert_options *o, bri
     o->tiles = (uint32_t)tiles;
     o->num_more = (uint32_t)r->num_operands - 1;
     o->more = (const char *const *)r->operands + 1;
+    o->scratch = r->common.scratch;
     o->tile = keep_tile;
     o->tile_user = &w;
+    if (!o->drop_outliers && !(o->thin > 0)) TRY(brio_context_set_scratch(r->ctx, NULL)); /* blocks are in memory */
     TRY(brio_convert(r->ctx, r->operands[0], pattern, o, stats));
     TRY(cli_check_interrupt(r));
     TRY(cli_new_folder_name(r, &folder));

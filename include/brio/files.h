@@ -287,6 +287,7 @@ typedef struct brio_convert_options {
     uint32_t tiles;          /* 0: one file; else the points are divided among as many, at most 65,536 */
     uint32_t num_more;       /* with tiles: further inputs, */
     const char *const *more; /* whose points follow those of the first one */
+    const char *scratch;     /* with tiles: a folder for the points meanwhile */
     brio_convert_tile_fn tile; /* NULL: called when the file of a tile has its name */
     void *tile_user;
 } brio_convert_options;
@@ -325,8 +326,8 @@ typedef struct brio_convert_stats {
  *  sample, as brio_tiles divides them. `to` has a # in the place of the number of a tile, as in "folder/#.laz", whose
  *  folder is there. Each point is in one file, with all that the conversion to one file keeps, in the order of the
  *  input; together the files have the same depth of colours and, LAS and LAZ, the same grid and fields. Tiles without
- *  points have no file; if no tile has points, there is one empty file. Numbers are 0, 1 and so on. The points go to
- *  the scratch folder of the context (brio_context_set_scratch), twice: 24 bytes each and their properties. No tile is
+ *  points have no file; if no tile has points, there is one empty file. Numbers are 0, 1 and so on. The points go to a
+ *  file without a name in the folder `scratch`, twice: 24 bytes each and their properties. No tile is
  *  in memory for the formats that are written block by block; else the largest is. Faces, tetrahedra and edges are
  *  left out, and `merge` is refused. Several inputs have the same properties, in any order, and the same coordinate
  *  system; all else that the first one says is kept. Files of tiles stay where a later one fails: the caller removes

@@ -304,7 +304,7 @@ static brio_status check(brio_conversion *c) {
                     o->box[k + 3], "xyz"[k]);
     BRIO_EXPECT(c->ctx, o->tiles <= BRIO_MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles; at most %d", o->tiles,
                 BRIO_MOST_TILES);
-    BRIO_EXPECT(c->ctx, !o->tiles || c->ctx->scratch, BRIO_ERR_ARGUMENT, "tiles need a scratch folder");
+    BRIO_EXPECT(c->ctx, !o->tiles || o->scratch, BRIO_ERR_ARGUMENT, "tiles need a scratch folder");
     BRIO_EXPECT(c->ctx, !o->tiles || strchr(c->to, '#'), BRIO_ERR_ARGUMENT,
                 "%s: files of tiles need a # in their name, where their number is to be", c->to);
     BRIO_EXPECT(c->ctx, o->tiles || !o->num_more, BRIO_ERR_ARGUMENT, "several inputs are for tiles");

@@ -5,10 +5,10 @@
  * a tile needs no more memory than the buffer of rows that wait for their place. */
 #include "io/convert/rows.h"
 #include "base/memory.h"
-#include "base/scratch_file.h"
 #include "base/team.h"
 #include "platform/disk.h"
 #include "platform/file.h"
+#include "platform/folder.h"
 #include "tiles/cuts.h"
 #include <assert.h>
 #include <errno.h>
@@ -20,18 +20,19 @@ enum { BUFFERS = 1 << 25, MOST_WAITING = 1 << 18, ROWS_A_THREAD = 1 << 13, POSIT
 
 /* --- the file --- */
 
-static brio_status open_rows(brio_context *ctx, int *file) {
-    *file = brio_open_nameless(ctx->scratch);
+static brio_status open_rows(const brio_rows *r, int *file) {
+    *file = brio_open_nameless(r->folder);
     if (*file >= 0) return BRIO_OK;
-    return brio_fail(ctx, BRIO_ERR_OPEN, "%s: not a writable folder: %s", ctx->scratch, strerror(errno));
+    return brio_fail(r->ctx, BRIO_ERR_OPEN, "%s: not a writable folder: %s", *r->folder ? r->folder : "\"\"",
+                     strerror(errno));
 }
 
-static brio_status write_rows(brio_context *ctx, int file, uint64_t place, const char *bytes, size_t size) {
+static brio_status write_rows(const brio_rows *r, int file, uint64_t place, const char *bytes, size_t size) {
     while (size > 0) {
         int64_t n = brio_write_bytes_at(file, bytes, size, place);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0)
-            return brio_fail(ctx, BRIO_ERR_WRITE, "%s: cannot write a scratch file: %s", ctx->scratch,
+            return brio_fail(r->ctx, BRIO_ERR_WRITE, "%s: cannot write a scratch file: %s", r->folder,
                              strerror(n < 0 ? errno : ENOSPC));
         bytes += n, size -= (size_t)n, place += (uint64_t)n;
     }
@@ -45,7 +46,7 @@ static brio_status read_rows(const brio_rows *r, uint64_t first, size_t count) {
         int64_t n = brio_read_bytes_at(r->file, to, size, place);
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0)
-            return brio_fail(r->ctx, BRIO_ERR_OPEN, "%s: cannot read a scratch file: %s", r->ctx->scratch,
+            return brio_fail(r->ctx, BRIO_ERR_OPEN, "%s: cannot read a scratch file: %s", r->folder,
                              n < 0 ? strerror(errno) : "it ends early");
         to += n, size -= (size_t)n, place += (uint64_t)n;
     }
@@ -55,10 +56,10 @@ static brio_status read_rows(const brio_rows *r, uint64_t first, size_t count) {
 brio_status brio_rows_require_room(const brio_rows *r, const char *name, uint64_t points) {
     uint64_t room;
     double need = (double)points * (double)r->size;
-    if (!brio_scratch_room(r->ctx, &room)) return BRIO_OK;
+    if (!brio_free_bytes(r->folder, &room)) return BRIO_OK;
     BRIO_EXPECT(r->ctx, need <= (double)room, BRIO_ERR_WRITE,
-                "%s: the points of %s need about %.0f MB more on this disk, which has room for %.0f MB",
-                r->ctx->scratch, name, need / 1e6, (double)room / 1e6);
+                "%s: the points of %s need about %.0f MB more on this disk, which has room for %.0f MB", r->folder,
+                name, need / 1e6, (double)room / 1e6);
     return BRIO_OK;
 }
 
@@ -121,7 +122,7 @@ static brio_status make_like(brio_context *ctx, const brio_mesh *like, size_t co
 }
 
 brio_status brio_rows_begin(brio_rows *r, const brio_mesh *first) {
-    BRIO_FORWARD(open_rows(r->ctx, &r->file));
+    BRIO_FORWARD(open_rows(r, &r->file));
     BRIO_FORWARD(make_like(r->ctx, first, BRIO_BLOCK_ROWS, &r->kind));
     r->size = POSITION;
     for (size_t i = 0; i < first->num_properties; i++) r->size += brio_scalar_size(first->properties[i].type);
@@ -161,7 +162,7 @@ static brio_status append_part(brio_rows *r, const brio_mesh *part) {
     block_rows b = {part, r->bytes, r->size};
     size_t n = part->num_vertices;
     BRIO_FORWARD(brio_for(r->ctx, brio_threads(r->ctx, n, ROWS_A_THREAD), n, pack, &b));
-    BRIO_FORWARD(write_rows(r->ctx, r->file, r->count * r->size, r->bytes, n * r->size));
+    BRIO_FORWARD(write_rows(r, r->file, r->count * r->size, r->bytes, n * r->size));
     r->count += n;
     return brio_look(r->ctx, n);
 }
@@ -280,7 +281,7 @@ static brio_status count_row(division *d, const char *row, const double position
 static brio_status place_waiting(division *d, uint32_t tile) {
     size_t size = d->r->size;
     uint64_t at = d->tile[tile].first + d->placed[tile];
-    BRIO_FORWARD(write_rows(d->r->ctx, d->file, at * size, d->waiting + tile * d->room * size, d->number[tile] * size));
+    BRIO_FORWARD(write_rows(d->r, d->file, at * size, d->waiting + tile * d->room * size, d->number[tile] * size));
     d->placed[tile] += d->number[tile];
     d->number[tile] = 0;
     return BRIO_OK;
@@ -314,7 +315,7 @@ brio_status brio_rows_divide(brio_rows *r, const uint8_t *chosen, uint32_t num_t
     BRIO_TRY(for_rows(&d, 1, count_row));
     for (uint32_t i = 1; i < num_tiles; i++) tile[i].first = tile[i - 1].first + tile[i - 1].count;
     BRIO_TRY(make_room(&d, num_tiles));
-    BRIO_TRY(open_rows(r->ctx, &d.file));
+    BRIO_TRY(open_rows(r, &d.file));
     BRIO_TRY(for_rows(&d, 2, place_row));
     for (uint32_t i = 0; i < num_tiles; i++) BRIO_TRY(place_waiting(&d, i));
     r->most = (r->count + d.stay) * r->size;

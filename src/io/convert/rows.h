@@ -1,8 +1,7 @@
 /* Points with all their properties in a scratch file, for points that are in no memory as a whole: one row after the
  * other, in the order in which they came, and then in the order of tiles.
  *
- * The file has no name, so that nothing is left behind, however the process ends. It is in the context's scratch
- * folder. */
+ * The file has no name, so that nothing is left behind, however the process ends. */
 #ifndef BRIO_IO_CONVERT_ROWS_H
 #define BRIO_IO_CONVERT_ROWS_H
 
@@ -12,6 +11,7 @@
  *  before the first block. */
 typedef struct brio_rows {
     brio_context *ctx;
+    const char *folder; /* of the file */
     brio_mesh *kind; /* properties, metadata and grid of the first block; its arrays are those of a block on its way */
     int file;
     size_t size;    /* bytes of a row */
@@ -27,7 +27,7 @@ typedef struct brio_row_tile {
 } brio_row_tile;
 
 /** Begins, with the properties, the metadata and the grid of the first block.
- *  Returns BRIO_OK, BRIO_ERR_OPEN (the context's scratch folder takes no files), BRIO_ERR_NO_MEMORY. */
+ *  Returns BRIO_OK, BRIO_ERR_OPEN (the folder takes no files), BRIO_ERR_NO_MEMORY. */
 brio_status brio_rows_begin(brio_rows *r, const brio_mesh *first);
 /** Returns the first property that is not in both the first block and another one, or of another type there; NULL if
  *  they have the same, in any order. */

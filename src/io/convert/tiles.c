@@ -236,6 +236,7 @@ brio_status brio_conversion_tiles(brio_conversion *c) {
     const brio_bar bar = brio_progress_bar(c->ctx);
     double now = brio_seconds();
     BRIO_TRY(BRIO_ALLOC(c->ctx, tile, c->options->tiles));
+    c->rows.folder = c->options->scratch;
     BRIO_TRY(take_inputs(c, bar));
     s->rows = &c->rows;
     s->num_rows = c->rows.count;
