@@ -11,8 +11,8 @@
 
 /* --- what is taken --- */
 
-/* Returns the bytes of memory beside a tile: the buffers of all tiles and the sample, and a block as rows, in arrays, as
- * it was read and as it is written. */
+/* Returns the bytes of memory beside a tile: the buffers of all tiles and the sample, and a block as rows, in arrays,
+ * as it was read and as it is written. */
 static double bytes_beside(const brio_conversion *c) {
     return 40e6 + 4.0 * BRIO_BLOCK_ROWS * (double)c->rows.size;
 }
