@@ -190,7 +190,7 @@ static brio_status convert(run *r) {
     TRY(chosen->tiles ? cli_point_tiles(r, chosen->tiles, &o, &stats) : convert_file(r, &o, &stats));
     report_stages(r, &stats);
     report(r, &stats, &o);
-    cli_tell_input(r, r->operands[0]);
+    cli_tell_input(r, r->num_operands > 1 ? "the inputs" : r->operands[0]);
     report_lost(r, &lost, &renamed);
     cli_tell_moved(r, r->common.output, moved, merged);
 done:
@@ -206,11 +206,13 @@ const command cli_convert = {
     .description =
         "Points go by in blocks, so that a file of any size needs some MiB; files with faces are read as a whole. "
         "First come the points in the box, of these those that are no outliers, of these a thinned set; merging comes "
-        "last.",
+        "last. With --tiles, points of any number of inputs, which have the same properties, go to a file for each "
+        "tile.",
     .examples =
         "brio convert scan.laz scan.ply\nevery property is kept\n"
         "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n"
-        "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n",
+        "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n"
+        "brio convert a.laz b.laz all.vpc --tiles 16 --scratch /var/tmp\nmore points than fit in memory, in 16 files\n",
     .has_output = true,
     .output_optional = true,
     .group = GROUP_FILES,
