@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 enum { MOST_NAMES = 10, MOST_FILES = 1 << 16, MOST_INDEX = 1 << 28 /* bytes */ };
 
@@ -165,7 +166,7 @@ static brio_status fail_folder(run *r, const char *path) {
 static brio_status begin(run *r, const char *index, const char *extension, new_folder *f) {
     const char *dot = strrchr(index, '.');
     size_t stem = dot ? (size_t)(dot - index) : strlen(index);
-    *f = (new_folder){.extension = extension, .lock = -1, .json = dot && !strcmp(dot, CLI_JSON_INDEX)};
+    *f = (new_folder){.extension = extension, .lock = -1, .json = dot && !strcasecmp(dot, CLI_JSON_INDEX)};
     if (stem >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", index);
     memcpy(f->stem, index, stem);
     find_old(index, f);
