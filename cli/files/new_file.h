@@ -38,6 +38,7 @@ typedef struct {
     uint32_t num_old;               /* files that the older index names */
     char old_extension[16];         /* of these files, with a dot */
     const char *extension;          /* of the new ones */
+    uint32_t most_files;            /* new ones, at most; who knows less than 65,536 sets it after the opening */
     bool json;                      /* whether indexes of this name are JSON, else they are XML */
 } new_folder;
 

@@ -166,7 +166,8 @@ static brio_status fail_folder(run *r, const char *path) {
 static brio_status begin(run *r, const char *index, const char *extension, new_folder *f) {
     const char *dot = strrchr(index, '.');
     size_t stem = dot ? (size_t)(dot - index) : strlen(index);
-    *f = (new_folder){.extension = extension, .lock = -1, .json = dot && !strcasecmp(dot, CLI_JSON_INDEX)};
+    *f = (new_folder){
+        .extension = extension, .most_files = MOST_FILES, .lock = -1, .json = dot && !strcasecmp(dot, CLI_JSON_INDEX)};
     if (stem >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", index);
     memcpy(f->stem, index, stem);
     find_old(index, f);
@@ -243,7 +244,7 @@ brio_status cli_new_folder_name(run *r, new_folder *f) {
 void cli_new_folder_close(new_folder *f, bool published) {
     char mark[BRIO_PATH_MOST + 64];
     if (f->lock >= 0) {
-        if (!published) remove_files(f->path, f->extension, MOST_FILES);
+        if (!published) remove_files(f->path, f->extension, f->most_files);
         mark_of(f->path, mark);
         brio_unlock_file(f->lock, mark);
         if (!published) brio_remove_folder(f->path);

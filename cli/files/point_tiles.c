@@ -292,6 +292,7 @@ brio_status cli_point_tiles(run *r, uint64_t tiles, brio_convert_options *o, bri
     if (!w.tile) return cli_fail(r, BRIO_ERR_NO_MEMORY, "out of memory");
     snprintf(extension, sizeof extension, ".%s", cli_point_tile_format(r));
     TRY(cli_new_folder_open(r, r->common.output, extension, &folder));
+    folder.most_files = (uint32_t)tiles;
     snprintf(pattern, sizeof pattern, "%s/#%s", folder.path, extension);
     o->tiles = (uint32_t)tiles;
     o->num_more = (uint32_t)r->num_operands - 1;

@@ -280,6 +280,7 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
     new_folder folder = {.lock = -1};
     brio_status status = BRIO_OK;
     TRY(cli_new_folder_open(r, r->common.output, OF_TILES, &folder));
+    folder.most_files = tiles;
     for (uint32_t i = 0; i < tiles; i++) {
         snprintf(path, sizeof path, "%s/%u%s", folder.path, i, OF_TILES);
         TRY(write_tile(r, t, i, weighted, path));
