@@ -108,10 +108,7 @@ static brio_status check_operands(run *r) {
     }
     if (r->num_operands > c->max_operands)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: one argument too many: '%s'", c->name, r->operands[c->max_operands]);
-    if (!c->writes_last || r->num_operands < c->max_operands) return BRIO_OK;
-    const char *output = r->operands[--r->num_operands];
-    if (r->common.output) return cli_fail(r, BRIO_ERR_ARGUMENT, "two outputs: %s and -o %s", output, r->common.output);
-    r->common.output = output;
+    if (c->writes_last && r->num_operands > 1 && !r->common.output) r->common.output = r->operands[--r->num_operands];
     return BRIO_OK;
 }
 

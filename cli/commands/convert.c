@@ -12,6 +12,7 @@
 typedef struct arguments {
     const char *crop, *crs;
     double thin, merge; /* merge: NaN where it is not given */
+    uint64_t tiles;     /* 0: not given */
     int outliers;
     bool crs_comment;
 } arguments;
@@ -29,6 +30,11 @@ static const option options[] = {
      0},
     {"merge", 0, OPTION_NUMBER | OPTION_OPTIONAL, FIELD(merge), "[DISTANCE]",
      "merge vertices at equal positions, or at most DISTANCE apart; drops triangles that lose a corner", 0},
+    {"tiles", 0, OPTION_NATURAL | OPTION_POSITIVE, FIELD(tiles), "N",
+     "divide the points, more than fit in memory, among N tiles, by way of the folder of --scratch: -o x.vpc or "
+     "x.pvtp, "
+     "an index of files in a folder x",
+     0},
     {0},
 };
 #undef FIELD
@@ -77,15 +83,17 @@ static void report_lost(run *r, const facts *lost, const facts *renamed) {
 
 static brio_status take_files(run *r, brio_read_options *from, brio_write_options *to) {
     const common_options *c = &r->common;
-    brio_status status = cli_output_format(r, c->output, c->format, &to->format);
-    if (status != BRIO_OK) return status;
+    const arguments *chosen = r->arguments;
+    const char *format = chosen->tiles ? cli_point_tile_format(r) : c->format;
+    FORWARD(cli_output_format(r, c->output, format, &to->format));
     *from = cli_read_options(r);
-    if (c->format && !strcasecmp(c->format, "csv")) to->separator = ",";
+    to->size = sizeof *to;
+    if (format && !strcasecmp(format, "csv")) to->separator = ",";
     to->ascii = c->ascii;
     to->float32 = c->float32;
     to->compress = c->compress;
     to->comment = "brio " BRIO_VERSION;
-    to->crs_comment = ((const arguments *)r->arguments)->crs_comment;
+    to->crs_comment = chosen->crs_comment;
     if (to->crs_comment && to->format != BRIO_FORMAT_PLY)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: --crs-comment writes comments of PLY files only", c->output);
     return BRIO_OK;
@@ -98,6 +106,10 @@ static brio_status take_options(run *r, brio_convert_options *o) {
     if (chosen->thin < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--thin: %g is below 0", chosen->thin);
     if (chosen->outliers > 63)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--drop-outliers: %d is not between 1 and 63", chosen->outliers);
+    if (chosen->tiles && !isnan(chosen->merge))
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--merge: not with --tiles, since all vertices are in memory for it; merge before, by another "
+                        "conversion");
     if (chosen->merge < 0) return cli_fail(r, BRIO_ERR_ARGUMENT, "--merge: %g is below 0", chosen->merge);
     o->merge = !isnan(chosen->merge);
     if (o->merge) o->merge_distance = chosen->merge;
@@ -118,20 +130,54 @@ static void report(run *r, const brio_convert_stats *stats, const brio_convert_o
     if (o->thin > 0) cli_fact_count(f, "thinned", stats->thinned);
     if (o->merge) cli_fact_count(f, "merged_vertices", stats->merged);
     if (o->merge) cli_fact_count(f, "degenerate", stats->degenerate);
+    if (o->tiles) cli_fact_count(f, "tiles", stats->tiles);
+    if (o->tiles) cli_fact_count(f, "largest_tile", stats->largest_tile);
+    if (o->tiles) cli_fact_count(f, "scratch_bytes", stats->scratch_bytes);
     cli_fact_bool(f, "streamed", stats->streamed);
 }
 
+/* Refuses outputs that cannot be written. */
+static brio_status check_output(run *r, uint64_t tiles) {
+    const char *output = r->common.output;
+    if (tiles) return cli_check_point_tiles(r, tiles);
+    if (r->num_operands == 2)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "two outputs: %s and -o %s; several inputs go with --tiles",
+                        r->operands[1], output);
+    if (r->num_operands > 2)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: %d inputs; several go with --tiles", r->num_operands);
+    if (output && cli_is_point_index(output) && !r->common.format)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: an index of tiles, which --tiles N --scratch DIR writes", output);
+    return cli_require_output(r, false);
+}
+
+static brio_status convert_file(run *r, const brio_convert_options *o, brio_convert_stats *stats) {
+    FORWARD(cli_check_interrupt(r));
+    cli_interrupt_writing(strcmp(r->common.output, "-") != 0);
+    brio_status status = brio_convert(r->ctx, r->operands[0], r->common.output, o, stats);
+    cli_interrupt_writing(false);
+    return status;
+}
+
+static void report_stages(run *r, const brio_convert_stats *s) {
+    double known = s->read_seconds + s->select_seconds + s->divide_seconds;
+    if (s->read_seconds > 0) cli_stage(r, "read", s->read_seconds);
+    cli_stage(r, "select", s->select_seconds);
+    if (s->read_seconds > 0) cli_stage(r, "divide", s->divide_seconds);
+    cli_stage(r, "convert", s->seconds - known);
+}
+
 static brio_status convert(run *r) {
-    brio_convert_options o = {0};
+    const arguments *chosen = r->arguments;
+    brio_convert_options o = {.size = sizeof o};
     brio_read_options from = {0};
     brio_write_options to = {0};
     double moved = 0;
     size_t merged = 0;
-    brio_convert_stats stats = {0};
+    brio_convert_stats stats = {.size = sizeof stats};
     facts lost = {0}, renamed = {0};
     brio_status status = BRIO_OK;
     if (!r->common.output) return cli_fail(r, BRIO_ERR_ARGUMENT, "convert: expected A B, got one file");
-    TRY(cli_require_output(r, false));
+    TRY(check_output(r, chosen->tiles));
     TRY(take_files(r, &from, &to));
     TRY(take_options(r, &o));
     to.moved = &moved;
@@ -140,16 +186,11 @@ static brio_status convert(run *r) {
     o.lost_user = &lost;
     o.renamed = on_name;
     o.renamed_user = &renamed;
-    TRY(cli_settle_conversion(r, r->operands[0], r->common.output, &o, &to, &merged));
-    TRY(cli_check_interrupt(r));
-    cli_interrupt_writing(strcmp(r->common.output, "-") != 0);
-    status = brio_convert(r->ctx, r->operands[0], r->common.output, &o, &stats);
-    cli_interrupt_writing(false);
-    TRY(status);
-    cli_stage(r, "select", stats.select_seconds);
-    cli_stage(r, "convert", stats.seconds - stats.select_seconds);
+    TRY(cli_settle_conversion(r, r->num_operands, &o, &to, &merged));
+    TRY(chosen->tiles ? cli_point_tiles(r, chosen->tiles, &o, &stats) : convert_file(r, &o, &stats));
+    report_stages(r, &stats);
     report(r, &stats, &o);
-    cli_tell_input(r, r->operands[0]);
+    cli_tell_input(r, r->num_operands > 1 ? "the inputs" : r->operands[0]);
     report_lost(r, &lost, &renamed);
     cli_tell_moved(r, r->common.output, moved, merged);
 done:
@@ -160,21 +201,23 @@ done:
 
 const command cli_convert = {
     .name = "convert",
-    .operands = "A B",
+    .operands = "A... B",
     .summary = "any format to any other; crops, thins, drops outliers, merges vertices",
     .description =
         "Points go by in blocks, so that a file of any size needs some MiB; files with faces are read as a whole. "
         "First come the points in the box, of these those that are no outliers, of these a thinned set; merging comes "
-        "last.",
+        "last. With --tiles, points of any number of inputs, which have the same properties, go to a file for each "
+        "tile.",
     .examples =
         "brio convert scan.laz scan.ply\nevery property is kept\n"
         "brio convert scan.las small.las --thin 0.05 --drop-outliers 12\npoints 5 cm apart, without stray ones\n"
-        "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n",
+        "brio convert parts.obj whole.ply --merge\nfaces share the vertices at one place\n"
+        "brio convert a.laz b.laz all.vpc --tiles 16 --scratch /var/tmp\nmore points than fit in memory, in 16 files\n",
     .has_output = true,
     .output_optional = true,
     .group = GROUP_FILES,
     .min_operands = 1,
-    .max_operands = 2,
+    .max_operands = 1 << 20,
     .writes_last = true,
     .options = options,
     .defaults = &defaults,

@@ -276,12 +276,21 @@ brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh
     return BRIO_OK;
 }
 
-brio_status cli_settle_conversion(run *r, const char *from, const char *to, const brio_convert_options *o,
-                                  brio_write_options *written, size_t *merged) {
-    single_loss l = {.points = 0};
+brio_status cli_settle_conversion(run *r, int inputs, const brio_convert_options *o, brio_write_options *written,
+                                  size_t *merged) {
+    const char *to = r->common.output;
+    single_loss all = {.points = 0};
     tell_idle(r, to, written);
-    if (rounds(written)) FORWARD(single_loss_of_file(r, from, o, &l));
-    *merged = settle(r, to, &l, written);
+    for (int i = 0; i < inputs && rounds(written) && fits(&all); i++) {
+        single_loss l;
+        FORWARD(single_loss_of_file(r, r->operands[i], o, &l));
+        all.points += l.points;
+        all.merged += l.merged;
+        all.moved = fmax(all.moved, l.moved);
+        if (fabs(l.largest) > fabs(all.largest)) all.largest = l.largest;
+        if (l.spacing > 0 && !(all.spacing > 0 && all.spacing <= l.spacing)) all.spacing = l.spacing;
+    }
+    *merged = settle(r, to, &all, written);
     return BRIO_OK;
 }
 

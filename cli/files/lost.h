@@ -18,11 +18,11 @@ brio_status cli_check_precision(run *r, const char *path, const brio_mesh *mesh)
 brio_status cli_settle_precision(run *r, const char *path, const brio_mesh *mesh, brio_write_options *options,
                                  size_t *merged);
 
-/** Does the same before a file is converted, whose points the file itself tells.
- *  o  chooses among the points.   written  how the file is written.   Reads the file once if its points will be
- *     rounded. */
-brio_status cli_settle_conversion(run *r, const char *from, const char *to, const brio_convert_options *o,
-                                  brio_write_options *written, size_t *merged);
+/** Does the same before operands are converted to -o, whose points the files themselves tell.
+ *  inputs  the first operands, as many.   o  chooses among the points.   written  how they are written.   Reads the
+ *  files once if their points will be rounded. */
+brio_status cli_settle_conversion(run *r, int inputs, const brio_convert_options *o, brio_write_options *written,
+                                  size_t *merged);
 
 /** Says how far the points of a written file are from where they were. */
 void cli_tell_moved(run *r, const char *path, double moved, size_t merged);

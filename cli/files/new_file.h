@@ -27,16 +27,23 @@ void cli_new_file_close(new_file *f);
 /** The folder of an output that is an index and many files. It gets its name when all files are complete; the index,
  *  which is published last, names it. So until then an older output of the same name is whole, index and files.
  *
- *  A file `.brio-part` in it, which is locked, says that it is a run's. A folder without that file is the user's, and
- *  nothing in it is touched; one whose file nobody has locked is what a killed run left. */
+ *  A file `.brio-part` in it, which is locked, says that it is a run's, and what extension its files have. A folder
+ *  without that file is the user's, and nothing in it is touched; one whose file nobody has locked is what a killed run
+ *  left. */
 typedef struct {
     char stem[BRIO_PATH_MOST - 64]; /* of the index, without its extension */
     char path[BRIO_PATH_MOST];      /* where the folder is now; "" if there is none */
     int lock;                       /* of its file; -1: none */
     char old[BRIO_PATH_MOST];       /* of the older index; "" if there is none */
     uint32_t num_old;               /* files that the older index names */
-    const char *extension;          /* of the files, with a dot */
+    char old_extension[16];         /* of these files, with a dot */
+    const char *extension;          /* of the new ones */
+    uint32_t most_files;            /* new ones, at most; who knows less than 65,536 sets it after the opening */
+    bool json;                      /* whether indexes of this name are JSON, else they are XML */
 } new_folder;
+
+/** The extension of an index that is JSON: a virtual point cloud. */
+#define CLI_JSON_INDEX ".vpc"
 
 /** Refuses an index whose folder could not be made: before the work.
  *  index  path of the index.   extension  of the files: 0.EXT, 1.EXT and so on. */
@@ -51,7 +58,8 @@ brio_status cli_new_folder_name(run *r, new_folder *f);
 /** Ends it.   published  whether the index is: then the files of the older one go, else the new folder does. */
 void cli_new_folder_close(new_folder *f, bool published);
 
-/** Writes text as that of an attribute of XML. */
+/** Write text as that of an attribute of XML, and as that of a string of JSON. */
 void cli_write_attribute(FILE *file, const char *text);
+void cli_write_text_of_json(FILE *file, const char *text);
 
 #endif

@@ -8,8 +8,9 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
-enum { MOST_NAMES = 10, MOST_FILES = 1 << 16, MOST_INDEX = 1 << 24 /* bytes */ };
+enum { MOST_NAMES = 10, MOST_FILES = 1 << 16, MOST_INDEX = 1 << 28 /* bytes */ };
 
 static const char MARK[] = ".brio-part";
 
@@ -20,46 +21,76 @@ static void name_of(const new_folder *f, int number, char path[BRIO_PATH_MOST]) 
         snprintf(path, BRIO_PATH_MOST, "%s", f->stem);
 }
 
-static const char *escape_of(char c) {
-    return c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : NULL;
+/* Stores how an index has a character of a name.   json  whether it is JSON, else it is XML. */
+static void quote(char c, bool json, char quoted[8]) {
+    const char *escape = c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : NULL;
+    if (json && (unsigned char)c < ' ')
+        snprintf(quoted, 8, "\\u%04x", (unsigned char)c);
+    else if (json && (c == '"' || c == '\\'))
+        snprintf(quoted, 8, "\\%c", c);
+    else
+        snprintf(quoted, 8, "%s", !json && escape ? escape : (char[2]){c, 0});
 }
 
 void cli_write_attribute(FILE *file, const char *text) {
+    char quoted[8];
     for (; *text; text++) {
-        if (escape_of(*text))
-            fputs(escape_of(*text), file);
-        else
-            fputc(*text, file);
+        quote(*text, false, quoted);
+        fputs(quoted, file);
+    }
+}
+
+void cli_write_text_of_json(FILE *file, const char *text) {
+    char quoted[8];
+    for (; *text; text++) {
+        quote(*text, true, quoted);
+        fputs(quoted, file);
     }
 }
 
 /* --- the older output --- */
 
-/* Returns the text behind the name of file `number` in a folder, or NULL if a text of XML does not have it. */
-static const char *after_name(const char *text, const char *folder, uint32_t number, const char *extension) {
-    char quoted[6 * BRIO_NAME_MOST + 64] = "=\"", *end = quoted + 2;
-    const char *name = folder + brio_folder_length(folder);
+/* Returns the text behind the name of file `number` in the folder f->old, up to where its extension begins, or NULL if
+ * the text of an index does not have it. */
+static const char *after_name(const char *text, const new_folder *f, uint32_t number) {
+    char quoted[6 * BRIO_NAME_MOST + 64], *end = quoted;
+    const char *name = f->old + brio_folder_length(f->old);
     if (strlen(name) >= BRIO_NAME_MOST) return NULL;
+    end += snprintf(end, 8, "%s", f->json ? "\"./" : "=\"");
     for (; *name; name++) {
-        const char *escape = escape_of(*name);
-        end += snprintf(end, 8, "%s", escape ? escape : (char[2]){*name, 0});
+        quote(*name, f->json, end);
+        end += strlen(end);
     }
-    snprintf(end, 64, "/%u%s\"", number, extension);
+    snprintf(end, 64, "/%u.", number);
     const char *found = strstr(text, quoted);
-    return found ? found + strlen(quoted) : NULL;
+    return found ? found + strlen(quoted) - 1 : NULL;
 }
 
 /* Reads an index. Returns NULL if it cannot be read. */
 static char *read_index(const char *index) {
-    char *text = calloc(1, MOST_INDEX + 1);
+    brio_place_facts of_file;
     int file = brio_open_input(index);
     uint64_t size = 0;
-    for (int64_t n = 1; text && file >= 0 && n > 0 && size<MOST_INDEX; size += n> 0 ? (uint64_t)n : 0)
-        n = brio_read_bytes_at(file, text + size, (size_t)(MOST_INDEX - size), size);
+    bool found = file >= 0 && brio_find_facts_open(file, &of_file) && of_file.size < MOST_INDEX;
+    char *text = found ? calloc(1, (size_t)of_file.size + 1) : NULL;
+    int64_t n = 1;
+    while (text && n > 0 && size != of_file.size) {
+        n = brio_read_bytes_at(file, text + size, (size_t)(of_file.size - size), size);
+        if (n > 0) size += (uint64_t)n;
+    }
     if (file >= 0) brio_close(file);
     if (size) return text;
     free(text);
     return NULL;
+}
+
+/* Takes the extension that a name in an index goes on with. Returns false if it is another one than that of the files
+ * before, or none. */
+static bool take_extension(new_folder *f, const char *rest) {
+    size_t size = strcspn(rest, "\"");
+    if (size >= sizeof f->old_extension || strcspn(rest, "/\\") < size) return false;
+    if (!f->num_old) snprintf(f->old_extension, sizeof f->old_extension, "%.*s", (int)size, rest);
+    return size == strlen(f->old_extension) && !strncmp(rest, f->old_extension, size);
 }
 
 /* Finds the folder of the index that is there now, and how many files of it the index names. */
@@ -68,7 +99,7 @@ static void find_old(const char *index, new_folder *f) {
     for (int i = 0; text && i < MOST_NAMES && !*f->old; i++) {
         name_of(f, i, f->old);
         const char *rest = text;
-        while (f->num_old < MOST_FILES && (rest = after_name(rest, f->old, f->num_old, f->extension)) != NULL)
+        while (f->num_old < MOST_FILES && (rest = after_name(rest, f, f->num_old)) != NULL && take_extension(f, rest))
             f->num_old++;
         if (!f->num_old) *f->old = 0;
     }
@@ -91,13 +122,22 @@ static void remove_files(const char *folder, const char *extension, uint32_t mos
     }
 }
 
-/* Removes what a killed run left; nothing of a folder that is another's. */
+/* Makes the mark of a folder, which has the extension of its files, and locks it. Returns -1 if it cannot. */
+static int make_mark(const char *mark, const char *extension) {
+    int lock = brio_lock_file(mark);
+    if (lock >= 0) (void)brio_write_bytes_at(lock, extension, strlen(extension), 0);
+    return lock;
+}
+
+/* Removes what a killed run left; nothing of a folder that is another's.   extension  of files where the run was killed
+ * before its mark had one. */
 static void remove_left(const char *folder, const char *extension) {
-    char mark[BRIO_PATH_MOST + 64];
+    char mark[BRIO_PATH_MOST + 64], of_run[16] = "";
     mark_of(folder, mark);
     int lock = brio_is_there(mark) ? brio_lock_file(mark) : -1;
     if (lock < 0) return;
-    remove_files(folder, extension, MOST_FILES);
+    bool known = brio_read_bytes_at(lock, of_run, sizeof of_run - 1, 0) > 0 && *of_run == '.' && !strchr(of_run, '/');
+    remove_files(folder, known ? of_run : extension, MOST_FILES);
     brio_unlock_file(lock, mark);
     brio_remove_folder(folder);
 }
@@ -126,7 +166,8 @@ static brio_status fail_folder(run *r, const char *path) {
 static brio_status begin(run *r, const char *index, const char *extension, new_folder *f) {
     const char *dot = strrchr(index, '.');
     size_t stem = dot ? (size_t)(dot - index) : strlen(index);
-    *f = (new_folder){.extension = extension, .lock = -1};
+    *f = (new_folder){
+        .extension = extension, .most_files = MOST_FILES, .lock = -1, .json = dot && !strcasecmp(dot, CLI_JSON_INDEX)};
     if (stem >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", index);
     memcpy(f->stem, index, stem);
     find_old(index, f);
@@ -144,10 +185,27 @@ static brio_status find_name(run *r, const new_folder *f, char path[BRIO_PATH_MO
                     f->stem, MOST_NAMES - 1);
 }
 
+/* Refuses inputs that are in the folder of the older output, which goes when the new one is complete. */
+static brio_status refuse_old_inputs(run *r, const new_folder *f) {
+    char folder[BRIO_PATH_MOST];
+    brio_place_facts old, of_input;
+    if (!*f->old || !brio_find_facts(f->old, &old)) return BRIO_OK;
+    for (int i = r->command->first_input; i < r->num_operands; i++) {
+        size_t length = brio_folder_length(r->operands[i]);
+        snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, length ? r->operands[i] : ".");
+        if (brio_find_facts(folder, &of_input) && brio_is_same_file(&old, &of_input))
+            return cli_fail(r, BRIO_ERR_ARGUMENT,
+                            "%s: a file of the older output that -o replaces; take another name for the new one",
+                            r->operands[i]);
+    }
+    return BRIO_OK;
+}
+
 brio_status cli_new_folder_check(run *r, const char *index, const char *extension) {
     new_folder f;
     char path[BRIO_PATH_MOST];
     FORWARD(begin(r, index, extension, &f));
+    FORWARD(refuse_old_inputs(r, &f));
     FORWARD(find_name(r, &f, path));
     snprintf(path, sizeof path, "%s.part", f.stem);
     errno = EEXIST;
@@ -162,7 +220,7 @@ brio_status cli_new_folder_open(run *r, const char *index, const char *extension
     mark_of(out->path, mark);
     bool there = brio_make_folder(out->path, false, &made);
     if (there && !made) errno = EEXIST;
-    if (there && made) out->lock = brio_lock_file(mark);
+    if (there && made) out->lock = make_mark(mark, extension);
     if (out->lock >= 0) return BRIO_OK;
     brio_status status = fail_folder(r, out->path);
     if (made) brio_remove_folder(out->path);
@@ -177,7 +235,7 @@ brio_status cli_new_folder_name(run *r, new_folder *f) {
     bool renamed = brio_rename_file(f->path, path);
     int error = errno;
     mark_of(renamed ? path : f->path, mark);
-    f->lock = brio_lock_file(mark);
+    f->lock = make_mark(mark, f->extension);
     if (!renamed) return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot name it %s: %s", f->path, path, strerror(error));
     memcpy(f->path, path, sizeof path);
     return f->lock >= 0 ? BRIO_OK : cli_fail(r, BRIO_ERR_WRITE, "%s: in use by another process", mark);
@@ -186,13 +244,13 @@ brio_status cli_new_folder_name(run *r, new_folder *f) {
 void cli_new_folder_close(new_folder *f, bool published) {
     char mark[BRIO_PATH_MOST + 64];
     if (f->lock >= 0) {
-        if (!published) remove_files(f->path, f->extension, MOST_FILES);
+        if (!published) remove_files(f->path, f->extension, f->most_files);
         mark_of(f->path, mark);
         brio_unlock_file(f->lock, mark);
         if (!published) brio_remove_folder(f->path);
     }
     if (published && *f->old) {
-        remove_files(f->old, f->extension, f->num_old);
+        remove_files(f->old, f->old_extension, f->num_old);
         mark_of(f->old, mark);
         brio_remove_file(mark); /* of a run that was killed when its index was there */
         brio_remove_folder(f->old);

@@ -10,11 +10,18 @@ enum { MAX_THREADS = 1024 };
 
 /* --- options --- */
 
+/* Returns a name with the extension of the output, or of the files that it is the index of. */
+static const char *files_of_output(const run *r) {
+    const char *output = r->common.output, *dot = strrchr(output, '.');
+    if (cli_is_point_index(output)) return cli_point_tile_format(r);
+    return r->common.format ? r->common.format : dot && !strcasecmp(dot, ".pvtu") ? "vtu" : output;
+}
+
 static brio_status check_compress(run *r) {
     const common_options *c = &r->common;
     if (!c->compress || !c->output) return BRIO_OK;
     if (c->ascii) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress and --ascii: text is not compressed");
-    const brio_format_info *info = brio_format_facts(brio_format_of(c->format ? c->format : c->output));
+    const brio_format_info *info = brio_format_facts(brio_format_of(files_of_output(r)));
     char others[BRIO_FORMAT_LIST];
     if (info && info->holds & BRIO_HOLDS_COMPRESSED) return BRIO_OK;
     brio_format_list(1, BRIO_HOLDS_COMPRESSED, others, sizeof others);

@@ -46,6 +46,21 @@ brio_status cli_write(run *r, const brio_mesh *mesh);
 /** Writes to another file, by its extension. */
 brio_status cli_write_to(run *r, const char *path, const brio_mesh *mesh);
 
+/** Refuses a number of tiles that there cannot be, and tiles without a scratch folder. */
+brio_status cli_check_tile_count(run *r, uint64_t tiles);
+
+/* --- points in tiles (point_tiles.c) --- */
+
+/** Returns whether a path is that of an index of files of points: .vpc or .pvtp. */
+bool cli_is_point_index(const char *path);
+/** Returns the extension of the files that -o, such an index, and --format ask for, without a dot. */
+const char *cli_point_tile_format(const run *r);
+/** Refuses what points are not written to in tiles, and an output that could not be made. */
+brio_status cli_check_point_tiles(run *r, uint64_t tiles);
+/** Converts the input to a file for each tile and the index -o.
+ *  o  as for brio_convert; receives the tiles.   stats  receives the facts. */
+brio_status cli_point_tiles(run *r, uint64_t tiles, brio_convert_options *o, brio_convert_stats *stats);
+
 /* --- pages that show meshes in a browser, and pictures (page.c) --- */
 
 /** Returns what a page calls a file: its name without the folders. */

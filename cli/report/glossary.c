@@ -368,12 +368,15 @@ const glossary_line cli_glossary[] = {
     {NULL, NULL, "exit", NULL, "the exit code of a failed run", LINE_JSON, STYLE_PLAIN},
 
     /* Tiles. */
+    {"convert", NULL, "tiles", NULL, "parts of space that hold points (--tiles), a file each", LINE_PLAIN, STYLE_PLAIN},
     {TRIANGULATIONS, NULL, "tiles", NULL, "parts of space that hold points (--tiles)", LINE_PLAIN, STYLE_PLAIN},
     {TRIANGULATIONS, NULL, "resumed", NULL, "tiles that a run that was killed had finished", LINE_PLAIN,
      STYLE_UNLESS_ZERO},
+    {"convert", NULL, "largest_tile", NULL, "points in the largest tile", LINE_PLAIN, STYLE_PLAIN},
     {TRIANGULATIONS, NULL, "largest_tile", NULL, "points in the largest triangulation, those about the tile included",
      LINE_PLAIN, STYLE_PLAIN},
-    {TRIANGULATIONS, NULL, "scratch_bytes", NULL, "the most that were in the scratch folder", LINE_PLAIN, STYLE_PLAIN},
+    {TRIANGULATIONS " convert", NULL, "scratch_bytes", NULL, "the most that were in the scratch folder", LINE_PLAIN,
+     STYLE_PLAIN},
     {"delaunay", NULL, "asked", NULL, "spheres and half-spaces for which a tile asked others", LINE_VERBOSE,
      STYLE_PLAIN},
     {"delaunay", NULL, "found", NULL, "points of other tiles that were in them", LINE_VERBOSE, STYLE_PLAIN},

@@ -132,7 +132,7 @@ typedef struct command {
     const option_choice *choices; /* the words that the first operand can be; NULL: it is a file */
     command_group group;
     int min_operands, max_operands;
-    bool writes_last; /* the last of max_operands operands is the output, as -o is */
+    bool writes_last; /* the last of several operands is the output unless -o names one */
     bool shown;       /* what it makes can be shown (cli_show), though it writes files of `outputs` */
     bool shows;       /* shows files: its output is a page, and it has pictures, but no --view */
     int first_input;  /* operands before it say what to do; without inputs the report names the first */

@@ -13,8 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_TILES = 1 << 16 };
-
 static const char EXTENSION[] = ".pvtu", OF_TILES[] = ".vtu";
 
 static bool ends_with(const char *text, const char *end) {
@@ -23,9 +21,7 @@ static bool ends_with(const char *text, const char *end) {
 }
 
 brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t tiles) {
-    if (tiles > MOST_TILES)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles: %" PRIu64 " are more than %d", tiles, MOST_TILES);
-    if (!r->common.scratch) return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles needs --scratch DIR, where the tiles are");
+    FORWARD(cli_check_tile_count(r, tiles));
     if (weights->file)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--tiles: not with --weights FILE; the points can have a property weight or radius");
@@ -284,6 +280,7 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
     new_folder folder = {.lock = -1};
     brio_status status = BRIO_OK;
     TRY(cli_new_folder_open(r, r->common.output, OF_TILES, &folder));
+    folder.most_files = tiles;
     for (uint32_t i = 0; i < tiles; i++) {
         snprintf(path, sizeof path, "%s/%u%s", folder.path, i, OF_TILES);
         TRY(write_tile(r, t, i, weighted, path));
@@ -340,7 +337,7 @@ static brio_status settle_merging(merging *m, const brio_tiles *t) {
         return cli_fail(r, BRIO_ERR_TOO_LARGE,
                         "%s: %" PRIu64 " points; indices of this format reach 2^32 - 1: .pvtu has a file for each tile",
                         r->common.output, m->all);
-    return cli_settle_conversion(r, r->operands[0], r->common.output, &o, &m->how, &m->merged);
+    return cli_settle_conversion(r, 1, &o, &m->how, &m->merged);
 }
 
 static brio_status has_changed(const merging *m) {

@@ -255,6 +255,18 @@ BRIO_API brio_status brio_mesh_parts_finish(brio_context *ctx, brio_mesh_parts *
 /** Frees everything; NULL is accepted. A file that was not finished disappears. */
 BRIO_API void brio_mesh_parts_free(brio_mesh_parts *p);
 
+/** A file of a tile that was written. */
+typedef struct brio_convert_tile {
+    size_t size;
+    const char *path;
+    uint64_t points;
+    double low[3], high[3]; /* box of the points; 0 if there are none */
+    const brio_mesh *kind;  /* names and types of the properties, metadata: of all points that were read; no vertices */
+} brio_convert_tile;
+
+/** Is called for each tile, valid during the call. Returns 0 to go on, anything else to cancel. */
+typedef int (*brio_convert_tile_fn)(const brio_convert_tile *tile, void *user);
+
 typedef struct brio_convert_options {
     size_t size;
     const brio_read_options *from;         /* NULL: the defaults of reading */
@@ -270,8 +282,14 @@ typedef struct brio_convert_options {
     void *renamed_user;
     int merge; /* 1: brio_mesh_merge_vertices, within merge_distance */
     int reserved_int;
-    double merge_distance; /* 0: equal positions only */
-    const char *crs;       /* NULL: a file that receives the coordinate system as well-known text, such as scan.prj */
+    double merge_distance;   /* 0: equal positions only */
+    const char *crs;         /* NULL: a file that receives the coordinate system as well-known text, such as scan.prj */
+    uint32_t tiles;          /* 0: one file; else the points are divided among as many, at most 65,536 */
+    uint32_t num_more;       /* with tiles: further inputs, */
+    const char *const *more; /* whose points follow those of the first one */
+    const char *scratch;     /* with tiles: a folder for the points meanwhile */
+    brio_convert_tile_fn tile; /* NULL: called when the file of a tile has its name */
+    void *tile_user;
 } brio_convert_options;
 
 typedef struct brio_convert_stats {
@@ -283,6 +301,9 @@ typedef struct brio_convert_stats {
     double select_seconds, seconds;                         /* finding outliers and thinning, reading included; all */
     uint64_t merged;                                        /* vertices that others stand for, by options->merge */
     uint64_t degenerate;                                    /* faces, tetrahedra and edges dropped by merging */
+    uint64_t tiles, largest_tile;        /* with options->tiles: those that have points; of the largest */
+    uint64_t scratch_bytes;              /* of the disk, at most */
+    double read_seconds, divide_seconds; /* with options->tiles */
 } brio_convert_stats;
 
 /** Converts a file to another format, or chooses among its points, or both. First come the points in the box, of these
@@ -301,6 +322,16 @@ typedef struct brio_convert_stats {
  *  brio_read_options.left_out. What is only renamed goes to options->renamed. With options->crs an input without a
  *  coordinate system as well-known text is BRIO_ERR_NO_ANSWER, and nothing is written. Progress begins anew where a
  *  text is read again because late rows lack a column.
+ *  With options->tiles points of any number become as many tiles of about equal numbers of points, by a k-d tree over a
+ *  sample, as brio_tiles divides them. `to` has a # in the place of the number of a tile, as in "folder/#.laz", whose
+ *  folder is there. Each point is in one file, with all that the conversion to one file keeps, in the order of the
+ *  input; together the files have the same depth of colours and, LAS and LAZ, the same grid and fields. Tiles without
+ *  points have no file; if no tile has points, there is one empty file. Numbers are 0, 1 and so on. The points go to a
+ *  file without a name in the folder `scratch`, twice: 24 bytes each and their properties. No tile is
+ *  in memory for the formats that are written block by block; else the largest is. Faces, tetrahedra and edges are
+ *  left out, and `merge` is refused. Several inputs have the same properties, in any order, and the same coordinate
+ *  system; all else that the first one says is kept. Files of tiles stay where a later one fails: the caller removes
+ *  them.
  *  from, to  paths of different files; "-" as in brio_read and brio_write.
  *  stats     NULL, or receives facts.
  *  Returns what brio_read, brio_write, brio_outliers, brio_thin and brio_mesh_merge_vertices return, and

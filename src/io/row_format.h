@@ -18,6 +18,10 @@ typedef struct brio_row_format {
     brio_status (*survey)(brio_context *ctx, const brio_write_job *job, void *state);
     bool (*surveyed)(void *state);
     uint64_t (*surveyed_points)(const void *state);
+    /** Makes a file one of several: takes over what was found in the points of all of them, before its own are shown.
+     *  from  the state of a writer that was shown them all.   columns  properties of a block.
+     *  NULL: each file goes by its own points. */
+    brio_status (*share)(brio_context *ctx, void *state, const void *from, size_t columns);
 
     /** Writes what comes before the points. job->points is their number or, if the output can be patched,
      *  BRIO_COUNT_UNKNOWN. */
@@ -64,6 +68,8 @@ brio_status brio_row_writer_new(brio_row_writer *w, brio_context *ctx, brio_form
 bool brio_row_writer_is_open(const brio_row_writer *w, const brio_mesh *block);
 void brio_row_writer_look(brio_row_writer *w, const brio_mesh *block);
 void brio_row_writer_end_look(brio_row_writer *w);
+/** Begins the file of a part of the points that `all` was shown. */
+brio_status brio_row_writer_share(brio_row_writer *w, const brio_row_writer *all);
 /** Shows a block before the writing begins. */
 brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block);
 /** Ends a pass over all blocks. w->surveys says whether another one is needed. */

@@ -172,6 +172,10 @@ void brio_row_writer_end_look(brio_row_writer *w) {
     w->colours.points.looked = true;
 }
 
+brio_status brio_row_writer_share(brio_row_writer *w, const brio_row_writer *all) {
+    return w->format->share ? w->format->share(w->ctx, w->state, all->state, all->columns) : BRIO_OK;
+}
+
 brio_status brio_row_writer_survey(brio_row_writer *w, const brio_mesh *block) {
     brio_status status = BRIO_OK;
     brio_mesh shown;

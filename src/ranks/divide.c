@@ -20,7 +20,7 @@ typedef struct {
 
 static brio_status add_heads(brio_ranks *r, uint64_t *points, uint64_t *most_hash) {
     brio_tiles *t = r->t;
-    head mine = {t->stats.points, t->weighted, t->most_hash, t->all, t->lightest};
+    head mine = {t->stats.points, t->weighted, t->cuts.most_hash, t->all, t->lightest};
     BRIO_FORWARD(brio_exchange_all(&r->x, &mine, sizeof mine));
     *points = 0;
     *most_hash = UINT64_MAX;
@@ -60,18 +60,18 @@ static brio_status gather_sample(brio_ranks *r, uint64_t points, uint64_t most_h
         uint64_t share = UINT64_MAX / points * SAMPLE;
         if (share < most_hash) most_hash = share;
     }
-    for (size_t i = 0; i < t->num_sample; i++)
-        if (t->sample_hash[i] <= most_hash) memmove(t->sample[n++], t->sample[i], sizeof *t->sample);
-    BRIO_FORWARD(brio_exchange_all(&r->x, t->sample, n * sizeof *t->sample));
+    for (size_t i = 0; i < t->cuts.num_sample; i++)
+        if (t->cuts.hash[i] <= most_hash) memmove(t->cuts.sample[n++], t->cuts.sample[i], sizeof *t->cuts.sample);
+    BRIO_FORWARD(brio_exchange_all(&r->x, t->cuts.sample, n * sizeof *t->cuts.sample));
     n = 0;
     for (int i = 0; i < r->ranks; i++) n += r->x.from[i]->size;
-    brio_release(r->ctx, t->sample);
-    BRIO_FORWARD(BRIO_ALLOC(r->ctx, t->sample, n / sizeof *t->sample + 1));
-    t->num_sample = 0;
+    brio_release(r->ctx, t->cuts.sample);
+    BRIO_FORWARD(BRIO_ALLOC(r->ctx, t->cuts.sample, n / sizeof *t->cuts.sample + 1));
+    t->cuts.num_sample = 0;
     for (int i = 0; i < r->ranks; i++) {
         const brio_letter *m = r->x.from[i];
-        if (m->size) memcpy(t->sample + t->num_sample, m->bytes, m->size);
-        t->num_sample += m->size / sizeof *t->sample;
+        if (m->size) memcpy(t->cuts.sample + t->cuts.num_sample, m->bytes, m->size);
+        t->cuts.num_sample += m->size / sizeof *t->cuts.sample;
     }
     return BRIO_OK;
 }
@@ -94,7 +94,7 @@ static brio_status take_points(brio_ranks *r, brio_tile_tray *trays) {
         const brio_letter *m = &r->x.received[i];
         const brio_set_point *p = m->bytes;
         for (size_t k = 0; k < m->size / sizeof *p; k++) {
-            uint32_t tile = brio_tiles_tile_of(r->t, p[k].record) % r->t->num_tiles;
+            uint32_t tile = brio_tile_cuts_find(&r->t->cuts, p[k].record) % r->t->num_tiles;
             BRIO_FORWARD(brio_tile_trays_put(r->t, trays, tile, &p[k]));
         }
     }
@@ -110,7 +110,7 @@ static brio_status send_points(brio_ranks *r, brio_tile_tray *trays) {
         BRIO_FORWARD(brio_progress(r->ctx, "divide", (double)done / ((double)t->stats.points + 1)));
         BRIO_FORWARD(brio_tiles_read_raw(t, done, &some));
         for (size_t i = 0; i < some; i++) {
-            int to = (int)(brio_tiles_tile_of(t, t->some[i].record) / t->num_tiles);
+            int to = (int)(brio_tile_cuts_find(&t->cuts, t->some[i].record) / t->num_tiles);
             BRIO_FORWARD(brio_exchange_put(&r->x, to, &t->some[i], sizeof t->some[i]));
         }
         done += some;

@@ -72,9 +72,7 @@ void brio_tiles_free(brio_tiles *t) {
     brio_store_close(&t->raw);
     brio_store_end(&t->folder);
     brio_release(t->ctx, t->some);
-    brio_release(t->ctx, t->sample);
-    brio_release(t->ctx, t->sample_hash);
-    brio_release(t->ctx, t->cut);
+    brio_tile_cuts_free(t->ctx, &t->cuts);
     brio_release(t->ctx, t->tile);
     brio_release(t->ctx, t->node);
     brio_release(t->ctx, t);

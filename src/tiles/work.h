@@ -8,6 +8,7 @@
 
 #include "brio/tiles.h"
 #include "completion/completion.h"
+#include "tiles/cuts.h"
 #include "tiles/store.h"
 
 enum {
@@ -29,13 +30,6 @@ typedef struct {
     uint32_t points;          /* of a block */
     uint32_t tile;            /* of the root of a tile; else TILE_NONE */
 } brio_tile_node;
-
-/** A cut of the k-d tree. Points with x[axis] < at go to `below`. */
-typedef struct {
-    double at;
-    int32_t axis;
-    int32_t below, above; /* a cut, or -1 - tile */
-} brio_tile_cut;
 
 typedef struct {
     brio_ball_box home; /* sides may be infinite; the weight is the heaviest of all points */
@@ -67,15 +61,10 @@ struct brio_tiles {
     brio_store_file raw;
     brio_set_point *some; /* that are not written yet */
     size_t num_some;
-    double (*sample)[3];
-    uint64_t *sample_hash;
-    size_t num_sample;
-    uint64_t most_hash; /* of points of the sample */
-    brio_ball_box all;  /* of all points, with the heaviest */
+    brio_tile_cuts cuts;
+    brio_ball_box all; /* of all points, with the heaviest */
     double lightest;
     /* then */
-    brio_tile_cut *cut;
-    size_t num_cuts;
     brio_tile *tile;
     brio_tile_node *node;
     size_t num_nodes, node_capacity;
@@ -115,8 +104,6 @@ brio_status brio_tiles_read_raw(brio_tiles *t, uint64_t from, size_t *count);
 void brio_tiles_drop_raw(brio_tiles *t);
 /** Cuts space into tiles by the sample.   home  receives the box of each. */
 brio_status brio_tiles_cut(brio_tiles *t, uint32_t num_tiles, brio_ball_box *home);
-/** Returns the tile of a position. */
-uint32_t brio_tiles_tile_of(const brio_tiles *t, const double *record);
 /** Takes a point into account for the extreme points and the basis.   f  a filter for all points. */
 void brio_tiles_note(brio_tiles *t, brio_filter *f, const brio_set_point *p);
 

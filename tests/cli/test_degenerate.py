@@ -42,6 +42,8 @@ RUNS = {
     "convert {p} --thin 0.1 -o {o}.xyz": ("0000000", None),
     "convert {p} --drop-outliers 8 -o {o}.xyz": ("0000000", None),
     "convert {p} --merge -o {o}.ply": ("0000000", None),
+    "convert {p} --tiles 3 --scratch {d} -o {o}.vpc": ("0000000", None),
+    "convert {p} --tiles 3 --scratch {d} -o {o}.pvtp": ("0000000", None),
     "info {p}": ("0000000", None),
     "interpolate {p} --at {p} --property h -o {o}.csv": ("3303000", r"no points, so no values|all points are at one position"),
     "hull {p} -o {o}.ply": ("3000000", r"no points, so no convex hull"),

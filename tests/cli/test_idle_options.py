@@ -42,7 +42,7 @@ MODES = [
     "voronoi cloud.ply -o out.csv", "voronoi cloud.ply",
     "check mesh.ply", "check open.off", "check flat.node", "compare mesh.ply mesh2.ply",
     "iso ball.map --level -4 -o out.ply", "iso atoms.pdb --level 1 -o out.ply", "iso ball.map --level -4",
-    "convert text.csv out.las", "info text.csv", "view mesh.ply -o page.html", "view cloud.ply mesh.ply -o page.html",
+    "convert text.csv out.las", "convert text.csv out.vpc --tiles 2 --scratch .", "info text.csv", "view mesh.ply -o page.html", "view cloud.ply mesh.ply -o page.html",
     "generate scan -n 90 -o out.ply", "generate solid --resolution 16 -o out.ply",
     "subdivide mesh.ply -o out.ply", "restricted cloud.ply --surface mesh2.ply -o out.ply", "tree cloud.ply -o out.ply", "surface ring.xyz -o out.ply", "locate cloud.ply --at p.csv -o out.csv",
     "interpolate text.csv --at p.csv --property q -o out.csv", "interpolate text.csv --at p.csv --property q -o out.ply",

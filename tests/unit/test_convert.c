@@ -1,5 +1,6 @@
 /* Conversions whose input changes between two passes, or turns out to lack a column, and names that formats cut. The command
  * line's tests convert between all formats. */
+#include "failing_allocator.h"
 #include "harness.h"
 #include "io_files.h"
 #include <math.h>
@@ -171,6 +172,87 @@ static void an_npy_field_that_is_there_twice_is_refused(void) {
     brio_mesh_free(m);
 }
 
+/* --- tiles --- */
+
+static const char *pattern = "tile#.ply";
+static uint64_t seen[8]; /* points of each tile */
+static size_t num_seen, most_tiles;
+
+static int see_tile(const brio_convert_tile *t, void *user) {
+    (void)user;
+    EXPECT(t->size == sizeof *t && t->kind->num_vertices == 0 && t->kind->num_properties == 1);
+    EXPECT(num_seen < 8 && strcmp(t->kind->properties[0].name, "a") == 0);
+    seen[num_seen++] = t->points;
+    return num_seen == most_tiles;
+}
+
+static brio_status convert_tiles(brio_context *ctx) {
+    char from[4096], to[4096], folder[4096], more[4096];
+    const char *const others[] = {more};
+    strcpy(from, io_path("in.csv")), strcpy(more, io_path("more.csv"));
+    strcpy(to, io_path(pattern)), strcpy(folder, io_path("."));
+    brio_convert_options o = {.size = sizeof o, .tiles = 3, .scratch = folder, .num_more = 1, .more = others};
+    o.thin = 0.5;
+    o.tile = see_tile;
+    num_seen = 0;
+    return brio_convert(ctx, from, to, &o, NULL);
+}
+
+static void put_points(const char *name, size_t count) {
+    FILE *f = fopen(io_path(name), "w");
+    fputs("x,y,z,a\n", f);
+    for (size_t i = 0; i < count; i++) fprintf(f, "%zu,%zu,%zu,%zu\n", i, i * i % 17, i * i * i % 13, i);
+    fclose(f);
+}
+
+static void refused(const char *from, const char *to, const brio_convert_options *o, const char *words) {
+    char path[4096];
+    strcpy(path, io_path(from));
+    EXPECT(brio_convert(io_ctx, path, io_path(to), o, NULL) == BRIO_ERR_ARGUMENT, "%s", words);
+    EXPECT(strstr(brio_message(io_ctx), words), "%s", brio_message(io_ctx));
+}
+
+static void each_point_is_in_one_tile(void) {
+    uint64_t sum = 0, read = 0;
+    put_points("in.csv", 200), put_points("more.csv", 100);
+    most_tiles = 0;
+    EXPECT(convert_tiles(io_ctx) == BRIO_OK, "%s", brio_message(io_ctx));
+    EXPECT(num_seen == 3, "%zu", num_seen);
+    for (size_t i = 0; i < num_seen; i++) {
+        char name[16];
+        snprintf(name, sizeof name, "tile%zu.ply", i);
+        brio_mesh *m = read_back(name);
+        EXPECT(m->num_vertices == seen[i] && seen[i] > 50 && seen[i] < 80, "%zu points", m->num_vertices);
+        sum += seen[i];
+        read += m->num_vertices;
+        brio_mesh_free(m);
+    }
+    EXPECT(sum == 200 && read == 200, "%zu: the same places came twice, and were thinned", (size_t)sum);
+    most_tiles = 2;
+    EXPECT(convert_tiles(io_ctx) == BRIO_ERR_CANCELLED && num_seen == 2);
+    const brio_convert_options none = {.size = sizeof none, .tiles = 2}, many = {.size = sizeof many, .tiles = 70000};
+    const brio_convert_options merged = {.size = sizeof merged, .tiles = 2, .scratch = "/tmp", .merge = 1};
+    const brio_convert_options placed = {.size = sizeof placed, .tiles = 2, .scratch = "/tmp"};
+    const brio_convert_options alone = {.size = sizeof alone, .num_more = 1};
+    refused("in.csv", "t#.ply", &none, "tiles need a scratch folder");
+    refused("in.csv", "t#.ply", &many, "70000 tiles; at most 65536");
+    refused("in.csv", "t#.ply", &merged, "not into tiles");
+    refused("in.csv", "t.ply", &placed, "files of tiles need a # in their name");
+    refused("in.csv", "t.ply", &alone, "several inputs are for tiles");
+}
+
+/* Each request for memory is refused: nothing stays but files that are whole. */
+static void tiles_without_memory_are_an_error(void) {
+    static const char *const patterns[] = {"tile#.ply", "tile#.laz", "tile#.vtp"};
+    put_points("in.csv", 40), put_points("more.csv", 10);
+    most_tiles = 0;
+    for (int form = 0; form < 3; form++) {
+        pattern = patterns[form];
+        expect_clean_failures(convert_tiles);
+    }
+    pattern = "tile#.ply";
+}
+
 SUITE(test_convert) {
     io_begin();
     RUN(a_file_replaced_between_two_passes_is_an_error);
@@ -180,5 +262,7 @@ SUITE(test_convert) {
     RUN(names_that_are_cut_stay_distinct);
     RUN(names_are_cut_between_characters);
     RUN(an_npy_field_that_is_there_twice_is_refused);
+    RUN(each_point_is_in_one_tile);
+    RUN(tiles_without_memory_are_an_error);
     return io_end();
 }

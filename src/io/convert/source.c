@@ -80,6 +80,16 @@ static brio_status read_pass(pass *p) {
     return status;
 }
 
+/* Goes through the points that were read before. */
+static brio_status rows_pass(pass *p) {
+    brio_source *s = p->source;
+    const brio_sink sink = {take_block, p};
+    uint64_t read = s->points_read;
+    brio_status status = brio_rows_pass(s->rows, s->first, s->num_rows, &sink);
+    s->points_read = read;
+    return status;
+}
+
 /* Filters the file in memory. */
 static brio_status filter_whole(pass *p) {
     brio_source *s = p->source;
@@ -92,6 +102,10 @@ static brio_status filter_whole(pass *p) {
 brio_status brio_source_pass(brio_source *s, const brio_sink *sink) {
     brio_status status = BRIO_OK;
     pass p = {.source = s, .sink = sink};
+    if (s->rows) {
+        status = rows_pass(&p);
+        goto done;
+    }
     if (!s->job.mesh) {
         BRIO_TRY(read_pass(&p));
         if (s->job.mesh) BRIO_TRY(filter_whole(&p));

@@ -2,6 +2,7 @@
 #ifndef BRIO_IO_CONVERT_SOURCE_H
 #define BRIO_IO_CONVERT_SOURCE_H
 
+#include "io/convert/rows.h"
 #include "io/read_job.h"
 #include "platform/file.h"
 
@@ -17,7 +18,9 @@ typedef struct brio_source {
     uint64_t num_boxed;   /* points in the box, if `chosen` was made */
     uint64_t outliers, thinned;
     int passes;
-    brio_place_facts facts; /* of a file that can be read again, as the first pass found it, if has_facts */
+    const brio_rows *rows;    /* NULL, or the points are rows of these, and the file is not read again: */
+    uint64_t first, num_rows; /* from this one on, as many */
+    brio_place_facts facts;   /* of a file that can be read again, as the first pass found it, if has_facts */
     bool has_facts;
 } brio_source;
 

@@ -150,6 +150,7 @@ brio_status brio_las_grid_survey(brio_context *ctx, brio_las_grid *g, const brio
         take_witnesses(g, block);
     }
     for (int k = 0; k < 3; k++) {
+        if (g->found[k]) continue;
         if (g->pass == 0)
             try_source(g, k, block);
         else
@@ -169,6 +170,13 @@ bool brio_las_grid_end_pass(brio_las_grid *g) {
         g->failed[k] = false;
     }
     return g->found[0] && g->found[1] && g->found[2];
+}
+
+void brio_las_grid_share(brio_las_grid *g, const brio_las_grid *found) {
+    memcpy(g->step, found->step, sizeof g->step);
+    memcpy(g->origin, found->origin, sizeof g->origin);
+    memcpy(g->found, found->found, sizeof g->found);
+    memcpy(g->rounds, found->rounds, sizeof g->rounds);
 }
 
 void brio_las_grid_free(brio_context *ctx, brio_las_grid *g) {
@@ -304,6 +312,12 @@ brio_status brio_las_layout_see(brio_context *ctx, brio_las_layout *l, const bri
         l->ranges[i].described &= description != NULL;
         widen(&l->ranges[i], &block->properties[i], description, block->num_vertices);
     }
+    return BRIO_OK;
+}
+
+brio_status brio_las_layout_share(brio_context *ctx, brio_las_layout *l, const brio_las_layout *found, size_t count) {
+    BRIO_FORWARD(BRIO_ALLOC(ctx, l->ranges, count + 1));
+    if (found->ranges) memcpy(l->ranges, found->ranges, count * sizeof *l->ranges);
     return BRIO_OK;
 }
 

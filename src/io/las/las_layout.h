@@ -35,6 +35,8 @@ typedef struct brio_las_grid {
 brio_status brio_las_grid_survey(brio_context *ctx, brio_las_grid *grid, const brio_mesh *block);
 /** Ends a pass. Returns whether the grid is found; otherwise another pass is needed. */
 bool brio_las_grid_end_pass(brio_las_grid *grid);
+/** Takes over a grid that was found. The one pass that follows finds the box of the points. */
+void brio_las_grid_share(brio_las_grid *grid, const brio_las_grid *found);
 void brio_las_grid_free(brio_context *ctx, brio_las_grid *grid);
 
 /** Returns the greatest distance between a vertex and the point that a reader computes. */
@@ -75,6 +77,8 @@ typedef struct brio_las_layout {
 
 /** Widens the ranges by the properties of a block. The first block makes them. */
 brio_status brio_las_layout_see(brio_context *ctx, brio_las_layout *l, const brio_mesh *block);
+/** Takes over the ranges that were found in more points.   count  properties of a block. */
+brio_status brio_las_layout_share(brio_context *ctx, brio_las_layout *l, const brio_las_layout *found, size_t count);
 /** Chooses a format and gives every property its place.
  *  name  of the file, for messages.   late  whether the format must be one of version 1.4.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (more properties than a file holds), BRIO_ERR_NO_MEMORY. */

@@ -318,6 +318,13 @@ static uint64_t surveyed_points(const void *state) {
     return w->grid.points;
 }
 
+static brio_status share(brio_context *ctx, void *state, const void *from, size_t columns) {
+    las_writer *w = state;
+    const las_writer *all = from;
+    brio_las_grid_share(&w->grid, &all->grid);
+    return brio_las_layout_share(ctx, &w->layout, &all->layout, columns);
+}
+
 static bool renames(const void *state, size_t i) {
     const las_writer *w = state;
     return w->layout.places[i].renamed;
@@ -404,7 +411,7 @@ static void free_state(brio_context *ctx, void *state) {
 
 #define LAS_ROWS                                                                                                       \
     .state = sizeof(las_writer), .survey = survey, .surveyed = surveyed, .surveyed_points = surveyed_points,           \
-    .rows = write_records, .free = free_state, .renames = renames, .rounds = rounds, .moved = moved
+    .share = share, .rows = write_records, .free = free_state, .renames = renames, .rounds = rounds, .moved = moved
 
 const brio_row_format brio_las_rows = {LAS_ROWS, .begin = begin, .end = end};
 const brio_row_format brio_laz_rows = {LAS_ROWS, .begin = begin_compressed, .end = end_compressed};

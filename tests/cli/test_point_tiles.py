@@ -1,0 +1,427 @@
+"""convert --tiles: the files of all tiles together are the file without tiles; indexes; what a run leaves behind."""
+
+import collections
+import json
+import os
+import random
+import resource
+import signal
+import struct
+import subprocess
+import time
+import unittest
+import xml.etree.ElementTree
+
+from brio_cli import BRIO, CliTest, main
+
+posix_alone = unittest.skipIf(os.environ.get("BRIO_EMULATED") == "wine", "skipped: Windows has no such names, limits, locks or disks")
+
+LIDAR = os.path.join(os.path.dirname(__file__), "..", "..", "..", "shared", "data", "lidar")
+RANGES = {"char": (-2**7, 2**7 - 1), "uchar": (0, 2**8 - 1), "short": (-2**15, 2**15 - 1), "ushort": (0, 2**16 - 1),
+          "int": (-2**31, 2**31 - 1), "uint": (0, 2**32 - 1)}
+FORMATS = "laz las ply npy csv xyz pcd e57 ptx pts xyzrgb xyzn vtp vtu vtk off obj node".split()
+
+
+class PointTiles(CliTest):
+    def scratch(self):
+        os.makedirs(self.path("scratch"), exist_ok=True)
+        return self.path("scratch")
+
+    def tiles(self, count, *arguments, **how):
+        """The facts of a run with tiles, which leaves nothing in the scratch folder."""
+        facts = self.facts("convert", *arguments, "--tiles", str(count), "--scratch", self.scratch(), **how)
+        self.assertEqual(os.listdir(self.scratch()), [])
+        return facts
+
+    def bytes_of(self, name):
+        with open(self.path(name), "rb") as f:
+            return f.read()
+
+    def features(self, index):
+        with open(self.path(index), encoding="utf-8") as f:
+            cloud = json.load(f)
+        self.assertEqual(cloud["type"], "FeatureCollection")
+        return cloud["features"]
+
+    def files(self, index):
+        """The paths of the files that an index names."""
+        if index.endswith(".pvtp"):
+            names = [piece.get("Source") for piece in xml.etree.ElementTree.parse(self.path(index)).iter("Piece")]
+        else:
+            names = [feature["assets"]["data"]["href"] for feature in self.features(index)]
+        return [os.path.join(os.path.dirname(self.path(index)), name) for name in names]
+
+    def rows(self, path):
+        """The head and the points of a file as lines of text."""
+        self.expect(0, "convert", path, self.path("rows.csv"), "--quiet")
+        with open(self.path("rows.csv"), encoding="utf-8") as f:
+            return f.readline(), f.read().splitlines()
+
+    def same(self, whole, index):
+        """Compares the files of tiles with the one file of all points, as multisets; and their orders."""
+        head, all_rows = self.rows(self.path(whole))
+        place = {row: i for i, row in enumerate(all_rows)}
+        found = collections.Counter()
+        for path in self.files(index):
+            of_tile, rows = self.rows(path)
+            self.assertEqual(of_tile, head)
+            found.update(rows)
+            if len(place) == len(all_rows):
+                places = [place.get(row, -1) for row in rows]
+                self.assertEqual(places, sorted(places), "the order of the input")
+        self.assertEqual(found, collections.Counter(all_rows))
+
+    def random_ply(self, name, count, rng, at=None):
+        """Points with properties of random types."""
+        properties = [(rng.choice([*RANGES, "float", "double"]), "p%d" % i) for i in range(rng.randrange(7))]
+        if rng.random() < 0.5:
+            properties += [(rng.choice(("uchar", "ushort", "float")), colour) for colour in ("red", "green", "blue")][:3]
+            properties[-3:] = [(properties[-3][0], colour) for colour in ("red", "green", "blue")]
+        with open(self.path(name), "w", encoding="ascii") as f:
+            f.write("ply\nformat ascii 1.0\nelement vertex %d\n" % count)
+            f.writelines("property double %s\n" % axis for axis in "xyz")
+            f.writelines("property %s %s\n" % each for each in properties)
+            f.write("end_header\n")
+            for _ in range(count):
+                row = list(at or [round(rng.gauss(0, 1), 3) for _ in range(3)])
+                for kind, of in properties:
+                    if of in ("red", "green", "blue"):
+                        row.append(round(rng.random(), 3) if kind == "float" else rng.randrange(256))
+                    else:
+                        row.append(rng.randint(*RANGES[kind]) if kind in RANGES else round(rng.gauss(0, 100), 2))
+                f.write(" ".join(map(str, row)) + "\n")
+        return self.path(name)
+
+    def test_files_together_are_the_file_without_tiles(self):
+        rng = random.Random(1)
+        for form in FORMATS:
+            edges = ((0, None), (1, None), (5, None), (30, (1, 2, 3))) if form in ("laz", "ply", "e57", "vtp") else ()
+            for count, at in ((400, None), *edges):
+                tiles = rng.randint(1, 12)
+                with self.subTest(format=form, count=count, tiles=tiles):
+                    points = self.random_ply("in.ply", count, rng, at)
+                    whole = self.facts("convert", points, self.path("whole." + form))
+                    facts = self.tiles(tiles, points, "-o", self.path("out.vpc"), "--format", form)
+                    for key in "points", "lost", "renamed", "moved", "merged":
+                        self.assertEqual(facts.get(key), whole.get(key), key)
+                    self.same("whole." + form, "out.vpc")
+                    self.assertEqual(facts["tiles"], sum(f["properties"]["pc:count"] > 0 for f in self.features("out.vpc")))
+                    self.assertEqual(facts["largest_tile"], max(f["properties"]["pc:count"] for f in self.features("out.vpc")))
+
+    def test_tiles_have_about_as_many_points(self):
+        points = self.cloud("a.ply", 200000, "clusters")
+        facts = self.tiles(7, points, self.path("out.vpc"), "--format", "ply")
+        self.assertEqual((facts["points"], facts["tiles"]), (200000, 7))
+        self.assertLess(facts["largest_tile"], 1.1 * 200000 / 7)
+        self.assertEqual(facts["scratch_bytes"], 2 * 24 * 200000)
+
+    def test_files_are_the_same_for_every_number_of_threads(self):
+        points = self.random_ply("in.ply", 70000, random.Random(3))
+        for form in "laz", "vtp", "ply":
+            written = []
+            for threads in "1", "3":
+                self.tiles(5, points, self.path("t%s.vpc" % threads), "--format", form, "--threads", threads)
+                written.append([self.bytes_of(path) for path in self.files("t%s.vpc" % threads)])
+            self.assertEqual(*written, form)
+
+    def las(self, name, count, rng, wkt=b"", offset=1000.0):
+        """A LAS file of version 1.4, point format 7, with an extra number, a scale of 0.01 and a coordinate system."""
+        extra = struct.pack("<2xBB32s4x", 3, 0, b"deviation").ljust(192, b"\0")
+        records = [(b"LASF_Spec", 4, extra)] + ([(b"LASF_Projection", 2112, wkt + b"\0")] if wkt else [])
+        vlrs = b"".join(struct.pack("<H16sHH32s", 0, user, number, len(data), b"") + data for user, number, data in records)
+        rows = b"".join(struct.pack("<3iHBBBBhHd3HH", *(rng.randrange(100000) for _ in range(3)), rng.randrange(65536), 0x11, 0,
+                                    rng.randrange(20), rng.randrange(256), rng.randrange(-30000, 30000), rng.randrange(100),
+                                    1e8 + rng.randrange(10**6) / 1e3, *(rng.randrange(65536) for _ in range(3)),
+                                    rng.randrange(65536)) for _ in range(count))
+        header = struct.pack("<4sHHIHH8sBB32s32sHHHIIBHI20s", b"LASF", 0, 16, 0, 0, 0, b"", 1, 4, b"scanner", b"maker", 61, 2024, 375,
+                             375 + len(vlrs), len(records), 7, 38, 0, b"")
+        header += struct.pack("<6d", 0.01, 0.01, 0.01, offset, -offset, 0) + struct.pack("<6d", *(0,) * 6)
+        header += struct.pack("<QQIQ15Q", 0, 0, 0, count, count, *(0,) * 14)
+        return self.file(name, header + vlrs + rows)
+
+    def test_tiles_of_lidar_keep_all(self):
+        points = self.las("a.las", 3000, random.Random(5), b'PROJCS["here"]')
+        kept = ("format", "version", "coordinate_step", "coordinate_origin", "properties", "crs", "metadata")
+        for form in "las", "laz":
+            self.facts("convert", points, self.path("whole." + form))
+            self.tiles(4, points, self.path("out.vpc"), *(["--format", "las"] if form == "las" else []))
+            self.same("whole." + form, "out.vpc")
+            whole = self.facts("info", self.path("whole." + form))
+            for path in self.files("out.vpc"):
+                tile = self.facts("info", path)
+                self.assertEqual({key: tile.get(key) for key in kept}, {key: whole.get(key) for key in kept})
+                self.assertEqual(os.path.splitext(path)[1], "." + form)
+                with open(path, "rb") as f:
+                    header = f.read(375)
+                self.assertEqual(header[26:33], b"scanner")
+                count, = struct.unpack_from("<Q", header, 247)
+                self.assertEqual((count, struct.unpack_from("<Q", header, 255)[0]), (tile["points"],) * 2)  # first returns
+        self.assertEqual({feature["properties"]["datetime"] for feature in self.features("out.vpc")}, {"2024-03-01T00:00:00Z"})
+        names = {schema["name"] for schema in self.features("out.vpc")[0]["properties"]["pc:schemas"]}
+        self.assertLessEqual({"X", "Intensity", "Classification", "GpsTime", "Red", "deviation"}, names)
+
+    def test_one_grid_fits_all_tiles(self):
+        # each tile would fit a grid of less decimals, and each file had another one
+        with open(self.path("a.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z\n")
+            f.writelines("%d,%.1f,0\n" % (i, i / 10) for i in range(500))
+            f.writelines("%d.123,%d,1\n" % (i, i) for i in range(500, 1000))
+        self.facts("convert", self.path("a.csv"), self.path("whole.las"))
+        self.tiles(6, self.path("a.csv"), self.path("out.vpc"), "--format", "las")
+        self.same("whole.las", "out.vpc")
+        keys = "coordinate_step", "coordinate_origin"
+        whole = self.facts("info", self.path("whole.las"))
+        for path in self.files("out.vpc"):
+            tile = self.facts("info", path)
+            self.assertEqual([tile[key] for key in keys], [whole[key] for key in keys])
+
+    def test_real_lidar(self):
+        if not os.path.isdir(LIDAR):
+            self.skipTest("skipped: no ../shared/data")
+        points = os.path.join(LIDAR, "csite4.ply")
+        facts = self.tiles(9, points, self.path("out.vpc"))
+        self.assertEqual(facts["tiles"], 9)
+        self.facts("convert", points, self.path("whole.laz"))
+        self.same("whole.laz", "out.vpc")
+
+    def test_options_work_before_the_division(self):
+        rng = random.Random(7)
+        with open(self.path("a.csv"), "w", encoding="ascii") as f:
+            f.writelines("%.3f;%.3f;%.3f;%d\n" % (*(rng.gauss(0, 1) for _ in range(3)), i) for i in range(2000))
+        self.file("bad.csv", "x,y,z,q\n0,0,0,1\nnan,0,0,2\n" + "".join("%d,%d,%d,3\n" % (i, i * i, i) for i in range(40)))
+        self.facts("generate", "cube", "-n", "900", "-o", self.path("torn.ply"))
+        self.file("torn.ply", self.bytes_of("torn.ply")[:-1000])
+        for form, arguments in (
+                ("ply", ["a.csv", "--crop", "-1,-1,-1,1,0.5,1"]), ("ply", ["a.csv", "--thin", "0.3"]), ("laz", ["a.csv", "--drop-outliers", "8"]),
+                ("ply", ["a.csv", "--crop", "-1,-1,-1,1,0.5,1", "--thin", "0.2", "--drop-outliers", "6"]),
+                ("ply", ["a.csv", "--float32"]), ("pcd", ["a.csv", "--float32", "--compress"]), ("vtp", ["a.csv", "--compress"]),
+                ("ply", ["a.csv", "--ascii"]), ("ply", ["a.csv", "--columns", "y,z,x,q"]), ("ply", ["a.csv", "--columns", "x,y,z,-"]),
+                ("ply", ["bad.csv", "--drop-invalid"]), ("ply", ["torn.ply", "--salvage"]), ("ply", ["a.csv", "--crop", "8,8,8,9,9,9"])):
+            with self.subTest(form, arguments=arguments):
+                given = [self.path(arguments[0]), *arguments[1:]]
+                whole = self.facts("convert", *given, "-o", self.path("whole." + form))
+                facts = self.tiles(4, *given, "-o", self.path("out.vpc"), "--format", form)
+                for key in whole:
+                    if key not in ("output", "seconds", "peak_bytes", "warnings", "hints", "streamed"):
+                        self.assertEqual(facts.get(key), whole[key], key)
+                self.assertEqual(len(facts.get("warnings", [])), len(whole.get("warnings", [])))
+                self.same("whole." + form, "out.vpc")
+
+    def test_a_dark_beginning_was_taken_for_all_colours(self):
+        with open(self.path("dark.csv"), "w", encoding="ascii") as f:  # two blocks; each tile but one is dark
+            f.write("x,y,z,red,green,blue\n")
+            f.writelines("%d,0,0,%d,0,0\n" % (i, 200 if i > 69000 else i % 2) for i in range(70000))
+        for form in "ply", "vtp", "obj":
+            self.tiles(9, self.path("dark.csv"), self.path("out.vpc"), "--format", form)
+            self.facts("convert", self.path("dark.csv"), self.path("whole." + form))
+            self.same("whole." + form, "out.vpc")
+
+    def test_faces_are_left_out(self):
+        self.file("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n")
+        facts = self.tiles(2, self.path("a.off"), self.path("out.pvtp"))
+        self.assertEqual((facts["lost"], facts["points"], facts["faces"]), (["faces"], 4, 0))
+        self.assertIn("out.pvtp is without: faces", facts["warnings"][0])
+
+    def test_several_inputs(self):
+        rng = random.Random(9)
+        with open(self.path("all.csv"), "w", encoding="ascii") as all_points:
+            all_points.write("x,y,z,a,b\n")
+            for name, head in (("1.csv", "x,y,z,a,b\n"), ("2.csv", "b,a,x,y,z\n"), ("3.csv", "x,y,z,a,b\n")):
+                rows = [[rng.randrange(1000) for _ in range(5)] for _ in range(rng.randrange(300))]
+                all_points.writelines(",".join(map(str, row)) + "\n" for row in rows)
+                if head[0] == "b":
+                    rows = [[row[4], row[3], *row[:3]] for row in rows]
+                self.file(name, head + "".join(",".join(map(str, row)) + "\n" for row in rows))
+        inputs = [self.path("%d.csv" % i) for i in (1, 2, 3)]
+        facts = self.tiles(3, *inputs, self.path("out.vpc"), "--format", "ply")
+        self.assertEqual(facts["input"], inputs)
+        self.facts("convert", self.path("all.csv"), self.path("whole.ply"))
+        self.same("whole.ply", "out.vpc")
+        self.facts("convert", self.path("all.csv"), self.path("thin.ply"), "--thin", "200")
+        self.tiles(3, *inputs, "-o", self.path("thin.vpc"), "--format", "ply", "--thin", "200")
+        self.same("thin.ply", "thin.vpc")
+        self.usage("two outputs", "convert", *inputs[:2], "-o", self.path("x.ply"))
+        self.usage("3 inputs; several go with --tiles", "convert", *inputs, "-o", self.path("x.ply"))
+
+    def test_inputs_that_do_not_go_together_are_refused(self):
+        rng = random.Random(2)
+        first = self.las("a.las", 50, rng, b'PROJCS["here"]')
+        others = {"another coordinate system": self.las("b.las", 50, rng, b'PROJCS["there"]'),
+                  "is not in both": self.file("c.csv", "x,y,z,q\n1,2,3,4\n")}
+        for words, other in others.items():
+            run = self.expect(2, "convert", first, other, self.path("out.vpc"), "--tiles", "2", "--scratch", self.scratch())
+            self.assertRegex(run.err, os.path.basename(other) + ".*" + words)
+        self.assertFalse(any(name.startswith("out") for name in os.listdir(self.folder)))
+
+    def test_standard_input_and_pipes(self):
+        points = self.random_ply("in.ply", 500, random.Random(4))
+        with open(points, "rb") as f:
+            facts = self.tiles(3, "-", "-o", self.path("out.vpc"), "--thin", "0.1", stdin=f.read())
+        whole = self.facts("convert", points, self.path("whole.laz"), "--thin", "0.1")
+        self.assertEqual(facts["points"], whole["points"])
+        self.same("whole.laz", "out.vpc")
+
+    def test_the_index_is_a_virtual_point_cloud(self):
+        points = self.random_ply("in.ply", 900, random.Random(6))
+        facts = self.tiles(5, points, self.path("out.vpc"))
+        for number, feature in enumerate(self.features("out.vpc")):
+            of = feature["properties"]
+            self.assertEqual((feature["type"], feature["stac_version"], feature["links"]), ("Feature", "1.0.0", []))
+            self.assertEqual(feature["assets"]["data"]["href"], "./out/%d.laz" % number)
+            tile = self.facts("info", self.path("out/%d.laz" % number))
+            self.assertEqual((of["pc:count"], of["pc:encoding"], of["datetime"], of["proj:wkt2"]), (tile["points"], "laz", None, ""))
+            for k in range(6):
+                self.assertAlmostEqual(of["proj:bbox"][k], (tile["box"]["min"] + tile["box"]["max"])[k], delta=1e-9)
+            ring = feature["geometry"]["coordinates"][0]
+            self.assertEqual((len(ring), ring[0]), (5, ring[4]))
+            self.assertEqual((min(ring), max(ring)), (of["proj:bbox"][:2], of["proj:bbox"][3:5]))
+        self.assertEqual(sum(f["properties"]["pc:count"] for f in self.features("out.vpc")), facts["points"])
+
+    def test_the_index_of_vtk_names_the_arrays_of_the_files(self):
+        for more in [], ["--ascii"], ["--compress"], ["--float32"]:
+            self.tiles(3, self.random_ply("in.ply", 300, random.Random(8)), self.path("out.pvtp"), *more)
+            index = xml.etree.ElementTree.parse(self.path("out.pvtp")).getroot()
+            self.assertEqual(index.get("type"), "PPolyData")
+
+            def arrays(tree, section, tag):
+                return [[a.get(key) for key in ("type", "Name", "NumberOfComponents")] for a in tree.iter(section).__next__().iter(tag)]
+
+            for path in self.files("out.pvtp"):
+                with open(path, "rb") as f:
+                    head = f.read().partition(b"<AppendedData")[0].replace(b"</VTKFile>", b"").strip() + b"</VTKFile>"
+                tile = xml.etree.ElementTree.fromstring(head)
+                for section in "Points", "PointData":
+                    self.assertEqual(arrays(index, "P" + section, "PDataArray"), arrays(tile, section, "DataArray"))
+            self.assertEqual(sum(self.facts("info", path)["points"] for path in self.files("out.pvtp")), 300)
+
+    @posix_alone
+    def test_names_that_have_to_be_quoted(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        for name in 'a"b\\c\n&<d>.vpc', 'a"b&<d>.pvtp', "a#b.VPC":
+            for _ in range(2):  # the second run finds the files of the first one by its index
+                self.tiles(2, points, "-o", self.path(name))
+            self.assertTrue(all(os.path.exists(path) for path in self.files(name)))
+            self.assertEqual(len([n for n in os.listdir(self.folder) if n.startswith(name[:3])]), 2)
+            for path in self.files(name):
+                os.remove(path)
+            os.rmdir(os.path.dirname(path))
+            os.remove(self.path(name))
+
+    def test_files_of_another_format_stayed(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        self.tiles(3, points, self.path("out.vpc"), "--format", "ply")
+        self.tiles(2, points, self.path("out.vpc"), "--format", "las")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "out-1", "out.vpc", "scratch"])
+        os.mkdir(self.path("out.part"))  # what a killed run leaves
+        self.file("out.part/0.npy", "half")
+        self.file("out.part/.brio-part", ".npy")
+        self.tiles(2, points, self.path("out.vpc"))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "out", "out.vpc", "scratch"])
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.laz", "1.laz"])
+
+    def test_inputs_were_removed_with_the_older_output(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        self.tiles(2, points, self.path("out.vpc"))
+        self.usage("0.laz: a file of the older output that -o replaces", "convert", self.path("out/0.laz"), "-o", self.path("out.vpc"), "--tiles", "2",
+                   "--scratch", self.scratch())
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.laz", "1.laz"])
+        self.tiles(2, *self.files("out.vpc"), "-o", self.path("again.vpc"))
+
+    def test_what_cannot_be_is_refused(self):
+        points, out, how = self.random_ply("in.ply", 20, random.Random(1)), self.path("x.vpc"), ["--tiles", "2", "--scratch", self.scratch()]
+        for words, arguments in (("writes an index, .vpc", [self.path("x.laz"), *how]), ("writes an index, .vpc", ["-o", "-", "--format", "laz", *how]),
+                                 ("writes an index, .vpc", [self.path(".vpc"), *how]), ("--tiles needs --scratch", [out, "--tiles", "2"]),
+                                 ("--merge: not with --tiles", [out, *how, "--merge"]), ("70000 are more than 65536", [out, "--tiles", "70000", *how[2:]]),
+                                 ("an index of .vtp files", [self.path("x.pvtp"), "--format", "laz", *how]), ("cannot be compressed", [out, "--compress", *how]),
+                                 ("an index of tiles", [out]), ("--format zzz", [out, "--format", "zzz", *how]),
+                                 ("expected A B, got one file", how)):
+            with self.subTest(words):
+                self.usage(words, "convert", points, *arguments)
+        self.expect(2, "convert", points, out, "--tiles", "2", "--scratch", self.path("missing"))
+        self.expect(2, "convert", self.file("bad.ply", "ply\nnothing"), out, *how)
+        self.expect(2, "convert", self.file("nan.csv", "x,y,z\n1,2,3\nnan,1,2\n"), out, *how)
+        self.expect(6, "convert", points, self.path("missing/x.vpc"), *how)
+        self.assertEqual(os.listdir(self.scratch()), [])
+        self.assertFalse(any(name.startswith("x") for name in os.listdir(self.folder)))
+
+    def test_too_little_memory_is_said_before_the_work(self):
+        points, how = self.cloud("a.npy", 300000), ["--format", "vtp", "--scratch", self.scratch(), "--max-memory"]
+        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "1", *how, "60M")
+        self.assertRegex(run.err, r"the largest of 1 tiles has 300000 points.*take about 2 tiles")
+        self.facts("convert", points, self.path("out.vpc"), "--tiles", "2", *how, "60M")
+        self.facts("convert", points, self.path("out.vpc"), "--tiles", "1", "--format", "laz", *how[2:], "60M")
+        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "3", *how, "20M")
+        self.assertIn("points in tiles need about", run.err)
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_memory_is_that_of_blocks(self):
+        points = self.cloud("big.ply", 3000000)  # 72 MB
+        facts = self.tiles(3, points, self.path("out.vpc"), "--threads", "1")
+        self.assertLess(facts["peak_bytes"], 40e6)
+
+    @posix_alone
+    def test_a_full_disk_is_said(self):
+        points, command = self.cloud("a.ply", 20000), ["convert", self.path("a.ply"), self.path("out.vpc"), "--tiles", "2"]
+        self.tiles(3, points, self.path("out.vpc"), "--format", "ply")
+        before = {path: self.bytes_of(path) for path in [self.path("out.vpc"), *self.files("out.vpc")]}
+        for size, form, words in ((100000, "laz", "cannot write a scratch file: File too large"), (481000, "csv", r"out\.part/\d.csv: File too large")):
+            run = subprocess.run([BRIO, *command, "--scratch", self.scratch(), "--format", form, "--quiet"], stderr=subprocess.PIPE, check=False, preexec_fn=lambda most=size: (
+                signal.signal(signal.SIGXFSZ, signal.SIG_IGN), resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))))
+            self.assertEqual(run.returncode, 6, run.stderr)
+            self.assertRegex(run.stderr.decode(), words)
+            self.assertEqual(sorted(os.listdir(self.folder)), ["a.ply", "out", "out.vpc", "scratch"])
+            self.assertEqual(os.listdir(self.scratch()), [])
+            self.assertEqual({path: self.bytes_of(path) for path in before}, before)
+
+    @posix_alone
+    def test_too_small_a_disk_is_said_before_the_work(self):
+        points, disk = self.cloud("a.ply", 100000), self.scratch()  # 2.4 MB, twice
+        line = 'mount -t tmpfs -o size=$2 none "$1" && shift 2 && exec "$0" "$@"'
+        for size, words in (("4m", "a.ply need about 5 MB more on this disk, which has room for 4 MB"), ("5200k", None)):
+            run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, disk, size, "convert", points, self.path("out.vpc"), "--tiles", "2",
+                                  "--scratch", disk, "--quiet"], stderr=subprocess.PIPE, check=False)
+            if run.returncode in (1, 32, 126, 127):
+                self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
+            self.assertEqual(run.returncode, 6 if words else 0, run.stderr)
+            self.assertIn(words or "", run.stderr.decode())
+
+    def test_runs_killed_at_random_moments_leave_the_older_output(self):
+        points = self.cloud("a.ply", 60000)
+        command = ("convert", points, "-o", self.path("out.vpc"), "--format", "csv", "--tiles", "5", "--scratch", self.scratch())
+        begin = time.monotonic()
+        self.facts(*command)
+        seconds = time.monotonic() - begin
+        before = [self.bytes_of(path) for path in self.files("out.vpc")]
+        rng = random.Random(3)
+        for _ in range(50 if os.environ.get("BRIO_LONG") else 5):
+            process = subprocess.Popen([BRIO, *command, "--quiet"], stdout=subprocess.DEVNULL)
+            time.sleep(rng.random() * seconds)
+            process.kill()
+            process.wait()
+            self.assertEqual([self.bytes_of(path) for path in self.files("out.vpc")], before)
+            self.assertEqual(os.listdir(self.scratch()), [])  # scratch files have no names
+            self.facts(*command)
+            self.assertEqual([self.bytes_of(path) for path in self.files("out.vpc")], before)
+            self.assertEqual(len(os.listdir(self.folder)), 4, os.listdir(self.folder))
+
+    def test_an_interrupted_run_leaves_nothing(self):
+        points = self.cloud("a.ply", 300000)
+        for wait in 0.05, 0.3, 0.6:
+            process = subprocess.Popen([BRIO, "convert", points, self.path("out.vpc"), "--format", "csv", "--tiles", "8", "--scratch", self.scratch(), "--quiet"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(wait)
+            process.send_signal(signal.SIGINT)
+            if process.wait() == 0:
+                break
+            self.assertEqual(process.returncode, 130)
+            self.assertEqual(sorted(os.listdir(self.folder)), ["a.ply", "scratch"])
+            self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_tiles_of_tetrahedra_were_not_compressed(self):
+        points = self.cloud("a.ply", 300)
+        self.facts("delaunay", points, "-o", self.path("t.pvtu"), "--compress", "--tiles", "2", "--scratch", self.scratch())
+        self.assertIn(b"vtkZLibDataCompressor", self.bytes_of("t/0.vtu"))
+
+
+if __name__ == "__main__":
+    main()
