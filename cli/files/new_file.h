@@ -39,6 +39,7 @@ typedef struct {
     char old_extension[16];         /* of these files, with a dot */
     const char *extension;          /* of the new ones */
     uint32_t most_files;            /* new ones, at most; who knows less than 65,536 sets it after the opening */
+    bool marked;                    /* whether the older folder has a mark, since its index is about to go */
     bool json;                      /* whether indexes of this name are JSON, else they are XML */
 } new_folder;
 

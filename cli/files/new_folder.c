@@ -6,6 +6,7 @@
 #include "platform/disk.h"
 #include "platform/folder.h"
 #include <errno.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -122,22 +123,28 @@ static void remove_files(const char *folder, const char *extension, uint32_t mos
     }
 }
 
-/* Makes the mark of a folder, which has the extension of its files, and locks it. Returns -1 if it cannot. */
-static int make_mark(const char *mark, const char *extension) {
+/* Makes the mark of a folder, which says how many files of which extension there may be, and locks it. Returns -1 if it
+ * cannot. */
+static int make_mark(const char *mark, const char *extension, uint32_t files) {
+    char text[48];
     int lock = brio_lock_file(mark);
-    if (lock >= 0) (void)brio_write_bytes_at(lock, extension, strlen(extension), 0);
+    int length = snprintf(text, sizeof text, "%5" PRIu32 " %-15s", files, extension);
+    if (lock >= 0) (void)brio_write_bytes_at(lock, text, (size_t)length, 0);
     return lock;
 }
 
 /* Removes what a killed run left; nothing of a folder that is another's.   extension  of files where the run was killed
  * before its mark had one. */
 static void remove_left(const char *folder, const char *extension) {
-    char mark[BRIO_PATH_MOST + 64], of_run[16] = "";
+    char mark[BRIO_PATH_MOST + 64], text[48] = "", of_run[16] = "";
+    uint32_t files = MOST_FILES;
     mark_of(folder, mark);
     int lock = brio_is_there(mark) ? brio_lock_file(mark) : -1;
     if (lock < 0) return;
-    bool known = brio_read_bytes_at(lock, of_run, sizeof of_run - 1, 0) > 0 && *of_run == '.' && !strchr(of_run, '/');
-    remove_files(folder, known ? of_run : extension, MOST_FILES);
+    (void)brio_read_bytes_at(lock, text, sizeof text - 1, 0);
+    bool known = sscanf(text, "%" SCNu32 " %15s", &files, of_run) == 2 && *of_run == '.' && !strchr(of_run, '/');
+    if (!known || files > MOST_FILES) files = MOST_FILES;
+    remove_files(folder, known ? of_run : extension, files);
     brio_unlock_file(lock, mark);
     brio_remove_folder(folder);
 }
@@ -220,7 +227,7 @@ brio_status cli_new_folder_open(run *r, const char *index, const char *extension
     mark_of(out->path, mark);
     bool there = brio_make_folder(out->path, false, &made);
     if (there && !made) errno = EEXIST;
-    if (there && made) out->lock = make_mark(mark, extension);
+    if (there && made) out->lock = make_mark(mark, extension, MOST_FILES);
     if (out->lock >= 0) return BRIO_OK;
     brio_status status = fail_folder(r, out->path);
     if (made) brio_remove_folder(out->path);
@@ -235,10 +242,16 @@ brio_status cli_new_folder_name(run *r, new_folder *f) {
     bool renamed = brio_rename_file(f->path, path);
     int error = errno;
     mark_of(renamed ? path : f->path, mark);
-    f->lock = make_mark(mark, f->extension);
+    f->lock = make_mark(mark, f->extension, MOST_FILES);
     if (!renamed) return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot name it %s: %s", f->path, path, strerror(error));
     memcpy(f->path, path, sizeof path);
-    return f->lock >= 0 ? BRIO_OK : cli_fail(r, BRIO_ERR_WRITE, "%s: in use by another process", mark);
+    if (f->lock < 0) return cli_fail(r, BRIO_ERR_WRITE, "%s: in use by another process", mark);
+    if (!*f->old) return BRIO_OK;
+    mark_of(f->old, mark); /* if the run is killed when its index is there, the next one removes the older files */
+    int old = make_mark(mark, f->old_extension, f->num_old);
+    if (old >= 0) brio_close(old);
+    f->marked = old >= 0;
+    return BRIO_OK;
 }
 
 void cli_new_folder_close(new_folder *f, bool published) {
@@ -249,9 +262,10 @@ void cli_new_folder_close(new_folder *f, bool published) {
         brio_unlock_file(f->lock, mark);
         if (!published) brio_remove_folder(f->path);
     }
+    mark_of(f->old, mark);
+    if (!published && f->marked) brio_remove_file(mark); /* the older output stays */
     if (published && *f->old) {
         remove_files(f->old, f->old_extension, f->num_old);
-        mark_of(f->old, mark);
         brio_remove_file(mark); /* of a run that was killed when its index was there */
         brio_remove_folder(f->old);
     }

@@ -314,10 +314,24 @@ class PointTiles(CliTest):
         self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "out-1", "out.vpc", "scratch"])
         os.mkdir(self.path("out.part"))  # what a killed run leaves
         self.file("out.part/0.npy", "half")
-        self.file("out.part/.brio-part", ".npy")
+        self.file("out.part/.brio-part", "3 .npy")
         self.tiles(2, points, self.path("out.vpc"))
         self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "out", "out.vpc", "scratch"])
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.laz", "1.laz"])
+
+    def test_the_older_output_stayed_when_a_run_was_killed_behind_its_index(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        self.tiles(2, points, self.path("out.vpc"), "--format", "ply")
+        os.rename(self.path("out"), self.path("keep"))
+        self.tiles(3, points, self.path("out.vpc"))
+        os.rename(self.path("out"), self.path("out-1"))  # as it is behind the index: a run names a folder, then the index, then removes the older one
+        self.file("out.vpc", self.bytes_of("out.vpc").replace(b"./out/", b"./out-1/"))
+        os.rename(self.path("keep"), self.path("out"))
+        self.file("out/.brio-part", "    2 .ply           ")
+        self.file("out/7.ply", "mine")
+        self.tiles(2, points, self.path("out.vpc"))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "out", "out-2", "out.vpc", "scratch"])
+        self.assertEqual(os.listdir(self.path("out")), ["7.ply"])
 
     def test_inputs_were_removed_with_the_older_output(self):
         points = self.random_ply("in.ply", 60, random.Random(1))
