@@ -8,7 +8,7 @@
 
 #include "brio/tiles.h"
 #include "completion/completion.h"
-#include "tiles/store.h"
+#include "store/store.h"
 
 enum {
     TILE_BLOCK = 128,    /* points in a block, at most. Chosen: tiles.md */
