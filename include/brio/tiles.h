@@ -30,9 +30,9 @@ typedef struct brio_tiles_options {
     size_t size;
     const char *scratch; /* a folder with room for about 190 bytes a point; for cells in order 240, with faces 850 */
     uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
-    int stars;           /* not 0: keeps what brio_tiles_cells and brio_tiles_alpha need: 16 bytes for each tetrahedron of two tiles. Memory
-                            and disk of the cells are counted before the work: 1: cells in order with their faces; 2:
-                            as they are computed, which needs no disk; 3: in order without faces (`ordered` = 2) */
+    int stars;           /* not 0: keeps what cells and alpha shapes need: 16 bytes for each tetrahedron of two tiles.
+                            Memory and disk are counted before the work: 1: cells in order with their faces; 2: as they
+                            are computed, and alpha shapes, which need no disk; 3: in order without faces */
     uint64_t key;        /* 0: no run goes on with what a killed process left. Else a number that tells this input and
                             this way to read it from others. After a process was killed, the next run in the same
                             folder with the same key and number of tiles goes on with its files */
@@ -56,6 +56,7 @@ typedef struct brio_tiles_stats {
     uint64_t most_tetrahedra; /* in one triangulation */
     uint64_t scratch_bytes;   /* the most that were in the scratch folder */
     double divide_seconds, triangulate_seconds, rank_seconds;
+    double low[3], high[3]; /* the box of all points, after brio_tiles_run; by ranks zeros */
 } brio_tiles_stats;
 
 /** The tetrahedra that belong to one tile: those whose lexicographically least vertex is one of its points. */
@@ -188,8 +189,8 @@ typedef struct brio_tiles_alpha_stats {
 
 /** Makes the boundary of an alpha shape or a weighted one, tile after tile: the faces of brio_alpha_shape, seen
  *  counterclockwise from outside, by the indices of their points. Values of simplices have the same bits as those of
- *  brio_alpha_values, so also an alpha that is one of them gives the same shape. Where parts of the solid touch, vertices
- *  are not doubled: a brio_parts_certificate with `sheets` counts them.
+ *  brio_alpha_values, so also an alpha that is one of them gives the same shape. Where parts of the solid touch,
+ *  vertices are not doubled: a brio_parts_certificate with `sheets` counts them.
  *  alpha  a number; the least alpha of one solid is not found here.
  *  take   NULL: nothing is to be known but the facts. Called for tiles with faces alone, in ascending order.
  *  Memory: about 300 bytes a point of the largest tile, 60 MB for the values of 16,384 points at a time, and 40 bytes a

@@ -27,9 +27,9 @@ static inline size_t brio_count_singular(const brio_alpha_complex *c, int dimens
 }
 
 /** Tetrahedra of which one of each class of translates counts, or those of a part of space. Points are numbered in an
- *  order that all classes, or all parts, share, so that a simplex begins with its least vertex. It counts if that vertex
- *  is own. All tetrahedra at own points are there, and mates across facets that have an own point; other mates are the
- *  facet itself. */
+ *  order that all classes, or all parts, share, so that a simplex begins with its least vertex. It counts if that
+ *  vertex is own. All tetrahedra at own points are there, and mates across facets that have an own point; other mates
+ *  are the facet itself. */
 typedef struct brio_alpha_input {
     brio_tetrahedron *tet; /* finite ones first; not changed */
     size_t num_finite, count;

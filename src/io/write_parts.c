@@ -1,4 +1,4 @@
-/* Writes points and tetrahedra, or triangles, part by part, for meshes that are in no memory as a whole: see brio/files.h. A format
+/* Writes points and tetrahedra, or triangles, part by part, for meshes in no memory as a whole: brio/files.h. A format
  * with BRIO_HOLDS_PARTS is one of rows (row_format.h) with tetrahedra behind its points. */
 #include "base/finite.h"
 #include "base/float_state.h"
@@ -117,9 +117,8 @@ static brio_status check_cells(brio_context *ctx, const brio_mesh_parts *p, cons
     BRIO_EXPECT(ctx, count <= p->num_cells - p->cells, BRIO_ERR_ARGUMENT,
                 "%s: more %s than the %" PRIu64 " that were announced", p->path, name, p->num_cells);
     for (size_t i = 0; i < corners * count; i++)
-        BRIO_EXPECT(ctx, rows[i] < p->num_vertices, BRIO_ERR_ARGUMENT,
-                    "%s %" PRIu64 " has vertex %u of %" PRIu64, p->of_faces ? "triangle" : "tetrahedron",
-                    p->cells + i / corners, rows[i], p->num_vertices);
+        BRIO_EXPECT(ctx, rows[i] < p->num_vertices, BRIO_ERR_ARGUMENT, "%s %" PRIu64 " has vertex %u of %" PRIu64,
+                    p->of_faces ? "triangle" : "tetrahedron", p->cells + i / corners, rows[i], p->num_vertices);
     return BRIO_OK;
 }
 

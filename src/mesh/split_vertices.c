@@ -173,10 +173,10 @@ done:
  *
  * Once is enough. On a small sphere round a vertex a fan is a closed curve without crossings, and the inside that it
  * bounds lies at one side of it. Where it passes an edge twice, it comes near itself from its other side. There these
- * places are chords of a disk, which do not cross. A cut at a chord makes two curves of one, and the chord lies between
- * them, whatever other chords are cut. So no fan passes one of these edges twice any more, at either end; and a fan that
- * passed an edge once at one end goes on to do so. Which edges they are depends on the faces alone, so the result does
- * not depend on their order. */
+ * places are chords of a disk, which do not cross. A cut at a chord makes two curves of one, and the chord lies
+ * between them, whatever other chords are cut. So no fan passes one of these edges twice any more, at either end; and
+ * a fan that passed an edge once at one end goes on to do so. Which edges they are depends on the faces alone, so the
+ * result does not depend on their order. */
 brio_status brio_mesh_split_sheets(brio_context *ctx, brio_mesh *m) {
     brio_status status = BRIO_OK;
     uint32_t *ring = NULL, *partner = NULL;

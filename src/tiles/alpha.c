@@ -1,9 +1,9 @@
 /* Alpha shapes of all points, tile after tile.
  *
- * A slab (cells.h) has the whole stars of its points, so it knows all of a simplex that has one of these: the tetrahedra
- * at a facet, the facets round an edge, the edges at a vertex. Its points are numbered in the order of the input. Then a
- * simplex counts in the slab of its vertex of least index, once in all slabs, and its value has the bits that one process
- * computes (src/alpha).
+ * A slab (cells.h) has the whole stars of its points, so it knows all of a simplex that has one of these: the
+ * tetrahedra at a facet, the facets round an edge, the edges at a vertex. Its points are numbered in the order of the
+ * input. Then a simplex counts in the slab of its vertex of least index, once in all slabs, and its value has the bits
+ * that one process computes (src/alpha).
  *
  * Based on: Edelsbrunner, Muecke. Three-dimensional alpha shapes. TOG 1994. */
 #include "alpha/alpha_complex.h"

@@ -30,10 +30,18 @@ static size_t make_points(uint64_t seed, size_t n, int kind) {
     brio_rng rng = brio_rng_new(seed);
     size_t side = (size_t)cbrt((double)n);
     switch (kind) {
-    case 0: uniform_points(seed, n, points); break;
-    case 1: clustered_points(seed, n, points); break;
-    case 2: sphere_points(seed, n, points); break;
-    case 3: integer_points(seed, n, 7, points); break;
+    case 0:
+        uniform_points(seed, n, points);
+        break;
+    case 1:
+        clustered_points(seed, n, points);
+        break;
+    case 2:
+        sphere_points(seed, n, points);
+        break;
+    case 3:
+        integer_points(seed, n, 7, points);
+        break;
     case 4:
         n = side * side * side;
         for (size_t i = 0; i < n; i++)
