@@ -8,7 +8,9 @@
 #include "points.h"
 #include <dirent.h>
 #include <math.h>
+#include <signal.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -363,6 +365,30 @@ static void cancelled_certificates_leave_nothing(void) {
     EXPECT(status == BRIO_OK);
 }
 
+static void a_full_disk_is_a_status(void) {
+    static division d;
+    brio_context *ctx = new_context();
+    brio_certificate c = {0};
+    brio_rng rng = brio_rng_new(5);
+    struct rlimit old, little;
+    size_t n = add_torus(0, 19, 20, 0);
+    uniform_points(1, 380, points);
+    divide(&rng, 380, n, &d);
+    d.flags = 0;
+    EXPECT(getrlimit(RLIMIT_FSIZE, &old) == 0);
+    void (*before)(int) = signal(SIGXFSZ, SIG_IGN);
+    for (rlim_t most = 16; most <= 2048; most *= 2) {
+        little = (struct rlimit){most, old.rlim_max};
+        EXPECT(setrlimit(RLIMIT_FSIZE, &little) == 0);
+        brio_status status = certify_parts(ctx, &d, 380, n, 0, &c, NULL);
+        EXPECT(setrlimit(RLIMIT_FSIZE, &old) == 0);
+        EXPECT(status == BRIO_ERR_WRITE && strstr(brio_message(ctx), "brio-faces-"), "%s", brio_message(ctx));
+        EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0 && !c.genera);
+    }
+    signal(SIGXFSZ, before);
+    brio_context_free(ctx);
+}
+
 static void wrong_calls_are_refused(void) {
     brio_context *ctx = new_context(), *other = new_context();
     brio_parts_options o = {.size = sizeof o};
@@ -413,6 +439,7 @@ SUITE(test_parts_certificate) {
     RUN(sums_do_not_depend_on_parts);
     RUN(no_memory_is_a_status);
     RUN(cancelled_certificates_leave_nothing);
+    RUN(a_full_disk_is_a_status);
     RUN(wrong_calls_are_refused);
     rmdir(folder);
     return harness_end();
