@@ -3,11 +3,13 @@
 #include "cli/run/commands.h"
 #include "cli/steps/estimate.h"
 #include "cli/files/files.h"
+#include "cli/files/new_file.h"
 #include "cli/files/read_write.h"
 #include "cli/steps/hints.h"
 #include "cli/steps/periodic.h"
 #include "cli/run/interrupt.h"
 #include "cli/steps/properties.h"
+#include "cli/steps/tiles.h"
 #include "cli/files/cloud.h"
 #include "cli/steps/weights.h"
 #include <errno.h>
@@ -22,6 +24,7 @@ typedef struct arguments {
     weights_options weights;
     periodic_options periodic;
     const char *alpha, *filtration; /* as given, or NULL */
+    uint64_t tiles;                 /* 0: not given */
 } arguments;
 
 static const option options[] = {
@@ -32,6 +35,7 @@ static const option options[] = {
     {"filtration", 0, OPTION_OUTPUT, offsetof(arguments, filtration), "FILE",
      "write all simplices with their values, sorted: lines for GUDHI; .sparse: the edges for ripser", 0},
     WEIGHTS_ROWS(arguments, weights),
+    TILES_ROWS(arguments, tiles),
     PERIODIC_ROWS(arguments, periodic),
     {0},
 };
@@ -216,6 +220,166 @@ done:
     return status;
 }
 
+/* --- in tiles --- */
+
+static brio_status check_tiles(run *r, double alpha) {
+    const arguments *a = r->arguments;
+    const char *shown = cli_showing(r);
+    if (cli_is_periodic(&a->periodic)) return cli_fail(r, BRIO_ERR_ARGUMENT, "--cell, --periodic: not with --tiles");
+    if (isnan(alpha))
+        return cli_fail(r, BRIO_ERR_ARGUMENT,
+                        "--alpha auto: not with --tiles; it takes all tetrahedra in the order of their values");
+    if (a->filtration) return cli_fail(r, BRIO_ERR_ARGUMENT, "--filtration: not with --tiles; it sorts all simplices");
+    if (shown) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: not with --tiles; brio view shows the file", shown);
+    if (!r->common.output && !r->common.json) return cli_fail_output(r, "no output: -o FILE is missing");
+    FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
+    return cli_check_tile_output(r, ".pvtp");
+}
+
+/* What is done with the faces of tiles. */
+typedef struct {
+    run *r;
+    brio_tiles *tiles;
+    double alpha;
+    brio_parts_certificate *certificate;
+    new_folder folder; /* of files for tiles; without a path there are none */
+    uint32_t files;
+    brio_mesh_parts *parts; /* of one file */
+    brio_status status;
+} shape_in_tiles;
+
+/* Writes the faces of a tile. Its vertices have the property `point`, the index in the input. */
+static brio_status write_piece(shape_in_tiles *s, const brio_faces_part *part) {
+    run *r = s->r;
+    char path[BRIO_PATH_MOST + 32];
+    brio_mesh *mesh = NULL;
+    brio_write_options how = {.size = sizeof how, .ascii = r->common.ascii, .compress = r->common.compress};
+    uint64_t *offsets = malloc((part->num_faces + 1) * sizeof *offsets);
+    void *data;
+    brio_status status = BRIO_OK;
+    if (!offsets) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu faces", part->num_faces);
+    for (size_t f = 0; f <= part->num_faces; f++) offsets[f] = 3 * f;
+    TRY(brio_mesh_new(r->ctx, &mesh));
+    TRY(brio_mesh_set_vertices(mesh, part->points, part->num_vertices));
+    TRY(brio_mesh_set_faces(mesh, offsets, *part->faces, part->num_faces));
+    TRY(brio_mesh_add_property(mesh, "point", BRIO_SCALAR_FLOAT64, &data));
+    for (size_t v = 0; v < part->num_vertices; v++) ((double *)data)[v] = (double)part->index[v];
+    snprintf(path, sizeof path, "%s/%u.vtp", s->folder.path, s->files++);
+    status = brio_write(r->ctx, path, mesh, &how);
+done:
+    brio_mesh_free(mesh);
+    free(offsets);
+    return status;
+}
+
+static int take_faces(const brio_faces_part *part, uint32_t tile, void *user) {
+    shape_in_tiles *s = user;
+    (void)tile;
+    s->status = brio_parts_certificate_add(s->r->ctx, s->certificate, part);
+    if (s->status == BRIO_OK && s->folder.lock >= 0) s->status = write_piece(s, part);
+    if (s->status != BRIO_OK) cli_keep_failure(s->r, s->status);
+    return s->status != BRIO_OK;
+}
+
+/* Appends the faces of a tile to the one file, by the rows of their points. */
+static int append_faces(const brio_faces_part *part, uint32_t tile, void *user) {
+    shape_in_tiles *s = user;
+    uint32_t(*rows)[3] = malloc((part->num_faces + 1) * sizeof *rows);
+    (void)tile;
+    s->status = rows ? BRIO_OK : cli_fail(s->r, BRIO_ERR_NO_MEMORY, "out of memory for %zu faces", part->num_faces);
+    for (size_t f = 0; rows && f < part->num_faces; f++)
+        for (int k = 0; k < 3; k++) rows[f][k] = (uint32_t)part->index[part->faces[f][k]];
+    if (rows) s->status = brio_mesh_parts_faces(s->r->ctx, s->parts, (const uint32_t(*)[3])rows, part->num_faces);
+    free(rows);
+    if (s->status != BRIO_OK) cli_keep_failure(s->r, s->status);
+    return s->status != BRIO_OK;
+}
+
+/* Finds the faces once more, and writes them: the head of the file says how many there are. */
+static brio_status write_faces(run *r, brio_mesh_parts *parts, void *user) {
+    shape_in_tiles *s = user;
+    s->parts = parts;
+    brio_status status = brio_tiles_alpha(r->ctx, s->tiles, s->alpha, append_faces, s, NULL);
+    FORWARD(s->status);
+    return status;
+}
+
+static brio_status begin_certificate(shape_in_tiles *s, uint32_t tiles) {
+    const brio_tiles_stats *of = brio_tiles_facts(s->tiles);
+    brio_parts_options o = {.size = sizeof o, .scratch = s->r->common.scratch, .buckets = tiles, .sheets = 1};
+    memcpy(o.low, of->low, sizeof o.low);
+    memcpy(o.high, of->high, sizeof o.high);
+    return brio_parts_certificate_new(s->r->ctx, &o, &s->certificate);
+}
+
+static void report_tiles(run *r, const brio_tiles *t, double alpha, const brio_tiles_alpha_stats *s,
+                         const brio_parts_stats *p) {
+    const brio_tiles_stats *of = brio_tiles_facts(t);
+    const brio_alpha_complex complex = {
+        .counts = {(size_t)s->counts[0], (size_t)s->counts[1], (size_t)s->counts[2], (size_t)s->counts[3]}};
+    const brio_mesh surface = {.num_vertices = (size_t)p->vertices, .num_faces = (size_t)p->faces};
+    const brio_alpha_shape_stats open = {.alpha = alpha,
+                                         .tetrahedra = (size_t)s->tetrahedra,
+                                         .split = (size_t)p->split,
+                                         .uncovered = (size_t)s->uncovered,
+                                         .singular_vertices = (size_t)s->singular_vertices,
+                                         .singular_edges = (size_t)s->singular_edges,
+                                         .singular_facets = (size_t)s->singular_facets};
+    report(r, &complex, &surface, &open);
+    cli_fact_count(&r->facts, "tiles", of->tiles);
+    cli_fact_count(&r->facts, "resumed", of->resumed);
+    cli_fact_count(&r->facts, "largest_tile", of->most_points);
+    cli_fact_count(&r->facts, "scratch_bytes", of->scratch_bytes + p->scratch_bytes);
+}
+
+/* Finds the shape, and writes the files of tiles where the output is their index. */
+static brio_status shape_tiles(shape_in_tiles *s, double given, uint32_t tiles, brio_tiles_alpha_stats *stats) {
+    run *r = s->r;
+    brio_certificate certificate = {0};
+    brio_parts_stats counted = {.size = sizeof counted};
+    bool has_index = r->common.output && !cli_merges_tiles(r), published = false;
+    brio_status status = BRIO_OK;
+    TRY(begin_certificate(s, tiles));
+    if (has_index) TRY(cli_new_folder_open(r, r->common.output, ".vtp", &s->folder));
+    brio_status ended = brio_tiles_alpha(r->ctx, s->tiles, s->alpha, take_faces, s, stats);
+    TRY(s->status);
+    TRY(ended);
+    cli_lap(r, "shape");
+    TRY(brio_parts_certificate_end(r->ctx, s->certificate, &certificate, &counted));
+    cli_lap(r, "certify");
+    report_tiles(r, s->tiles, given, stats, &counted);
+    TRY(cli_report_certificate(r, &certificate, 0));
+    if (has_index) TRY(cli_new_folder_name(r, &s->folder));
+    if (has_index) status = cli_write_faces_index(r, s->folder.path, s->files);
+    published = status == BRIO_OK;
+done:
+    if (has_index) cli_new_folder_close(&s->folder, published);
+    brio_certificate_free(&certificate);
+    return status;
+}
+
+static brio_status alpha_in_tiles(run *r, double alpha) {
+    const arguments *a = r->arguments;
+    shape_in_tiles s = {.r = r, .folder = {.lock = -1}};
+    brio_tiles_alpha_stats stats = {.size = sizeof stats};
+    bool merges = cli_merges_tiles(r);
+    double box[6];
+    tile_merging m;
+    brio_status status = BRIO_OK;
+    cli_merging_begin(&m, r, &a->weights);
+    TRY(cli_triangulate_merging(r, merges ? &m : NULL, &a->weights, a->tiles, 2, &s.tiles));
+    memcpy(box, brio_tiles_facts(s.tiles)->low, 3 * sizeof *box);
+    memcpy(box + 3, brio_tiles_facts(s.tiles)->high, 3 * sizeof *box);
+    s.alpha = up_to(alpha, &(brio_mesh){.num_vertices = 2, .vertices = box});
+    TRY(shape_tiles(&s, alpha, (uint32_t)a->tiles, &stats));
+    const tile_cells cells = {true, stats.faces, write_faces, &s};
+    if (merges) status = cli_merging_write(&m, &cells);
+done:
+    brio_parts_certificate_free(s.certificate);
+    brio_tiles_free(s.tiles);
+    return status;
+}
+
 /* --- the command --- */
 
 static brio_status alpha_open(run *r, const brio_mesh *input, const double *weights, double value) {
@@ -243,6 +407,10 @@ static brio_status alpha(run *r) {
     TRY(read_alpha(r, a, &value));
     TRY(cli_check_weights_options(r, &a->weights));
     TRY(cli_check_periodic(r, &a->periodic));
+    if (a->tiles) {
+        TRY(check_tiles(r, value));
+        return alpha_in_tiles(r, value);
+    }
     TRY(cli_require_output(r, a->filtration != NULL));
     if (a->filtration) TRY(cli_check_beside(r, "filtration", a->filtration));
     TRY(cli_read_samples(r, r->operands[0], &input));
@@ -271,6 +439,8 @@ const command cli_alpha = {
     .examples = "brio alpha points.ply --alpha auto -o shape.ply\nthe least alpha with all points in one solid\n"
                 "brio alpha points.ply --alpha 0.01 --filtration values.txt -o shape.ply\nall simplices and their "
                 "values as well\n"
+                "brio alpha scan.laz --tiles 16 --scratch /var/tmp --alpha 0.01 -o shape.ply\nmore points than fit in "
+                "memory\n"
                 "brio alpha atoms.extxyz --periodic xyz --alpha 4 -o pores.ply\natoms in a cell that repeats\n",
     .has_output = true,
     .holds = CLI_SURFACES,

@@ -161,7 +161,7 @@ static brio_status check_tiles(run *r, const arguments *a) {
                         "--tiles goes with weights, -o, --view and --picture, not with --plane, --verify, orders, "
                         "locations or records");
     FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
-    return cli_check_tile_output(r);
+    return cli_check_tile_output(r, ".pvtu");
 }
 
 /* Refuses the files beside .node and .ele where these are not written. */

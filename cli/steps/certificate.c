@@ -50,6 +50,11 @@ static brio_status judge(run *r, const brio_certificate *c, unsigned how) {
     return BRIO_OK;
 }
 
+brio_status cli_report_certificate(run *r, const brio_certificate *certificate, unsigned how) {
+    report_certificate(&r->facts, certificate);
+    return judge(r, certificate, how);
+}
+
 static brio_status count_self_intersections(run *r, const brio_mesh *mesh, brio_certificate *c) {
     brio_status status = brio_mesh_self_intersections(r->ctx, mesh, &c->self_intersections);
     cli_lap(r, "self_intersections");

@@ -15,4 +15,7 @@ enum certify_how {
 /** Reports the certificate of the faces; BRIO_ERR_CHECK when it finds a fault.   how  bits of certify_how. */
 brio_status cli_certify(run *r, const brio_mesh *mesh, unsigned how);
 
+/** Reports a certificate that was found already, and judges it as cli_certify does.   how  0 or CERTIFY_OPEN. */
+brio_status cli_report_certificate(run *r, const brio_certificate *certificate, unsigned how);
+
 #endif

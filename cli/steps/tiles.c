@@ -28,11 +28,18 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     return BRIO_OK;
 }
 
-brio_status cli_check_tile_files(run *r, const char *formats) {
+/* Refuses an output that is no index.   extension  of the index: .pvtu has files .vtu. */
+static brio_status check_index(run *r, const char *extension, const char *formats) {
     const char *output = r->common.output;
-    if (output && (!ends_with(output, EXTENSION) || !strcmp(output + brio_folder_length(output), EXTENSION)))
+    char of_tiles[8];
+    if (output && (!ends_with(output, extension) || !strcmp(output + brio_folder_length(output), extension)))
         return cli_fail_output(r, "%s: --tiles writes %s with a file for each tile beside it", output, formats);
-    return output ? cli_new_folder_check(r, output, OF_TILES) : BRIO_OK;
+    snprintf(of_tiles, sizeof of_tiles, ".%s", extension + 2);
+    return output ? cli_new_folder_check(r, output, of_tiles) : BRIO_OK;
+}
+
+brio_status cli_check_tile_files(run *r, const char *formats) {
+    return check_index(r, EXTENSION, formats);
 }
 
 /* Returns the format of an output that is one file for all tiles; BRIO_FORMAT_AUTO: the output is none. */
@@ -43,15 +50,21 @@ static brio_format merged_format(const run *r) {
     return info && info->holds & BRIO_HOLDS_PARTS ? format : BRIO_FORMAT_AUTO;
 }
 
-brio_status cli_check_tile_output(run *r) {
+bool cli_merges_tiles(const run *r) {
+    return merged_format(r) != BRIO_FORMAT_AUTO;
+}
+
+brio_status cli_check_tile_output(run *r, const char *index) {
     const char *input = r->operands[0];
     brio_place_facts file;
-    if (merged_format(r) == BRIO_FORMAT_AUTO) return cli_check_tile_files(r, ".ply, and .pvtu");
+    char formats[24];
+    snprintf(formats, sizeof formats, ".ply, and %s", index);
+    if (!cli_merges_tiles(r)) return check_index(r, index, formats);
     if (!strcmp(input, "-") || !brio_find_facts(input, &file) || file.kind != BRIO_IS_FILE)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
-                        "%s: for one output of all tiles the input is read twice, so it must be a file; .pvtu needs it "
+                        "%s: for one output of all tiles the input is read twice, so it must be a file; %s needs it "
                         "once",
-                        strcmp(input, "-") ? input : "standard input");
+                        strcmp(input, "-") ? input : "standard input", index);
     return strcmp(r->common.output, "-") ? cli_check_target(r, r->common.output) : BRIO_OK;
 }
 
@@ -251,26 +264,38 @@ static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighte
     return status;
 }
 
-brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
+/* Writes an index.   type  of the data set in VTK.   extension  of the files.   weight  whether they have weights. */
+static brio_status write_index(run *r, const char *folder, uint32_t files, const char *type, const char *extension,
+                               bool weighted) {
     new_file f = {.target.folder = -1};
     brio_status status = BRIO_OK;
     TRY(cli_new_file_open(r, r->common.output, &f));
-    fprintf(f.file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" "
-                    "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n"
-                    "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n"
-                    "<PPointData>\n<PDataArray type=\"Float64\" Name=\"point\"/>\n");
+    fprintf(f.file,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
+            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<%s GhostLevel=\"0\">\n"
+            "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n"
+            "<PPointData>\n<PDataArray type=\"Float64\" Name=\"point\"/>\n",
+            type, type);
     if (weighted) fprintf(f.file, "<PDataArray type=\"Float64\" Name=\"weight\"/>\n");
     fprintf(f.file, "</PPointData>\n");
-    for (uint32_t i = 0; i < tiles; i++) {
+    for (uint32_t i = 0; i < files; i++) {
         fprintf(f.file, "<Piece Source=\"");
         cli_write_attribute(f.file, folder + brio_folder_length(folder));
-        fprintf(f.file, "/%u.vtu\"/>\n", i);
+        fprintf(f.file, "/%u%s\"/>\n", i, extension);
     }
-    fprintf(f.file, "</PUnstructuredGrid>\n</VTKFile>\n");
+    fprintf(f.file, "</%s>\n</VTKFile>\n", type);
     status = cli_new_file_publish(r, r->common.output, &f);
 done:
     cli_new_file_close(&f);
     return status;
+}
+
+brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
+    return write_index(r, folder, tiles, "PUnstructuredGrid", OF_TILES, weighted);
+}
+
+brio_status cli_write_faces_index(run *r, const char *folder, uint32_t files) {
+    return write_index(r, folder, files, "PPolyData", ".vtp", false);
 }
 
 /* Writes a file for each tile, then the index. Without the index there is no output: on failure the tiles are removed,
@@ -295,28 +320,9 @@ done:
 
 /* --- one file --- */
 
-/* The output of all tiles in one file. */
-typedef struct {
-    run *r;
-    weights_options options;
-    uint64_t key; /* of the input before it was read */
-    brio_write_options how;
-    double moved;
-    int rounded;   /* whether colours lose steps */
-    size_t merged; /* points that single precision merges */
-    brio_mesh_parts *parts;
-    brio_property *property; /* of a block as it is written */
-    size_t num_properties;   /* of the input */
-    bool adds_weight;
-    uint64_t count, all; /* points */
-    bool looks; /* the depth of colours shows in all blocks only, which are looked at before they are written */
-    brio_status status;
-} merging;
-
-/* Begins, before the input is read. */
-static void begin_merging(merging *m, run *r, const weights_options *weights) {
+void cli_merging_begin(tile_merging *m, run *r, const weights_options *weights) {
     const common_options *c = &r->common;
-    *m = (merging){.r = r, .options = *weights, .key = cli_tiles_key(r, weights, r->operands[0])};
+    *m = (tile_merging){.r = r, .options = *weights, .key = cli_tiles_key(r, weights, r->operands[0])};
     m->options.quiet = true; /* the first reading has said all */
     m->how = (brio_write_options){.size = sizeof m->how,
                                   .format = merged_format(r),
@@ -328,7 +334,7 @@ static void begin_merging(merging *m, run *r, const weights_options *weights) {
 }
 
 /* Refuses and settles what the points tell, before the long work. */
-static brio_status settle_merging(merging *m, const brio_tiles *t) {
+static brio_status settle_merging(tile_merging *m, const brio_tiles *t) {
     run *r = m->r;
     brio_read_options from = cli_read_options(r);
     const brio_convert_options o = {.from = &from};
@@ -340,12 +346,12 @@ static brio_status settle_merging(merging *m, const brio_tiles *t) {
     return cli_settle_conversion(r, 1, &o, &m->how, &m->merged);
 }
 
-static brio_status has_changed(const merging *m) {
+static brio_status has_changed(const tile_merging *m) {
     return cli_fail(m->r, BRIO_ERR_FORMAT, "%s: the file changed between two readings", m->r->operands[0]);
 }
 
 /* Names the properties of the blocks, as brio delaunay without tiles does: weights are one. */
-static brio_status name_properties(merging *m, const brio_mesh *block, bool weighted) {
+static brio_status name_properties(tile_merging *m, const brio_mesh *block, bool weighted) {
     size_t n = block->num_properties;
     bool overruled = m->options.exponent != NO_EXPONENT || m->options.unweighted;
     brio_mesh named = *block;
@@ -361,7 +367,7 @@ static brio_status name_properties(merging *m, const brio_mesh *block, bool weig
     return BRIO_OK;
 }
 
-static brio_status write_block(merging *m, const brio_mesh *block) {
+static brio_status write_block(tile_merging *m, const brio_mesh *block) {
     double *weights = NULL;
     brio_mesh shown = *block;
     brio_status status = BRIO_OK;
@@ -380,13 +386,13 @@ done:
 }
 
 static int look_again(const brio_mesh *block, void *user) {
-    merging *m = user;
+    tile_merging *m = user;
     return !brio_mesh_parts_look(m->parts, block);
 }
 
 /* Writes a block. Ends at the first one if all have to be looked at before. */
 static int take_again(const brio_mesh *block, void *user) {
-    merging *m = user;
+    tile_merging *m = user;
     bool first = !m->property && !m->looks;
     if (first) m->looks = brio_mesh_parts_look(m->parts, block);
     if (first && m->looks) return 1;
@@ -395,7 +401,7 @@ static int take_again(const brio_mesh *block, void *user) {
     return m->status != BRIO_OK;
 }
 
-static brio_status write_points_again(merging *m) {
+static brio_status write_points_again(tile_merging *m) {
     run *r = m->r;
     brio_read_options how = cli_read_options(r);
     brio_status status = brio_read_blocks(r->ctx, r->operands[0], &how, take_again, m, NULL);
@@ -409,31 +415,42 @@ static brio_status write_points_again(merging *m) {
     return same ? BRIO_OK : has_changed(m);
 }
 
-static brio_status write_tetrahedra(merging *m, brio_tiles *t, uint32_t tile) {
-    run *r = m->r;
+/* Tiles whose tetrahedra are written. */
+typedef struct {
+    brio_tiles *t;
+    uint32_t tiles;
+} written_tiles;
+
+static brio_status write_tile_tetrahedra(run *r, brio_mesh_parts *parts, brio_tiles *t, uint32_t tile) {
     brio_tile_part part = {.size = sizeof part};
     brio_status status = BRIO_OK;
     TRY(brio_tiles_part(r->ctx, t, tile, &part));
     for (size_t i = 0; i < part.num_tetrahedra; i++)
         for (int k = 0; k < 4; k++) part.tetrahedra[i][k] = (uint32_t)part.index[part.tetrahedra[i][k]];
-    TRY(brio_mesh_parts_tetrahedra(r->ctx, m->parts, part.num_tetrahedra ? *part.tetrahedra : NULL,
-                                   part.num_tetrahedra));
+    TRY(brio_mesh_parts_tetrahedra(r->ctx, parts, part.num_tetrahedra ? *part.tetrahedra : NULL, part.num_tetrahedra));
 done:
     brio_tile_part_free(r->ctx, &part);
     return status;
 }
 
-/* Writes one file: the points as they are read again, in their order and with their properties, then the tetrahedra of
- * tile after tile. */
-static brio_status write_merged(merging *m, brio_tiles *t, uint32_t tiles) {
+static brio_status write_tetrahedra(run *r, brio_mesh_parts *parts, void *user) {
+    const written_tiles *w = user;
+    for (uint32_t i = 0; i < w->tiles; i++) FORWARD(write_tile_tetrahedra(r, parts, w->t, i));
+    return BRIO_OK;
+}
+
+brio_status cli_merging_write(tile_merging *m, const tile_cells *cells) {
     run *r = m->r;
     const char *output = r->common.output;
     brio_status status = BRIO_OK;
     TRY(cli_check_interrupt(r));
     cli_interrupt_writing(strcmp(output, "-") != 0);
-    TRY(brio_mesh_parts_new(r->ctx, output, &m->how, m->all, brio_tiles_facts(t)->tetrahedra, &m->parts));
+    if (cells->of_faces)
+        TRY(brio_mesh_parts_new_faces(r->ctx, output, &m->how, m->all, cells->count, &m->parts));
+    else
+        TRY(brio_mesh_parts_new(r->ctx, output, &m->how, m->all, cells->count, &m->parts));
     TRY(write_points_again(m));
-    for (uint32_t i = 0; i < tiles; i++) TRY(write_tetrahedra(m, t, i));
+    TRY(cells->write(r, m->parts, cells->user));
     TRY(brio_mesh_parts_finish(r->ctx, m->parts));
     cli_tell_moved(r, output, m->moved, m->merged);
     if (m->rounded) cli_warn(r, WARNING_COLOURS, output);
@@ -467,23 +484,29 @@ static brio_status run_tiles(run *r, brio_tiles *t) {
     return BRIO_OK;
 }
 
-brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, int stars, brio_tiles **out) {
+brio_status cli_triangulate_merging(run *r, tile_merging *merging, const weights_options *weights, uint64_t tiles,
+                                    int stars, brio_tiles **out) {
     FORWARD(read_tiles(r, weights, tiles, stars, out));
+    if (merging) FORWARD(settle_merging(merging, *out));
     return run_tiles(r, *out);
+}
+
+brio_status cli_triangulate_tiles(run *r, const weights_options *weights, uint64_t tiles, int stars, brio_tiles **out) {
+    return cli_triangulate_merging(r, NULL, weights, tiles, stars, out);
 }
 
 brio_status cli_tiles(run *r, const weights_options *weights, uint64_t tiles) {
     brio_tiles *t = NULL;
     brio_status status = BRIO_OK;
-    bool merges = merged_format(r) != BRIO_FORMAT_AUTO;
-    merging m;
-    begin_merging(&m, r, weights);
-    TRY(read_tiles(r, weights, tiles, 0, &t));
-    if (merges) TRY(settle_merging(&m, t));
-    TRY(run_tiles(r, t));
+    bool merges = cli_merges_tiles(r);
+    tile_merging m;
+    cli_merging_begin(&m, r, weights);
+    TRY(cli_triangulate_merging(r, merges ? &m : NULL, weights, tiles, 0, &t));
     TRY(report(r, t));
+    written_tiles all = {t, (uint32_t)tiles};
+    const tile_cells cells = {false, brio_tiles_facts(t)->tetrahedra, write_tetrahedra, &all};
     if (merges)
-        TRY(write_merged(&m, t, (uint32_t)tiles));
+        TRY(cli_merging_write(&m, &cells));
     else if (r->common.output)
         TRY(write_tiles(r, t, (uint32_t)tiles, brio_tiles_facts(t)->weighted));
     status = cli_show_tiles(r, t, (uint32_t)tiles);

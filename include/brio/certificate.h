@@ -41,6 +41,80 @@ BRIO_API brio_status brio_mesh_self_intersections(brio_context *ctx, const brio_
 /** Frees what a certificate owns and sets all fields but `size` to 0; NULL is accepted. */
 BRIO_API void brio_certificate_free(brio_certificate *certificate);
 
+/* --- surfaces that come in parts --- */
+
+/** Some faces of a surface, each of which is in one part. */
+typedef struct brio_faces_part {
+    size_t size;
+    size_t num_vertices, num_faces;
+    const double *points;       /* #V by 3 */
+    const uint64_t *index;      /* #V: numbers of the vertices, the same in all parts. No two rows of a part have one */
+    const uint8_t *shared;      /* #V: not 0: other parts may have faces at this vertex. NULL: at each one */
+    const uint32_t (*faces)[3]; /* #F: rows of points */
+} brio_faces_part;
+
+typedef struct brio_parts_options {
+    size_t size;
+    const char *scratch; /* a folder with room for 32 bytes for each face at a shared vertex, with sheets 104 */
+    uint32_t buckets;    /* files into which these faces are divided, and of which one is in memory at a time; 0: 64 */
+    int sheets;          /* not 0: the faces bound a solid, and where its parts touch in a vertex or an edge only, each
+                            sheet of the surface has its own vertices, as brio_alpha_shape makes them. Then the surface
+                            is closed, manifold and oriented */
+    double low[3], high[3]; /* a box about all vertices. Areas and volumes are scaled by its size, volumes summed about
+                               its centre, on which they depend where the surface is not closed. Zeros: about the
+                               origin, and not scaled */
+} brio_parts_options;
+
+typedef struct brio_parts_stats {
+    size_t size;
+    uint64_t faces;
+    uint64_t vertices; /* that faces use; with sheets, those of each sheet */
+    uint64_t split;    /* with sheets: vertices beyond the indices that faces use */
+    uint64_t scratch_bytes;
+} brio_parts_stats;
+
+/** A certificate of a surface that is in no memory as a whole.
+ *
+ *     brio_parts_options o = {.size = sizeof o, .scratch = "/var/tmp"};
+ *     brio_parts_certificate_new(ctx, &o, &c);
+ *     while (...) brio_parts_certificate_add(ctx, c, &part);
+ *     brio_parts_certificate_end(ctx, c, &certificate, NULL);
+ *     brio_parts_certificate_free(c); */
+typedef struct brio_parts_certificate brio_parts_certificate;
+
+/** Begins a certificate, and makes a folder in the scratch folder.
+ *  out  owned by the caller: brio_parts_certificate_free; NULL on error.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no scratch folder; a box that is not finite, or has no room),
+ *  BRIO_ERR_OPEN (not a writable folder), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_parts_certificate_new(brio_context *ctx, const brio_parts_options *options,
+                                                brio_parts_certificate **out);
+
+/** Adds a part. Of it nothing is kept but counts, at most 72 bytes for each patch of its faces, and what goes to the
+ *  scratch folder.
+ *  Cost: 55 bytes a face of the part while it is added, with sheets 95. With all threads. After a failure it takes no
+ *  more parts.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (an index out of range; a certificate that has ended; with sheets, faces that
+ *  bound no solid), BRIO_ERR_NOT_FINITE, BRIO_ERR_TOO_LARGE (2^32 patches or more), BRIO_ERR_WRITE (the disk is full),
+ *  BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+BRIO_API brio_status brio_parts_certificate_add(brio_context *ctx, brio_parts_certificate *c,
+                                                const brio_faces_part *part);
+
+/** Finds the certificate of all faces. It is that of brio_mesh_certificate, of one mesh whose vertices are the indices;
+ *  with sheets, of that mesh as brio_alpha_shape splits it. Area and volume are exact sums of the triangles' rounded
+ *  ones: equal for all ways to make parts and all numbers of threads, and to brio_mesh_certificate within rounding.
+ *  out  zeros at first; freed with brio_certificate_free.   stats  NULL, or receives what was counted.
+ *  Cost: reads the scratch files once, a file at a time: 90 bytes a face of it, with sheets 205.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (it has ended; with sheets, faces that bound no solid), BRIO_ERR_OPEN (a scratch
+ *  file was cut or changed), BRIO_ERR_WRITE, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.
+ *  Based on: [Aggarwal Vitter 1988]. */
+BRIO_API brio_status brio_parts_certificate_end(brio_context *ctx, brio_parts_certificate *c, brio_certificate *out,
+                                                brio_parts_stats *stats);
+
+/** Frees everything, and removes the files; NULL is accepted. */
+BRIO_API void brio_parts_certificate_free(brio_parts_certificate *c);
+
+/* --- distances --- */
+
 /** Distances between two surfaces, in the unit of the coordinates. */
 typedef struct brio_distance {
     size_t size;

@@ -237,6 +237,9 @@ typedef struct brio_mesh_parts brio_mesh_parts;
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no .ply), BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_parts_new(brio_context *ctx, const char *path, const brio_write_options *options,
                                          uint64_t num_vertices, uint64_t num_tetrahedra, brio_mesh_parts **out);
+/** Does what brio_mesh_parts_new does for a file of points and triangles.   num_faces  of all parts. */
+BRIO_API brio_status brio_mesh_parts_new_faces(brio_context *ctx, const char *path, const brio_write_options *options,
+                                               uint64_t num_vertices, uint64_t num_faces, brio_mesh_parts **out);
 /** Looks at the colours of a block, before any points are appended: numbers that can be bytes, or from 0 to 1, or 16
  *  bits, tell by the greatest one which of these they are. Without a look the first block decides.
  *  Returns 1 if the other blocks have to be shown as well, in any order and more than once; 0 if none has to be. */
@@ -249,6 +252,9 @@ BRIO_API brio_status brio_mesh_parts_vertices(brio_context *ctx, brio_mesh_parts
 /** Appends tetrahedra, once all points are there.   tetrahedra  count by 4: rows of points.   Returns as the above. */
 BRIO_API brio_status brio_mesh_parts_tetrahedra(brio_context *ctx, brio_mesh_parts *p, const uint32_t *tetrahedra,
                                                 size_t count);
+/** Appends triangles, once all points are there.   faces  count by 3: rows of points.   Returns as the above. */
+BRIO_API brio_status brio_mesh_parts_faces(brio_context *ctx, brio_mesh_parts *p, const uint32_t (*faces)[3],
+                                           size_t count);
 /** Ends the file and gives it its name.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (not as many as were announced), BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_mesh_parts_finish(brio_context *ctx, brio_mesh_parts *p);

@@ -17,6 +17,7 @@
 #define BRIO_TILES_H
 
 #include "cells.h"
+#include "certificate.h"
 #include "triangulation.h"
 
 #ifdef __cplusplus
@@ -29,9 +30,9 @@ typedef struct brio_tiles_options {
     size_t size;
     const char *scratch; /* a folder with room for about 190 bytes a point; for cells in order 240, with faces 850 */
     uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
-    int stars;           /* not 0: keeps what brio_tiles_cells needs: 16 bytes for each tetrahedron of two tiles. Memory
-                            and disk of the cells are counted before the work: 1: cells in order with their faces; 2:
-                            as they are computed, which needs no disk; 3: in order without faces (`ordered` = 2) */
+    int stars;           /* not 0: keeps what cells and alpha shapes need: 16 bytes for each tetrahedron of two tiles.
+                            Memory and disk are counted before the work: 1: cells in order with their faces; 2: as they
+                            are computed, and alpha shapes, which need no disk; 3: in order without faces */
     uint64_t key;        /* 0: no run goes on with what a killed process left. Else a number that tells this input and
                             this way to read it from others. After a process was killed, the next run in the same
                             folder with the same key and number of tiles goes on with its files */
@@ -55,6 +56,7 @@ typedef struct brio_tiles_stats {
     uint64_t most_tetrahedra; /* in one triangulation */
     uint64_t scratch_bytes;   /* the most that were in the scratch folder */
     double divide_seconds, triangulate_seconds, rank_seconds;
+    double low[3], high[3]; /* the box of all points, after brio_tiles_run; by ranks zeros */
 } brio_tiles_stats;
 
 /** The tetrahedra that belong to one tile: those whose lexicographically least vertex is one of its points. */
@@ -167,6 +169,39 @@ BRIO_API brio_status brio_tiles_cells(brio_context *ctx, brio_tiles *t, const br
 
 /** Returns the facts of the last call of brio_tiles_cells that ended well. The view is valid until brio_tiles_free. */
 BRIO_API const brio_tiles_cells_stats *brio_tiles_cells_facts(const brio_tiles *t);
+
+/* --- alpha shapes --- */
+
+/** Receives the faces of an alpha shape that belong to a tile: those whose vertex of least index is a point of it. Of
+ *  the part, `index` has the order in which points were added. Valid during the call.
+ *  Returns 0, or another number to end the run. */
+typedef int (*brio_tile_faces_fn)(const brio_faces_part *part, uint32_t tile, void *user);
+
+/** Facts of an alpha shape of all points; the names are those of brio_alpha_shape_stats and brio_alpha_complex. */
+typedef struct brio_tiles_alpha_stats {
+    size_t size;
+    uint64_t counts[4];  /* simplices of the triangulation, by dimension */
+    uint64_t tetrahedra; /* in the complex */
+    uint64_t faces;      /* of the boundary */
+    uint64_t uncovered;  /* vertices that are in no tetrahedron of the complex */
+    uint64_t singular_vertices, singular_edges, singular_facets;
+} brio_tiles_alpha_stats;
+
+/** Makes the boundary of an alpha shape or a weighted one, tile after tile: the faces of brio_alpha_shape, seen
+ *  counterclockwise from outside, by the indices of their points. Values of simplices have the same bits as those of
+ *  brio_alpha_values, so also an alpha that is one of them gives the same shape. Where parts of the solid touch,
+ *  vertices are not doubled: a brio_parts_certificate with `sheets` counts them.
+ *  alpha  a number; the least alpha of one solid is not found here.
+ *  take   NULL: nothing is to be known but the facts. Called for tiles with faces alone, in ascending order.
+ *  Memory: about 300 bytes a point of the largest tile, 60 MB for the values of 16,384 points at a time, and 40 bytes a
+ *  face of a tile. With all threads. Disk: none.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no result, or without `stars`; alpha is NaN), BRIO_ERR_NO_ANSWER (points in a
+ *  plane; no tetrahedron has a value of at most alpha, or alpha is closer to 0 than brio_alpha_auto finds one: known
+ *  when all tiles are done), BRIO_ERR_OPEN, BRIO_ERR_TOO_LARGE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED (also where the
+ *  function ended it).
+ *  Based on: [Edelsbrunner Muecke 1994], [Edelsbrunner 1995] for weights. */
+BRIO_API brio_status brio_tiles_alpha(brio_context *ctx, brio_tiles *t, double alpha, brio_tile_faces_fn take,
+                                      void *user, brio_tiles_alpha_stats *stats);
 
 /** Frees everything, and removes all files; NULL is accepted. */
 BRIO_API void brio_tiles_free(brio_tiles *t);

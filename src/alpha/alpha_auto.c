@@ -9,6 +9,7 @@
 #include "alpha/alpha_complex.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/sort.h"
 #include "base/union_find.h"
 #include <math.h>
@@ -67,7 +68,7 @@ brio_status brio_alpha_auto_of(brio_context *ctx, const brio_alpha_complex *comp
     }
     BRIO_REQUIRE(ctx, *alpha < INFINITY, BRIO_BECAUSE(ctx, SCALE, BRIO_ERR_NO_ANSWER),
                  "the squared radii of one solid are beyond doubles: scale the points down");
-    BRIO_TRY(brio_refuse_small_alpha(ctx, complex, *alpha));
+    BRIO_TRY(brio_refuse_small_alpha(ctx, brio_greatest(complex->values[0], complex->counts[0]), *alpha));
 done:
     brio_release(ctx, order);
     brio_release(ctx, g.set);

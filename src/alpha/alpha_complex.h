@@ -26,9 +26,10 @@ static inline size_t brio_count_singular(const brio_alpha_complex *c, int dimens
     return count;
 }
 
-/** Tetrahedra of which one of each class of translates counts. Points are numbered in lexicographic order, so that a
- *  simplex begins with its least vertex. It counts if that vertex is own. All tetrahedra at own points are there, and
- *  mates across facets that have an own point; other mates are the facet itself. */
+/** Tetrahedra of which one of each class of translates counts, or those of a part of space. Points are numbered in an
+ *  order that all classes, or all parts, share, so that a simplex begins with its least vertex. It counts if that
+ *  vertex is own. All tetrahedra at own points are there, and mates across facets that have an own point; other mates
+ *  are the facet itself. */
 typedef struct brio_alpha_input {
     brio_tetrahedron *tet; /* finite ones first; not changed */
     size_t num_finite, count;
@@ -36,6 +37,11 @@ typedef struct brio_alpha_input {
     size_t num_points;
     const uint8_t *own; /* #points */
 } brio_alpha_input;
+
+/** Finds the values of all tetrahedra of the input, of facets and edges that have an own point, and of own vertices. Of
+ *  these, tetrahedra, facets and edges that count have the values of the whole complex; of the others, values may be
+ *  greater.   out  without a triangulation; freed with brio_alpha_complex_free.   Returns as brio_alpha_values. */
+brio_status brio_alpha_of_stars(brio_context *ctx, const brio_alpha_input *input, brio_alpha_complex *out);
 
 /** Finds the values of the simplices that count. Simplices that are translates have values of the same bits, if all
  *  differences of coordinates are exact.   out  without a triangulation; freed with brio_alpha_complex_free.
@@ -54,7 +60,8 @@ brio_status brio_alpha_auto_of(brio_context *ctx, const brio_alpha_complex *comp
 
 /** Refuses an alpha closer to 0 than the least normal double: squared radii have few bits or none there, and those that
  *  differ become equal. Accepts any alpha where a vertex has a value that is not so small: weights do that.
+ *  greatest  of the absolute values of vertices.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER. */
-brio_status brio_refuse_small_alpha(brio_context *ctx, const brio_alpha_complex *complex, double alpha);
+brio_status brio_refuse_small_alpha(brio_context *ctx, double greatest, double alpha);
 
 #endif

@@ -10,6 +10,7 @@
 #include "alpha/alpha_complex.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/versioned.h"
 #include "mesh/split_vertices.h"
 #include "triangulation/view.h"
@@ -147,7 +148,8 @@ static brio_status make_surface(shape *s, const double *points) {
     count_all(s);
     BRIO_EXPECT(s->ctx, s->stats.tetrahedra > 0, BRIO_BECAUSE(s->ctx, NO_VALUE, BRIO_ERR_NO_ANSWER),
                 "no tetrahedron has a value of at most alpha = %g", s->alpha);
-    BRIO_FORWARD(brio_refuse_small_alpha(s->ctx, s->complex, s->alpha));
+    double greatest = brio_greatest(s->complex->values[0], s->complex->counts[0]);
+    BRIO_FORWARD(brio_refuse_small_alpha(s->ctx, greatest, s->alpha));
     BRIO_FORWARD(list_faces(s));
     BRIO_FORWARD(place_vertices(s, points));
     BRIO_FORWARD(brio_mesh_split_sheets(s->ctx, s->mesh));

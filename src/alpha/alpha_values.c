@@ -292,16 +292,25 @@ static void keep_own(const evaluation *e) {
     assert(c->counts[0] + c->counts[2] == c->counts[1] + c->counts[3]); /* Euler: space that repeats */
 }
 
-brio_status brio_alpha_of_classes(brio_context *ctx, const brio_alpha_input *in, brio_alpha_complex *out) {
-    brio_status status = BRIO_OK;
-    *out = (brio_alpha_complex){.size = sizeof *out, .context = ctx};
+static evaluation evaluation_of(brio_context *ctx, const brio_alpha_input *in, brio_alpha_complex *out) {
     evaluation e = {.ctx = ctx, .num_finite = in->num_finite, .num_points = in->num_points, .own = in->own, .out = out};
     e.t = (brio_tetrahedra){.tet = in->tet, .count = in->count, .infinite = BRIO_INFINITE};
-    BRIO_TRY(find_values(&e, in->points, in->weights));
-    keep_own(&e);
-done:
+    return e;
+}
+
+brio_status brio_alpha_of_stars(brio_context *ctx, const brio_alpha_input *in, brio_alpha_complex *out) {
+    *out = (brio_alpha_complex){.size = sizeof *out, .context = ctx};
+    evaluation e = evaluation_of(ctx, in, out);
+    brio_status status = find_values(&e, in->points, in->weights);
     if (status != BRIO_OK) brio_alpha_complex_free(out);
     return status;
+}
+
+brio_status brio_alpha_of_classes(brio_context *ctx, const brio_alpha_input *in, brio_alpha_complex *out) {
+    BRIO_FORWARD(brio_alpha_of_stars(ctx, in, out));
+    const evaluation e = evaluation_of(ctx, in, out);
+    keep_own(&e);
+    return BRIO_OK;
 }
 
 brio_status brio_alpha_values(brio_context *ctx, const brio_triangulation *t, const double *points,

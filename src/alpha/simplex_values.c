@@ -217,8 +217,8 @@ brio_status brio_find_vertex_values(brio_context *ctx, brio_alpha_complex *c, co
     return BRIO_OK;
 }
 
-brio_status brio_refuse_small_alpha(brio_context *ctx, const brio_alpha_complex *c, double alpha) {
-    if (fabs(alpha) >= DBL_MIN || brio_greatest(c->values[0], c->counts[0]) >= DBL_MIN) return BRIO_OK;
+brio_status brio_refuse_small_alpha(brio_context *ctx, double greatest, double alpha) {
+    if (fabs(alpha) >= DBL_MIN || greatest >= DBL_MIN) return BRIO_OK;
     BRIO_EXPECT(ctx, false, BRIO_BECAUSE(ctx, SCALE, BRIO_ERR_NO_ANSWER),
                 "squared radii of at most alpha = %g are beyond doubles: scale the points up", alpha);
     return BRIO_OK;

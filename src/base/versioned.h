@@ -35,6 +35,7 @@
 #define BRIO_FIRST_brio_dynamic_stats          exact_calls
 #define BRIO_FIRST_brio_evidence               origin_of
 #define BRIO_FIRST_brio_failure                bytes
+#define BRIO_FIRST_brio_faces_part             faces
 #define BRIO_FIRST_brio_file_facts             version
 #define BRIO_FIRST_brio_generate_options       reserved_int
 #define BRIO_FIRST_brio_interpolation          components
@@ -44,6 +45,8 @@
 #define BRIO_FIRST_brio_mesh_offset_stats      error
 #define BRIO_FIRST_brio_mesh_simplify_options  reserved_int
 #define BRIO_FIRST_brio_outliers_options       factor
+#define BRIO_FIRST_brio_parts_options          high
+#define BRIO_FIRST_brio_parts_stats            scratch_bytes
 #define BRIO_FIRST_brio_periodic_options       reserved_int
 #define BRIO_FIRST_brio_page_layer             report
 #define BRIO_FIRST_brio_page_options           reserved_int
@@ -62,6 +65,7 @@
 #define BRIO_FIRST_brio_surface_stats          rounding
 #define BRIO_FIRST_brio_periodic_shape_stats   volume
 #define BRIO_FIRST_brio_tile_part              num_tetrahedra
+#define BRIO_FIRST_brio_tiles_alpha_stats      singular_facets
 #define BRIO_FIRST_brio_tiles_options          key
 #define BRIO_FIRST_brio_ranks_options          key
 #define BRIO_FIRST_brio_transport              end

@@ -22,9 +22,10 @@ typedef struct {
     uint64_t count_at; /* the byte at which the number of vertices is to be written, or 0 */
 } ply_writer;
 
+/* Returns the most corners of a face: of triangles that are only announced, 3. */
 static size_t most_corners(const brio_mesh *m) {
-    size_t most = 0;
-    for (size_t f = 0; f < m->num_faces; f++) {
+    size_t most = m->face_offsets ? 0 : 3;
+    for (size_t f = 0; m->face_offsets && f < m->num_faces; f++) {
         size_t corners = (size_t)(m->face_offsets[f + 1] - m->face_offsets[f]);
         if (corners > most) most = corners;
     }

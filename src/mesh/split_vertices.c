@@ -72,9 +72,7 @@ static bool is_met_first(const brio_mesh *m, uint32_t h, uint32_t g, uint32_t ot
     return side_of_apex(m, g, other) > 0; /* g and h have opposite directions */
 }
 
-/* Returns the half-edge in the ring of h across the inside wedge of h or, with inside false, across its outside
- * wedge. */
-static uint32_t wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t h, bool inside) {
+uint32_t brio_wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t h, bool inside) {
     const uint32_t *v = m->face_vertices;
     uint32_t partner = h;
     for (uint32_t g = ring[h]; g != h; g = ring[g])
@@ -82,22 +80,16 @@ static uint32_t wedge_partner(const brio_mesh *m, const uint32_t *ring, uint32_t
     return partner;
 }
 
-/* Splits rings of more than two half-edges into pairs that share a wedge. Uses inside wedges when `outside` is NULL.
- * Otherwise uses outside wedges at one edge per vertex, and inside wedges at the other edges.   partner  #corners of
- * work space;   outside  #V, zeroed, or NULL.   Returns whether such rings exist. */
-static bool pair_wedges(const brio_mesh *m, uint32_t *ring, uint32_t *partner, uint8_t *outside) {
+/* Splits rings of more than two half-edges into pairs that share an inside wedge, or with `inside` false an outside
+ * one.
+ * partner  #corners of work space.   Returns whether such rings exist. */
+static bool pair_wedges(const brio_mesh *m, uint32_t *ring, uint32_t *partner, bool inside) {
     size_t corners = 3 * m->num_faces;
     bool any = false;
-    for (uint32_t h = 0; h < corners; h++) partner[h] = ring[h];
     for (uint32_t h = 0; h < corners; h++) {
-        if (ring[ring[h]] == h || ring[h] > h) continue; /* once for each ring, at its last half-edge */
-        uint32_t a = m->face_vertices[h], b = m->face_vertices[next_corner(h)];
-        bool inside = !outside || outside[a] || outside[b];
-        if (!inside) outside[a] = outside[b] = 1;
-        uint32_t g = h;
-        do partner[g] = wedge_partner(m, ring, g, inside);
-        while ((g = ring[g]) != h);
-        any = true;
+        bool paired = ring[ring[h]] == h;
+        partner[h] = paired ? ring[h] : brio_wedge_partner(m, ring, h, inside);
+        any |= !paired;
     }
     for (uint32_t h = 0; h < corners; h++) ring[h] = partner[partner[h]] == h ? partner[h] : h;
     return any;
@@ -177,26 +169,28 @@ done:
 
 /* Splits vertices where sheets touch. After pairing across inside wedges, two sheets may still be connected round both
  * ends of an edge, which then stays one edge of four faces. There the fan of each end passes the edge twice. Pairing
- * across the outside wedges instead splits that fan in two. */
+ * across the outside wedges of all such edges instead splits these fans.
+ *
+ * Once is enough. On a small sphere round a vertex a fan is a closed curve without crossings, and the inside that it
+ * bounds lies at one side of it. Where it passes an edge twice, it comes near itself from its other side. There these
+ * places are chords of a disk, which do not cross. A cut at a chord makes two curves of one, and the chord lies
+ * between them, whatever other chords are cut. So no fan passes one of these edges twice any more, at either end; and
+ * a fan that passed an edge once at one end goes on to do so. Which edges they are depends on the faces alone, so the
+ * result does not depend on their order. */
 brio_status brio_mesh_split_sheets(brio_context *ctx, brio_mesh *m) {
     brio_status status = BRIO_OK;
     uint32_t *ring = NULL, *partner = NULL;
-    uint8_t *outside = NULL;
     bool touch = true;
     BRIO_TRY(BRIO_ALLOC(ctx, partner, 3 * m->num_faces));
-    for (size_t vertices = SIZE_MAX; touch && vertices != m->num_vertices;) {
-        vertices = outside ? m->num_vertices : SIZE_MAX;
+    for (int pass = 0; touch && pass < 2; pass++) {
         BRIO_TRY(brio_edge_rings(ctx, m, &ring));
-        touch = pair_wedges(m, ring, partner, outside);
+        touch = pair_wedges(m, ring, partner, pass == 0);
         BRIO_TRY(split_fans(ctx, m, ring));
         brio_release(ctx, ring);
-        brio_release(ctx, outside);
         ring = NULL;
-        BRIO_TRY(BRIO_ALLOC_ZERO(ctx, outside, m->num_vertices));
     }
 done:
     brio_release(ctx, ring);
     brio_release(ctx, partner);
-    brio_release(ctx, outside);
     return status;
 }

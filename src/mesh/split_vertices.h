@@ -20,4 +20,9 @@ brio_status brio_mesh_cut_apart(brio_context *ctx, brio_mesh *mesh);
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY. */
 brio_status brio_mesh_split_sheets(brio_context *ctx, brio_mesh *mesh);
 
+/** Returns the half-edge in the ring of h across the inside wedge of h or, with inside false, across its outside wedge;
+ *  h itself where no face of the ring runs the other way. The mesh is of triangles, with positions.
+ *  ring  as of brio_edge_rings. */
+uint32_t brio_wedge_partner(const brio_mesh *mesh, const uint32_t *ring, uint32_t h, bool inside);
+
 #endif

@@ -12,6 +12,7 @@
 #include "alpha/alpha_complex.h"
 #include "base/float_state.h"
 #include "base/memory.h"
+#include "base/scale.h"
 #include "base/union_find.h"
 #include "base/vector.h"
 #include "base/versioned.h"
@@ -291,7 +292,7 @@ static brio_status make_surface(shape *s) {
     s->stats.singular_facets = brio_count_singular(s->complex, 2, s->alpha);
     BRIO_EXPECT(s->ctx, s->stats.tetrahedra > 0, BRIO_BECAUSE(s->ctx, NO_VALUE, BRIO_ERR_NO_ANSWER),
                 "no tetrahedron has a value of at most alpha = %g", s->alpha);
-    BRIO_FORWARD(brio_refuse_small_alpha(s->ctx, c, s->alpha));
+    BRIO_FORWARD(brio_refuse_small_alpha(s->ctx, brio_greatest(c->values[0], c->counts[0]), s->alpha));
     BRIO_FORWARD(list_faces(s));
     BRIO_FORWARD(join_faces(s));
     BRIO_FORWARD(count_surface(s));

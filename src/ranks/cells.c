@@ -2,72 +2,15 @@
  * its halos, and the sums.
  *
  * The volume of all cells is summed exactly, as a whole number of 2^-1074, and rounded once. So it is the same for
- * every number of ranks and tiles.
- *
- * Based on: Kulisch, Miranker. The arithmetic of the digital computer: a new approach. SIAM Review 1986 (one long
- *           accumulator). */
+ * every number of ranks and tiles. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
+#include "certificate/exact_sum.h"
 #include "ranks/work.h"
 #include "tiles/cells.h"
 #include <math.h>
 #include <string.h>
-
-/* --- exact sums --- */
-
-enum { DIGITS = 68, CARRY_AFTER = 1 << 30, LEAST_EXPONENT = -1074 };
-
-/* A sum of doubles that are not negative: the digits of a whole number to the base 2^32, the least one first. A term
- * adds less than 2^33 to a digit, so that CARRY_AFTER terms stay below 2^63. */
-typedef struct {
-    uint64_t digit[DIGITS];
-    uint64_t terms;    /* since the last carry */
-    uint64_t infinite; /* terms that are no finite numbers */
-} exact_sum;
-
-static void carry(exact_sum *s) {
-    uint64_t rest = 0;
-    for (int i = 0; i < DIGITS; i++) {
-        rest += s->digit[i];
-        s->digit[i] = rest & UINT32_MAX;
-        rest >>= 32;
-    }
-    s->terms = 0;
-}
-
-static void add_term(exact_sum *s, double x) {
-    int exponent;
-    if (!isfinite(x)) s->infinite++;
-    if (!isfinite(x) || !(x > 0)) return;
-    uint64_t mantissa = (uint64_t)ldexp(frexp(x, &exponent), 53);
-    int at = exponent - 53 - LEAST_EXPONENT;
-    if (at < 0) mantissa >>= -at, at = 0; /* of a subnormal number: these bits are 0 */
-    uint64_t low = (mantissa & UINT32_MAX) << at % 32, high = (mantissa >> 32) << at % 32;
-    uint64_t *digit = s->digit + at / 32;
-    digit[0] += low & UINT32_MAX;
-    digit[1] += (low >> 32) + (high & UINT32_MAX);
-    digit[2] += high >> 32;
-    if (++s->terms == CARRY_AFTER) carry(s);
-}
-
-static void add_sum(exact_sum *to, const exact_sum *from) {
-    for (int i = 0; i < DIGITS; i++) to->digit[i] += from->digit[i];
-    to->infinite += from->infinite;
-    carry(to);
-}
-
-/* Returns the sum, rounded to the nearest double. The last carry was made. */
-static double rounded(const exact_sum *s) {
-    int top = DIGITS - 1, bits = 0;
-    while (top > 1 && !s->digit[top]) top--;
-    while (bits < 32 && s->digit[top] >> bits) bits++;
-    uint64_t third = top > 1 ? s->digit[top - 2] : 0, rest = bits ? third << (64 - bits) : 0;
-    uint64_t high = (s->digit[top] << 32 | s->digit[top - 1]) << (32 - bits) | third >> bits;
-    for (int i = 0; i < top - 2; i++) rest |= s->digit[i];
-    double sum = ldexp((double)(high | (rest != 0)), 32 * (top - 1) - (32 - bits) + LEAST_EXPONENT);
-    return s->infinite ? INFINITY : sum;
-}
 
 /* --- the cells of a rank --- */
 
@@ -76,7 +19,7 @@ typedef struct {
     brio_tile_cells_fn take; /* NULL: nobody */
     void *user;
     brio_tiles_cells_stats stats;
-    exact_sum volume;
+    brio_exact_sum volume;
     double lost; /* not used */
     const brio_set_point *halo;
 } cell_run;
@@ -85,7 +28,7 @@ static brio_status take_cells(void *user, brio_cells *cells, const uint64_t *sit
     cell_run *c = user;
     brio_tile_cells_count(cells, &c->stats, &c->lost);
     for (size_t i = 0; i < cells->num_cells; i++)
-        if (cells->bounded[i]) add_term(&c->volume, cells->volume[i]);
+        if (cells->bounded[i]) brio_exact_add(&c->volume, cells->volume[i]);
     if (!c->take) return BRIO_OK;
     BRIO_EXPECT(c->r->ctx, !c->take(cells, site, c->user), BRIO_ERR_CANCELLED,
                 "cells: the caller's function ended the run");
@@ -125,15 +68,15 @@ done:
 
 typedef struct {
     brio_tiles_cells_stats stats;
-    exact_sum volume;
+    brio_exact_sum volume;
 } share;
 
 static brio_status add_shares(cell_run *c, const brio_cells_options *o) {
     brio_ranks *r = c->r;
     share s = {c->stats, c->volume};
     brio_tiles_cells_stats all = {.size = sizeof all, .region_volume = INFINITY};
-    exact_sum volume = {.terms = 0};
-    carry(&s.volume);
+    brio_exact_sum volume = {.terms = 0};
+    brio_exact_carry(&s.volume);
     BRIO_FORWARD(brio_exchange_all(&r->x, &s, sizeof s));
     for (int i = 0; i < r->ranks; i++) {
         memcpy(&s, r->x.from[i]->bytes, sizeof s);
@@ -142,9 +85,9 @@ static brio_status add_shares(cell_run *c, const brio_cells_options *o) {
         all.faces += s.stats.faces;
         all.outside += s.stats.outside;
         all.region_volume = fmin(all.region_volume, s.stats.region_volume);
-        add_sum(&volume, &s.volume);
+        brio_exact_add_sum(&volume, &s.volume);
     }
-    all.volume_sum = rounded(&volume);
+    all.volume_sum = brio_exact_rounded(&volume);
     if (!all.cells) BRIO_FORWARD(brio_tile_region(r->ctx, o, &all.region_volume));
     BRIO_FORWARD(brio_tile_cells_check(r->ctx, &all));
     r->cells = all;

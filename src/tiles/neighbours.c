@@ -11,12 +11,10 @@
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/sort.h"
+#include "store/row_files.h"
 #include "tiles/work.h"
 #include "triangulation/tetrahedra.h"
-#include <stdio.h>
 #include <string.h>
-
-enum { WAITING = 1 << 14, ALL_WAITING = 1 << 22, LEAST_WAITING = 1 << 10 /* bytes for a file. Chosen */ };
 
 enum { MOST_TETRAHEDRA = 1 << 30 }; /* of a tile: a facet is 4 * tetrahedron + slot, in 32 bits */
 
@@ -90,72 +88,6 @@ done:
     return status;
 }
 
-/* --- files that rows are divided into --- */
-
-typedef struct {
-    brio_store_file file;
-    uint8_t *bytes;
-    size_t size;
-} tray;
-
-typedef struct {
-    brio_tiles *t;
-    tray *tray; /* one for each tile */
-    size_t room;
-} trays;
-
-static brio_status open_trays(brio_tiles *t, const char *name, trays *out) {
-    size_t share = ALL_WAITING / t->num_tiles;
-    *out = (trays){.t = t, .room = share < LEAST_WAITING ? LEAST_WAITING : share < WAITING ? share : WAITING};
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, out->tray, t->num_tiles));
-    for (uint32_t i = 0; i < t->num_tiles; i++) out->tray[i].file.file = -1;
-    for (uint32_t i = 0; i < t->num_tiles; i++) {
-        char full[32];
-        snprintf(full, sizeof full, "%s-%u", name, i);
-        BRIO_FORWARD(brio_store_create(&t->folder, full, &out->tray[i].file));
-        brio_store_shut(&out->tray[i].file);
-        BRIO_FORWARD(BRIO_ALLOC(t->ctx, out->tray[i].bytes, out->room));
-    }
-    return BRIO_OK;
-}
-
-static brio_status flush(tray *tr) {
-    brio_status status = brio_store_append(&tr->file, tr->bytes, tr->size);
-    tr->size = 0;
-    return status;
-}
-
-static brio_status put(trays *all, uint32_t into, const void *row, size_t size) {
-    tray *tr = &all->tray[into];
-    if (tr->size + size > all->room) BRIO_FORWARD(flush(tr));
-    memcpy(tr->bytes + tr->size, row, size);
-    tr->size += size;
-    return BRIO_OK;
-}
-
-static void close_trays(trays *all) {
-    for (uint32_t i = 0; all->tray && i < all->t->num_tiles; i++) {
-        brio_store_close(&all->tray[i].file);
-        brio_release(all->t->ctx, all->tray[i].bytes);
-    }
-    if (all->t) brio_release(all->t->ctx, all->tray);
-}
-
-/* Reads a whole file of rows.   rows  receives them, the caller's. */
-static brio_status read_rows(brio_tiles *t, const char *name, size_t size, void **rows, size_t *count) {
-    brio_store_file f = {.file = -1};
-    brio_status status = BRIO_OK;
-    uint8_t *bytes = NULL;
-    BRIO_TRY(brio_store_open(&t->folder, name, &f));
-    *count = (size_t)(f.size / size);
-    BRIO_TRY(BRIO_ALLOC(t->ctx, bytes, *count * size + 1));
-    *rows = bytes;
-    status = brio_store_read(&f, 0, bytes, *count * size);
-done:
-    brio_store_close(&f);
-    return status;
-}
-
 /* --- facets without a neighbour in their part --- */
 
 typedef struct {
@@ -179,7 +111,7 @@ static lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t
 }
 
 /* Puts the lone facets of a tile into the files. */
-static brio_status put_lone(brio_tiles *t, uint32_t tile, trays *all) {
+static brio_status put_lone(brio_tiles *t, uint32_t tile, brio_row_files *all) {
     brio_tile_part p = {.size = sizeof p};
     brio_tile_neighbour(*neighbours)[4] = NULL;
     brio_status status = BRIO_OK;
@@ -190,7 +122,7 @@ static brio_status put_lone(brio_tiles *t, uint32_t tile, trays *all) {
         if (neighbours[f / 4][f % 4].tile != BRIO_NO_TILE) continue;
         lone_facet l = lone_facet_of(&p, tile, (uint32_t)f);
         uint64_t hash = brio_mix(l.index[0] ^ brio_mix(l.index[1] ^ brio_mix(l.index[2])));
-        BRIO_TRY(put(all, (uint32_t)(hash % t->num_tiles), &l, sizeof l));
+        BRIO_TRY(brio_row_files_put(all, (uint32_t)(hash % t->num_tiles), &l, sizeof l));
     }
 done:
     brio_tile_part_free(t->ctx, &p);
@@ -206,12 +138,12 @@ static int compare_lone(uint32_t i, uint32_t j, const void *user) {
 }
 
 /* Tells each side of the pairs of a file the other one.   *alone  grows by the facets that have no other side. */
-static brio_status answer_pairs(brio_tiles *t, const char *name, trays *all, uint64_t *alone) {
+static brio_status answer_pairs(brio_tiles *t, uint32_t file, brio_row_files *all, uint64_t *alone) {
     lone_facet *l = NULL;
     uint32_t *row = NULL;
     size_t n = 0;
     brio_status status = BRIO_OK;
-    BRIO_TRY(read_rows(t, name, sizeof *l, (void **)&l, &n));
+    BRIO_TRY(brio_row_files_read(&t->folder, "lone", file, sizeof *l, (void **)&l, &n));
     BRIO_REQUIRE(t->ctx, n <= UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu facets between tiles in a file: take more tiles", n);
     BRIO_TRY(BRIO_ALLOC(t->ctx, row, n + 1));
     *alone += n;
@@ -221,8 +153,10 @@ static brio_status answer_pairs(brio_tiles *t, const char *name, trays *all, uin
         const lone_facet *a = &l[row[i - 1]], *b = &l[row[i]];
         if (compare_lone(row[i - 1], row[i], l)) continue;
         *alone -= 2;
-        BRIO_TRY(put(all, a->tile, &(answer){a->facet, {b->tile, brio_tet_of(b->facet)}}, sizeof(answer)));
-        BRIO_TRY(put(all, b->tile, &(answer){b->facet, {a->tile, brio_tet_of(a->facet)}}, sizeof(answer)));
+        BRIO_TRY(
+            brio_row_files_put(all, a->tile, &(answer){a->facet, {b->tile, brio_tet_of(b->facet)}}, sizeof(answer)));
+        BRIO_TRY(
+            brio_row_files_put(all, b->tile, &(answer){b->facet, {a->tile, brio_tet_of(a->facet)}}, sizeof(answer)));
     }
 done:
     brio_release(t->ctx, l);
@@ -231,46 +165,40 @@ done:
 }
 
 static brio_status divide_lone(brio_tiles *t) {
-    trays lone = {0};
+    brio_row_files lone = {0};
     brio_status status = BRIO_OK;
-    BRIO_TRY(open_trays(t, "lone", &lone));
+    BRIO_TRY(brio_row_files_open(&t->folder, "lone", t->num_tiles, &lone));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 * i / t->num_tiles));
         BRIO_TRY(put_lone(t, i, &lone));
     }
-    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(flush(&lone.tray[i]));
+    BRIO_TRY(brio_row_files_flush(&lone));
 done:
-    close_trays(&lone);
+    brio_row_files_close(&lone);
     return status;
 }
 
 static brio_status join_lone(brio_tiles *t) {
-    trays joined = {0};
+    brio_row_files joined = {0};
     uint64_t alone = 0;
     brio_status status = BRIO_OK;
-    BRIO_TRY(open_trays(t, "joined", &joined));
+    BRIO_TRY(brio_row_files_open(&t->folder, "joined", t->num_tiles, &joined));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "lone-%u", i);
         BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 + 0.1 * i / t->num_tiles));
-        BRIO_TRY(answer_pairs(t, name, &joined, &alone));
-        brio_store_remove(&t->folder, name);
+        BRIO_TRY(answer_pairs(t, i, &joined, &alone));
+        brio_row_files_remove(&t->folder, "lone", i);
     }
-    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(flush(&joined.tray[i]));
+    BRIO_TRY(brio_row_files_flush(&joined));
     BRIO_REQUIRE(t->ctx, alone == t->stats.hull_facets, BRIO_ERR_OPEN,
                  "%s: files were changed from outside: %llu facets of %llu on the hull", t->folder.path,
                  (unsigned long long)alone, (unsigned long long)t->stats.hull_facets);
 done:
-    close_trays(&joined);
+    brio_row_files_close(&joined);
     return status;
 }
 
 static void remove_files(brio_tiles *t, const char *name) {
-    for (uint32_t i = 0; i < t->num_tiles; i++) {
-        char full[32];
-        snprintf(full, sizeof full, "%s-%u", name, i);
-        brio_store_remove(&t->folder, full);
-    }
+    for (uint32_t i = 0; i < t->num_tiles; i++) brio_row_files_remove(&t->folder, name, i);
 }
 
 /* Finds all neighbours that are of another tile. After a failure its files give their room back. */
@@ -291,13 +219,11 @@ static brio_status take_answers(brio_tiles *t, uint32_t tile, const brio_tile_pa
     answer *a = NULL;
     size_t n = 0;
     brio_status status = BRIO_OK;
-    char name[32];
-    snprintf(name, sizeof name, "joined-%u", tile);
-    BRIO_TRY(read_rows(t, name, sizeof *a, (void **)&a, &n));
+    BRIO_TRY(brio_row_files_read(&t->folder, "joined", tile, sizeof *a, (void **)&a, &n));
     for (size_t i = 0; i < n; i++) {
         uint32_t tet = brio_tet_of(a[i].facet);
         BRIO_REQUIRE(t->ctx, tet < p->num_tetrahedra && a[i].neighbour.tile < t->num_tiles, BRIO_ERR_OPEN,
-                     "%s/%s was changed from outside", t->folder.path, name);
+                     "%s/joined-%u was changed from outside", t->folder.path, tile);
         neighbours[tet][brio_slot_of(a[i].facet)] = a[i].neighbour;
     }
 done:

@@ -364,6 +364,8 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
         BRIO_TRY(triangulate(t, bar));
     }
     brio_tiles_add_facts(t);
+    if (t->stats.points) memcpy(t->stats.low, t->all.low, sizeof t->stats.low);
+    if (t->stats.points) memcpy(t->stats.high, t->all.high, sizeof t->stats.high);
     t->has_result = true;
     t->stats.triangulate_seconds = brio_seconds() - start;
 done:

@@ -8,8 +8,8 @@
 
 #include "brio/tiles.h"
 #include "completion/completion.h"
+#include "store/store.h"
 #include "tiles/cuts.h"
-#include "tiles/store.h"
 
 enum {
     TILE_BLOCK = 128,    /* points in a block, at most. Chosen: tiles.md */

@@ -27,7 +27,7 @@ OWN_OPTIONS = {
     "offset": ["--distance", "--error", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",
                "--vertex-normals", "--self-intersections"],
     "hull": ["--polygons", "--order", "--block-size", "--round-ratio"],
-    "alpha": ["--alpha", "--filtration", "--weights", "--weights-mod", "--unweighted", "--cell", "--periodic"],
+    "alpha": ["--alpha", "--filtration", "--weights", "--weights-mod", "--unweighted", "--cell", "--periodic", "--tiles"],
     "check": ["--weights", "--weights-mod", "--unweighted", "--open", "--self-intersections", "--samples"],
     "compare": ["--samples", "--within"],
     "info": [], "view": ["--self-intersections", "--side-by-side", "--points", "--exact", "--title"],

@@ -49,6 +49,7 @@ RUNS = {
     "hull {p} -o {o}.ply": ("3000000", r"no points, so no convex hull"),
     "alpha {p} --alpha auto -o {o}.ply": ("3333333", r"of dimension -?\d have no tetrahedra, so no alpha complex"),
     "alpha {p} --alpha 1 -o {o}.ply": ("3333333", r"of dimension -?\d have no tetrahedra, so no alpha complex"),
+    "alpha {p} --alpha 1 --tiles 2 --scratch {d} -o {o}.pvtp": ("3333333", r"of dimension -?\d have no tetrahedra, so no alpha complex"),
     "surface {p} -o {o}.ply": ("3333333", SOLID),
     "surface {p} --curves -o {o}.ply": ("3000003", SOLID),
     "tree {p} -o {o}.ply": ("0000000", None),

@@ -54,6 +54,72 @@ class Tiles(CliTest):
         self.same(self.path("w.csv"), "--unweighted")
         self.same(self.path("a.csv"), "--weights-mod", "-9")
 
+    def shapes(self, *arguments, tiles=3):
+        """Compares alpha shapes: the reports, and the faces by the points of the input. Returns the report."""
+        plain = self.facts("alpha", *arguments, "-o", self.path("whole.ply"))
+        tiled = self.facts("alpha", *arguments, "--tiles", str(tiles), "--scratch", self.scratch(), "-o", self.path("tiled.ply"))
+        self.assertEqual(os.listdir(self.scratch()), [])
+        for report in (plain, tiled):
+            for key in ("area", "volume"):
+                report["certificate"][key] = "%.11g" % report["certificate"][key]
+        for report in (plain, tiled):
+            report.update(report.pop("internals", {}))
+        same = "alpha radius samples simplices tetrahedra vertices faces split uncovered singular_vertices singular_edges singular_facets certificate".split()
+        self.assertEqual({key: plain[key] for key in same}, {key: tiled[key] for key in same})
+        self.assertEqual(self.placed_faces("whole.ply"), self.placed_faces("tiled.ply"))
+        return tiled
+
+    def placed_faces(self, name):
+        """Faces of a PLY file by the places of their vertices, each from its least one on, sorted."""
+        self.expect(0, "convert", self.path(name), self.path("text.off"))
+        with open(self.path("text.off"), encoding="ascii") as f:
+            words = [word for line in f if not line.startswith("#") for word in line.split()]
+        n, m = int(words[1]), int(words[2])
+        places = [tuple(words[4 + 3 * i:7 + 3 * i]) for i in range(n)]
+        rest = words[4 + 3 * n:]
+        faces = []
+        for i in range(m):
+            face = [places[int(v)] for v in rest[4 * i + 1:4 * i + 4]]
+            first = face.index(min(face))
+            faces.append(tuple(face[first:] + face[:first]))
+        return sorted(faces)
+
+    def test_alpha_shapes_are_those_without_tiles(self):
+        facts = self.shapes(self.rows("a.csv", 3000), "--alpha", "0.05", tiles=5)
+        self.assertEqual(facts["tiles"], 5)
+        self.assertGreater(facts["split"], 0)
+        self.shapes(self.rows("w.csv", 3000, weight=True), "--alpha", "0.03", tiles=4)
+        self.shapes(self.path("w.csv"), "--unweighted", "--alpha", "0.5", tiles=1)
+        with open(self.path("grid.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z\n" + "".join("%d,%d,%d\n" % (i % 9, i // 9 % 9, i // 81) for i in range(729)))
+        self.shapes(self.path("grid.csv"), "--alpha", "0.75")  # exactly the radius of each cube's sphere
+        self.shapes(self.path("grid.csv"), "--alpha", "1", "--threads", "3", tiles=7)
+
+    def test_alpha_shapes_go_to_a_file_for_each_tile(self):
+        scratch, index = self.scratch(), self.path("shape.pvtp")
+        facts = self.facts("alpha", self.rows("a.csv", 3000), "--alpha", "0.05", "--tiles", "4", "--scratch", scratch, "-o", index)
+        pieces = [p.get("Source") for p in xml.etree.ElementTree.parse(index).iter("Piece")]
+        self.assertEqual(len(pieces), 4)
+        faces = sum(self.facts("info", self.path(piece))["faces"] for piece in pieces)
+        self.assertEqual(faces, facts["faces"])
+        first = [self.bytes_of(piece) for piece in pieces]
+        self.facts("alpha", self.path("a.csv"), "--alpha", "0.05", "--tiles", "4", "--scratch", scratch, "-o", index, "--threads", "3")
+        self.assertEqual(first, [self.bytes_of(p.get("Source")) for p in xml.etree.ElementTree.parse(index).iter("Piece")])
+        self.assertEqual(os.listdir(scratch), [])
+
+    def test_what_alpha_does_not_do_in_tiles_is_refused(self):
+        points, tiled = self.rows("a.csv", 100), ("--tiles", "2", "--scratch", self.scratch())
+        for more, sentence in ((("--alpha", "auto", "-o", "x.ply"), "--alpha auto: not with --tiles"),
+                               (("--alpha", "1", "--filtration", "f.txt"), "--filtration: not with --tiles"),
+                               (("--alpha", "1", "--view", "v.html"), "--view: not with --tiles"),
+                               (("--alpha", "1", "--cell", "9,9,9", "-o", "x.ply"), "--cell, --periodic: not with --tiles"),
+                               (("--alpha", "1", "-o", "x.stl"), r"--tiles writes \.ply, and \.pvtp"),
+                               (("--alpha", "1"), "no output: -o FILE is missing")):
+            self.assertRegex(self.expect(1, "alpha", points, *tiled, *more).err, sentence)
+        self.assertRegex(self.expect(3, "alpha", points, *tiled, "--alpha", "1e-9", "-o", self.path("x.pvtp")).err, "no tetrahedron has a value of at most alpha")
+        self.assertFalse(os.path.exists(self.path("x.pvtp")) or os.path.exists(self.path("x.part")))
+        self.assertEqual(os.listdir(self.scratch()), [])
+
     def cells(self, *arguments, tiles=3):
         """Compares tables of cells and of faces, and the report."""
         reports = {}

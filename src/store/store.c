@@ -1,5 +1,5 @@
 /* Files by system calls: see store.h. A process that is killed leaves the folder, and its lock is gone with it. */
-#include "tiles/store.h"
+#include "store/store.h"
 #include "base/memory.h"
 #include "base/rng.h"
 #include "base/team.h"

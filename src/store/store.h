@@ -1,6 +1,6 @@
 /* Files with names in a folder of their own: what has to be there when another process goes on. */
-#ifndef BRIO_TILES_STORE_H
-#define BRIO_TILES_STORE_H
+#ifndef BRIO_STORE_STORE_H
+#define BRIO_STORE_STORE_H
 
 #include "base/context.h"
 
