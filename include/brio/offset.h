@@ -29,11 +29,14 @@ typedef struct brio_mesh_offset_stats {
  *  negative distance the boundary of the points of the solid that are at least so far from its surface, sharp at convex
  *  edges and round about concave ones. The faces count, not the vertices: the mesh may be as coarse as it likes. Parts
  *  of an offset that meet are merged; parts of the solid that are too thin vanish, and so do small ones of the offset
- *  thinner than twice the error. Guarantees: closed, manifold, oriented, and free of self-intersections; the vertices
- *  are on the exact offset, up to a fiftieth of the error; the whole surface is within stats.error of it, which is
- *  proven for every triangle. The other way round, no point of a net on the exact offset, half a distance wide, is
- *  farther than twice the error from the result. The net is wider where it would have more than eight million points;
- *  what is smaller than the net may be missing. Flat parts have few triangles.
+ *  thinner than twice the error. Guarantees: closed, manifold, oriented, and free of self-intersections; where the
+ *  offset touches itself, the result is joined or apart, within the error. No two vertices are at one position, but a
+ *  fourteenth of the error from each other at least: so single precision (STL) keeps the surface a manifold where the
+ *  error is more than 3e-6 of the greatest coordinate. The vertices are on the exact offset, up to a fiftieth of the
+ *  error; the whole surface is within stats.error of it, which is proven for every triangle. The other way round, no
+ *  point of a net on the exact offset, half a distance wide, is farther than twice the error from the result. The net
+ *  is wider where it would have more than eight million points; what is smaller than the net may be missing. Flat parts
+ *  have few triangles.
  *  mesh      closed: each edge, with vertices at one position taken as one, has as many half-edges in one direction as
  *            in the other. Several components, pinched edges and overlapping pieces are allowed.
  *  distance  not 0, in the unit of the mesh.   options  NULL for the defaults.   out  owned by the caller, triangles.

@@ -111,6 +111,7 @@ done:
 brio_status brio_offset_catch(brio_offset_work *w, double spacing, double *reached, size_t *added) {
     brio_status status = BRIO_OK;
     brio_triangle_tree tree = {0};
+    brio_point_tree samples = {0};
     const brio_box *box = &w->field.solid->tree.boxes[0];
     double margin = w->field.inwards ? 0 : w->field.distance;
     net n = {.w = w, .count = 1};
@@ -129,11 +130,12 @@ brio_status brio_offset_catch(brio_offset_work *w, double spacing, double *reach
         n.last = n.side <= spacing || n.count > MOST_CELLS;
         BRIO_TRY(look(&n));
     }
-    for (size_t i = 0; i < n.num_found; i++) BRIO_TRY(brio_offset_add(w, n.found[i]));
-    *added = n.num_found;
+    if (n.num_found) BRIO_TRY(brio_point_tree_new(w->ctx, w->points, w->num_points, &samples));
+    if (n.num_found) BRIO_TRY(brio_offset_add_apart(w, &samples, (const double(*)[3])n.found, n.num_found, added));
 done:
     brio_release(w->ctx, n.found);
     brio_triangle_tree_free(w->ctx, &tree);
+    brio_point_tree_free(w->ctx, &samples);
     brio_release(w->ctx, n.cells);
     brio_release(w->ctx, n.state);
     brio_release(w->ctx, n.sample);

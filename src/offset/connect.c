@@ -19,7 +19,7 @@
 #include <string.h>
 
 enum { BATCH = 1 << 15, TETS_A_CHUNK = 16, FEW = 64 /* tetrahedra of a speck; chosen */ };
-enum { COVERED = 1, CERTAIN = 2 }; /* bits of a label */
+enum { COVERED = BRIO_OFFSET_COVERED, CERTAIN = BRIO_OFFSET_CERTAIN };
 
 static const double FINE = 0.5;  /* of the distance: side of the smallest part of a facet that is looked at; chosen */
 static const double CLEAR = 0.5; /* of the error: from the offset, where a place of a facet decides; chosen */
@@ -30,18 +30,8 @@ static const double BIAS = 0.05; /* of the error: what is so close to the offset
 /* The facets of a positive tetrahedron, counterclockwise seen from outside; facet i is opposite to vertex i. */
 static const uint8_t FACET[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
-typedef struct {
-    brio_offset_work *w;
-    const brio_tetrahedron *tet;
-    size_t count; /* finite and infinite ones */
-    uint8_t *label;
-    size_t first; /* of the batch */
-} labeler;
-
-/* The least and the greatest height over the offset that were found: negative heights are covered. */
-typedef struct {
-    double least, greatest;
-} heights;
+typedef brio_offset_labels labels;
+typedef brio_offset_heights heights;
 
 /* Adds the height of a place whose distance from the surface is known. */
 static void add_height(const brio_offset_work *w, const double *p, double distance, heights *h) {
@@ -82,10 +72,15 @@ static void look_above(const brio_offset_work *w, const double *const corner[3],
     look_above(w, (const double *const[3]){middle, b, c}, most, h);
 }
 
+/* Looks at a facet where the surface is tested. */
+static void look_at_places(const brio_offset_work *w, const double *const facet[3], heights *h) {
+    for (int i = 0; i < BRIO_OFFSET_PLACES; i++) look_at(w, facet, brio_offset_places[i], h);
+}
+
 /* Looks at a facet: at a small one where the surface is tested, at a large one everywhere. */
 static void look_at_facet(const brio_offset_work *w, const double *const facet[3], heights *h) {
     double d = w->field.distance, clear = CLEAR * w->error, size = 0, at[3];
-    for (int i = 0; i < BRIO_OFFSET_PLACES; i++) look_at(w, facet, brio_offset_places[i], h);
+    look_at_places(w, facet, h);
     for (int c = 0; c < 3; c++) size = fmax(size, brio_square_distance(facet[c], facet[(c + 1) % 3]));
     if (size < d * d) return;
     double least = sqrt(brio_triangle_distance(&w->field.solid->tree, facet, (d - clear) * (d - clear), at));
@@ -93,12 +88,29 @@ static void look_at_facet(const brio_offset_work *w, const double *const facet[3
     look_above(w, facet, clear, h);
 }
 
+static void corners_of(const brio_offset_work *w, const uint32_t *v, int facet, const double *corner[3]) {
+    for (int c = 0; c < 3; c++) corner[c] = w->points + 3 * (size_t)v[FACET[facet][c]];
+}
+
+brio_offset_heights brio_offset_heights_of(const brio_offset_work *w, const uint32_t v[4]) {
+    heights h = {0, 0};
+    const double *facet[3];
+    for (int i = 0; i < 4; i++) {
+        corners_of(w, v, i, facet);
+        look_at_places(w, facet, &h);
+    }
+    return h;
+}
+
 /* Returns the label of a tetrahedron whose centroid is close to the offset: that of the place of its facets farthest
  * from the offset. */
-static uint8_t label_of_thin(const brio_offset_work *w, const double *const corner[4], double height) {
+static uint8_t label_of_thin(const brio_offset_work *w, const uint32_t *v, double height) {
     heights h = {0, 0};
-    for (int i = 0; i < 4; i++)
-        look_at_facet(w, (const double *const[3]){corner[FACET[i][0]], corner[FACET[i][1]], corner[FACET[i][2]]}, &h);
+    const double *facet[3];
+    for (int i = 0; i < 4; i++) {
+        corners_of(w, v, i, facet);
+        look_at_facet(w, facet, &h);
+    }
     if (fmax(h.greatest, -h.least) > CLEAR * w->error) return h.greatest < -h.least ? COVERED | CERTAIN : CERTAIN;
     return height < (w->field.inwards ? -BIAS : BIAS) * w->error ? COVERED : 0;
 }
@@ -106,40 +118,43 @@ static uint8_t label_of_thin(const brio_offset_work *w, const double *const corn
 static uint8_t label_of(const brio_offset_work *w, const uint32_t *v) {
     const brio_offset_field *f = &w->field;
     double centroid[3] = {0, 0, 0}, nearest[3];
-    const double *corner[4];
     size_t triangle;
     if (v[3] == BRIO_INFINITE) return f->inwards ? COVERED | CERTAIN : CERTAIN;
-    for (int i = 0; i < 4; i++) {
-        corner[i] = w->points + 3 * (size_t)v[i];
-        for (int k = 0; k < 3; k++) centroid[k] += corner[i][k] / 4;
-    }
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 3; k++) centroid[k] += w->points[3 * (size_t)v[i] + (size_t)k] / 4;
     double far = f->distance + SURE * w->error;
     double d = sqrt(brio_closest_within(&f->solid->tree, centroid, far * far, nearest, &triangle));
     if (d < f->distance - SURE * w->error || brio_offset_is_beyond(f, centroid)) return COVERED | CERTAIN;
-    return d >= far ? CERTAIN : label_of_thin(w, corner, d - f->distance);
+    return d >= far ? CERTAIN : label_of_thin(w, v, d - f->distance);
 }
 
+typedef struct {
+    const labels *l;
+    size_t first; /* of the batch */
+} batch;
+
 static void label_part(void *user, size_t begin, size_t end, int thread) {
-    const labeler *l = user;
+    const batch *b = user;
+    const labels *l = b->l;
     (void)thread;
-    for (size_t i = l->first + begin; i < l->first + end; i++) {
+    for (size_t i = b->first + begin; i < b->first + end; i++) {
         const uint8_t *known = brio_seen_find(&l->w->labels, l->tet[i].vertex);
         l->label[i] = known ? *known : label_of(l->w, l->tet[i].vertex);
     }
 }
 
-static brio_status label_all(labeler *l) {
+static brio_status label_all(const labels *l) {
     brio_context *ctx = l->w->ctx;
-    for (l->first = 0; l->first < l->count; l->first += BATCH) {
-        size_t count = l->count - l->first < BATCH ? l->count - l->first : BATCH;
+    for (batch b = {l, 0}; b.first < l->count; b.first += BATCH) {
+        size_t count = l->count - b.first < BATCH ? l->count - b.first : BATCH;
         BRIO_FORWARD(brio_offset_progress(l->w));
-        BRIO_FORWARD(brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, l));
+        BRIO_FORWARD(brio_for_chunks(ctx, brio_threads(ctx, count, TETS_A_CHUNK), count, TETS_A_CHUNK, label_part, &b));
     }
     return BRIO_OK;
 }
 
 /* Keeps the labels for the next round. */
-static brio_status remember(labeler *l, size_t finite) {
+static brio_status remember(const labels *l, size_t finite) {
     brio_seen_free(l->w->ctx, &l->w->labels);
     BRIO_FORWARD(brio_seen_new(l->w->ctx, finite, &l->w->labels));
     for (size_t i = 0; i < finite; i++) brio_seen_add(&l->w->labels, l->tet[i].vertex, l->label[i]);
@@ -175,7 +190,7 @@ static double volume_of(const brio_offset_work *w, const uint32_t *v) {
 }
 
 /* Adds a tetrahedron to its part. */
-static void add_to_part(const labeler *l, size_t i, part *p) {
+static void add_to_part(const labels *l, size_t i, part *p) {
     p->count++;
     p->certain |= (l->label[i] & CERTAIN) != 0;
     if (l->tet[i].vertex[3] == BRIO_INFINITE) {
@@ -194,7 +209,7 @@ static bool is_speck(const brio_offset_work *w, const part *p) {
 }
 
 /* Gives specks of one label the other label. */
-static brio_status turn_specks(labeler *l, unsigned covered) {
+static brio_status turn_specks(const labels *l, unsigned covered) {
     brio_status status = BRIO_OK;
     uint32_t *parent = NULL;
     part *parts = NULL;
@@ -219,7 +234,7 @@ done:
 }
 
 /* Lists the facets between tetrahedra of the solid and others. */
-static brio_status take_boundary(const labeler *l) {
+static brio_status take_boundary(const labels *l) {
     brio_offset_work *w = l->w;
     unsigned solid = w->field.inwards ? 0 : COVERED;
     size_t n = 0;
@@ -256,7 +271,7 @@ static brio_status triangulate(brio_offset_work *w, brio_triangulation **out) {
 brio_status brio_offset_connect(brio_offset_work *w) {
     brio_status status = BRIO_OK;
     brio_triangulation *t = NULL;
-    labeler l = {.w = w};
+    labels l = {.w = w};
     brio_release(w->ctx, w->triangles);
     w->triangles = NULL;
     w->num_triangles = 0;
@@ -270,6 +285,7 @@ brio_status brio_offset_connect(brio_offset_work *w) {
     BRIO_TRY(remember(&l, stats->tetrahedra));
     BRIO_TRY(turn_specks(&l, COVERED));
     BRIO_TRY(turn_specks(&l, 0));
+    BRIO_TRY(brio_offset_untie(&l));
     BRIO_TRY(take_boundary(&l));
 done:
     brio_release(w->ctx, l.label);

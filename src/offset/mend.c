@@ -3,7 +3,6 @@
 #include "base/team.h"
 #include "base/vector.h"
 #include "offset/work.h"
-#include "query/nearest_points.h"
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +13,6 @@ static const double APART = 0.7; /* of a sample's distance from the earlier ones
 static const double NEAR =
     0.5; /* of the distance from a fault to a crease: from the crease's sample to the earlier ones;
                                     chosen: where they are nearer, the crease is not what is missing */
-static const double LEAST = 0.1; /* of the error: between samples; chosen */
 
 typedef struct {
     brio_offset_work *w;
@@ -27,6 +25,8 @@ typedef struct {
                               before */
     uint32_t *entry_sample;
     size_t entries;
+    double (*taken)[3]; /* the samples that are chosen */
+    size_t num_taken;
 } mender;
 
 static void corners_of(const brio_offset_work *w, size_t triangle, const double *corner[3]) {
@@ -42,7 +42,7 @@ static uint8_t find_sample(const mender *m, const brio_offset_fault *fault, doub
     const brio_offset_work *w = m->w;
     const brio_offset_field *f = &w->field;
     static const double other[OTHERS][3] = {{0}, {1. / 3, 1. / 3, 1. / 3}, {0.5, 0.5, 0}, {0, 0.5, 0.5}, {0.5, 0, 0.5}};
-    double nearest[3], normal[3], tolerance = BRIO_OFFSET_TOLERANCE * w->error, least = LEAST * w->error;
+    double nearest[3], normal[3], tolerance = BRIO_OFFSET_TOLERANCE * w->error, least = BRIO_OFFSET_APART * w->error;
     size_t triangle;
     const double *corner[3];
     corners_of(w, fault->triangle, corner);
@@ -78,8 +78,8 @@ static bool is_free(const mender *m, const uint32_t *corner, const double *p, do
     return true;
 }
 
-static brio_status take_kind(mender *m, uint8_t kind, size_t *added) {
-    brio_offset_work *w = m->w;
+static void take_kind(mender *m, uint8_t kind) {
+    const brio_offset_work *w = m->w;
     for (size_t i = 0; i < w->num_faults; i++) {
         const uint32_t *v = w->triangles[w->faults[i].triangle];
         if (m->kind[i] != kind || !is_free(m, v, m->sample[i], APART * m->room[i])) continue;
@@ -88,10 +88,8 @@ static brio_status take_kind(mender *m, uint8_t kind, size_t *added) {
             m->next[m->entries] = m->head[v[c]];
             m->head[v[c]] = (uint32_t)m->entries++;
         }
-        BRIO_FORWARD(brio_offset_add(w, m->sample[i]));
-        ++*added;
+        memcpy(m->taken[m->num_taken++], m->sample[i], sizeof *m->taken);
     }
-    return BRIO_OK;
 }
 
 brio_status brio_offset_mend(brio_offset_work *w, size_t *added) {
@@ -114,8 +112,10 @@ brio_status brio_offset_mend(brio_offset_work *w, size_t *added) {
         BRIO_TRY(
             brio_for_chunks(w->ctx, brio_threads(w->ctx, count, FAULTS_A_CHUNK), count, FAULTS_A_CHUNK, find_part, &m));
     }
-    BRIO_TRY(take_kind(&m, CREASE, added));
-    BRIO_TRY(take_kind(&m, SMOOTH, added));
+    BRIO_TRY(BRIO_ALLOC(w->ctx, m.taken, n));
+    take_kind(&m, CREASE);
+    take_kind(&m, SMOOTH);
+    BRIO_TRY(brio_offset_add_apart(w, &m.tree, (const double(*)[3])m.taken, m.num_taken, added));
 done:
     brio_release(w->ctx, m.sample);
     brio_release(w->ctx, m.room);
@@ -124,5 +124,6 @@ done:
     brio_release(w->ctx, m.head);
     brio_release(w->ctx, m.next);
     brio_release(w->ctx, m.entry_sample);
+    brio_release(w->ctx, m.taken);
     return status;
 }

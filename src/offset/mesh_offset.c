@@ -57,6 +57,24 @@ brio_status brio_offset_add(brio_offset_work *w, const double *p) {
     return BRIO_OK;
 }
 
+brio_status brio_offset_add_apart(brio_offset_work *w, const brio_point_tree *tree, const double (*point)[3],
+                                  size_t count, size_t *added) {
+    brio_status status = BRIO_OK;
+    uint8_t *chosen = NULL;
+    const double apart = BRIO_OFFSET_APART * w->error;
+    *added = 0;
+    BRIO_TRY(BRIO_ALLOC(w->ctx, chosen, count));
+    if (count) BRIO_TRY(brio_thin(w->ctx, point[0], count, apart, chosen, NULL));
+    for (size_t i = 0; i < count; i++) {
+        if (!chosen[i] || !(brio_nearest_square(tree, point[i], INFINITY) > apart * apart)) continue;
+        BRIO_TRY(brio_offset_add(w, point[i]));
+        ++*added;
+    }
+done:
+    brio_release(w->ctx, chosen);
+    return status;
+}
+
 /* Returns the largest of the bounds that are proven for the triangles. */
 static double worst_of(const brio_offset_work *w) {
     double worst = w->error;
@@ -116,7 +134,7 @@ static brio_status give(const brio_offset_work *w, int exponent, brio_mesh **out
     BRIO_TRY(BRIO_ALLOC(w->ctx, offsets, n + 1));
     for (size_t i = 0; i <= n; i++) offsets[i] = 3 * i;
     BRIO_TRY(brio_mesh_set_faces(*out, offsets, w->triangles[0], n));
-    BRIO_TRY(brio_mesh_split_sheets(w->ctx, *out));
+    BRIO_TRY(brio_mesh_split_vertices(w->ctx, *out));
 done:
     brio_release(w->ctx, offsets);
     return status;

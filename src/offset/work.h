@@ -4,6 +4,7 @@
 
 #include "mesh/solid.h"
 #include "base/memory.h"
+#include "query/nearest_points.h"
 
 /** A hash table from sets of four numbers to a byte. */
 typedef struct brio_seen {
@@ -92,6 +93,14 @@ brio_status brio_offset_progress(brio_offset_work *w);
 /** Adds a sample. */
 brio_status brio_offset_add(brio_offset_work *w, const double *p);
 
+/** Samples of later rounds are this share of the error from all others at least. Chosen. */
+#define BRIO_OFFSET_APART 0.1
+
+/** Adds those of some points that are so far from the samples there were, and from each other.
+ *  tree  of the samples there were.   added  receives how many. */
+brio_status brio_offset_add_apart(brio_offset_work *w, const brio_point_tree *tree, const double (*point)[3],
+                                  size_t count, size_t *added);
+
 /** Adds the points of the offset over the corners of the faces; where none of a face's corners has one, over its
  *  centroid. Points that lie close together are thinned out. */
 brio_status brio_offset_seed(brio_offset_work *w);
@@ -99,6 +108,28 @@ brio_status brio_offset_seed(brio_offset_work *w);
 /** Makes the surface through the samples: the boundary of the tetrahedra of their Delaunay triangulation that are
  *  covered. No faces where the samples span no tetrahedra. */
 brio_status brio_offset_connect(brio_offset_work *w);
+
+/** Bits of a label: of covered tetrahedra; of those that are no matter of doubt. */
+enum { BRIO_OFFSET_COVERED = 1, BRIO_OFFSET_CERTAIN = 2 };
+
+/** The tetrahedra of the samples' Delaunay triangulation, finite and infinite ones, and what they are. */
+typedef struct brio_offset_labels {
+    brio_offset_work *w;
+    const brio_tetrahedron *tet;
+    size_t count;
+    uint8_t *label;
+} brio_offset_labels;
+
+/** The least and the greatest height over the offset that were found: negative heights are covered. */
+typedef struct brio_offset_heights {
+    double least, greatest; /* at most 0, at least 0 */
+} brio_offset_heights;
+
+/** Returns the heights of the facets of a finite tetrahedron, at BRIO_OFFSET_PLACES places of each. */
+brio_offset_heights brio_offset_heights_of(const brio_offset_work *w, const uint32_t vertex[4]);
+
+/** Changes labels, where the boundary of the covered tetrahedra touches itself, so that it is a manifold. */
+brio_status brio_offset_untie(const brio_offset_labels *l);
 
 /** Lists faults of the surface's triangles, found at seven places of each. */
 brio_status brio_offset_test(brio_offset_work *w);
