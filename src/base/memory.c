@@ -17,11 +17,6 @@
 #include <errno.h>
 #include <string.h>
 
-/* Bytes from which blocks are mappings; chosen. Tests set less, so that small inputs have mappings. */
-#ifndef BRIO_MAP_FROM
-#define BRIO_MAP_FROM (1 << 20)
-#endif
-
 /* HEADER: a cache line. FRONT: the bytes before a mapped block. LEAST_FILE, SHARE: a block of
  * these bytes, and of more than one in SHARE bytes of the memory, is in a scratch file, where there are such files;
  * chosen. */

@@ -9,6 +9,11 @@
 
 #include "base/context.h"
 
+/** Bytes from which blocks are mappings; chosen. Tests set less, so that small inputs have mappings. */
+#ifndef BRIO_MAP_FROM
+#define BRIO_MAP_FROM (1 << 20)
+#endif
+
 /** Resizes a block to count elements of `size` bytes and keeps its contents; block NULL makes a new block. New bytes
  *  are not set. Returns the block. On failure sets *status, returns NULL and leaves the old block as it was. */
 void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, brio_status *status);

@@ -12,7 +12,6 @@
  * that. */
 #include "estimate/triangulation_size.h"
 #include "base/memory.h"
-#include "base/rng.h"
 #include "base/scale.h"
 #include "base/vector.h"
 #include <assert.h>
@@ -36,6 +35,9 @@ static const double GROWS = 0.1;
 /* Chosen: the power from which on a power is extrapolated. A logarithm has less at all sizes of interest; points on a
  * curve have 1, on two lines, too. */
 static const double POWER = 0.5;
+/* The points that a ball has at least for each of the ball of half its radius, where its surroundings go on: on curves
+ * 2. Between these and 1, where a ball holds all of a cluster. Chosen. */
+static const double GOES_ON = 1.5;
 
 /* A set of points. */
 typedef struct {
@@ -51,14 +53,6 @@ typedef struct {
     size_t count;
     uint32_t member[BALL_MOST];
 } ball;
-
-/* Returns point i of `count` random points, one of each of `count` equal parts of all points. */
-static size_t nth_choice(size_t i, size_t count, size_t points) {
-    assert(i < count && count > 0 && points > 0);
-    double part = (double)points / (double)count, within = (double)(brio_mix(i + 1) >> 11) * 0x1p-53;
-    size_t at = (size_t)(((double)i + within) * part);
-    return at < points ? at : points - 1;
-}
 
 static void scaled_point(const cloud *c, const double *p, double *scaled) {
     for (int k = 0; k < 3; k++) scaled[k] = p[k] * c->scale;
@@ -193,7 +187,7 @@ static brio_status count_surroundings(const cloud *c, tally *far, tally *near) {
     BRIO_TRY(BRIO_ALLOC(c->ctx, b, 1));
     for (size_t i = 0; i < BALLS && (i < FEW_BALLS || far->exact < MOST_EXACT); i++) {
         BRIO_TRY(brio_progress(c->ctx, "estimate", 0));
-        if (!find_ball(c, diagonal2, nth_choice(i, BALLS, c->count), b)) continue;
+        if (!find_ball(c, diagonal2, brio_sample_of(i, BALLS, c->count), b)) continue;
         while ((status = count_ball(c, b, b->radius2, far)) == BRIO_ERR_TOO_LARGE) b->radius2 /= 2;
         BRIO_TRY(status);
         BRIO_TRY(count_ball(c, b, b->radius2 / 4, near));
@@ -230,11 +224,12 @@ static void extrapolate(const cloud *c, const tally *far, const tally *near, bri
         return;
     }
     double ratio = far->tetrahedra / far->points, growth = ratio - near->tetrahedra / near->points;
+    bool goes_on = far->points >= GOES_ON * near->points; /* else nothing is known of larger surroundings */
     double more = log(points * far->balls / far->all) / log(far->points / near->points);
     double doubling = log(ratio / (ratio - growth)); /* of the ratio, from the near points to the far ones */
-    if (doubling > POWER * log(far->points / near->points))
+    if (goes_on && doubling > POWER * log(far->points / near->points))
         ratio *= exp(doubling * more);
-    else if (growth > GROWS * ratio)
+    else if (goes_on && growth > GROWS * ratio)
         ratio += growth * more;
     *size = (brio_triangulation_size){points * ratio, c->weights ? points * far->hidden / far->points : 0};
 }
@@ -244,19 +239,12 @@ brio_status brio_estimate_size(brio_context *ctx, const double *points, const do
     const double scale = brio_scale_to_one(brio_exponent(brio_greatest(points, 3 * num_points)));
     const cloud c = {ctx, points, weights, num_points, scale};
     tally far = {0}, near = {0};
-    int threads = ctx->threads;
-    const struct brio_experiment *experiment = ctx->experiment;
-    const brio_bar bar = brio_progress_bar(ctx);
-    ctx->threads = 1;                   /* enough for so few points */
-    ctx->experiment = NULL;             /* it is about the whole */
-    brio_progress_part(ctx, bar, 0, 0); /* the bar stands still */
+    brio_aside aside = brio_aside_begin(ctx);
     brio_status status = num_points <= ALL ? size_of_all(&c, size) : BRIO_ERR_TOO_LARGE;
     if (status == BRIO_ERR_TOO_LARGE) {
         status = count_surroundings(&c, &far, &near);
         if (status == BRIO_OK) extrapolate(&c, &far, &near, size);
     }
-    ctx->threads = threads;
-    ctx->experiment = experiment;
-    brio_progress_part(ctx, bar, 0, 1);
+    brio_aside_end(ctx, &aside);
     return status;
 }

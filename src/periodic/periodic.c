@@ -259,17 +259,22 @@ done:
     return status;
 }
 
+static brio_stars_task task_of(const brio_periodic *t, const double (*home)[3], const double *weights, size_t n,
+                               const brio_periodic_options *o) {
+    return (brio_stars_task){.lattice = &t->lattice,
+                             .home = home,
+                             .weights = weights,
+                             .num_points = n,
+                             .halo = o->halo > 0 ? o->halo : BRIO_PERIODIC_HALO,
+                             .seed = o->seed ? o->seed : BRIO_SEED};
+}
+
 static brio_status build(brio_periodic *t, const double *points, const double *weights, size_t n,
                          const brio_periodic_options *o) {
     brio_status status = BRIO_OK;
     double(*home)[3] = NULL;
     BRIO_TRY(bring_home(t, points, n, &home));
-    brio_stars_task task = {.lattice = &t->lattice,
-                            .home = (const double(*)[3])home,
-                            .weights = weights,
-                            .num_points = n,
-                            .halo = o->halo > 0 ? o->halo : BRIO_PERIODIC_HALO,
-                            .seed = o->seed ? o->seed : BRIO_SEED};
+    brio_stars_task task = task_of(t, (const double(*)[3])home, weights, n, o);
     status = brio_periodic_make(t, &task);
 done:
     brio_release(t->ctx, home);
@@ -321,19 +326,38 @@ done:
 }
 
 brio_status brio_periodic_count(brio_context *ctx, const double *points, size_t num_points,
-                                const brio_periodic_options *options, double *count) {
+                                const brio_periodic_options *options, bool flat, double *count) {
     brio_periodic_options o = {0};
     brio_status status = BRIO_OK;
     brio_periodic *t = NULL;
     double(*home)[3] = NULL;
     BRIO_TRY(begin(ctx, points, num_points, options, &o, &t));
     BRIO_TRY(bring_home(t, points, num_points, &home));
-    brio_stars_task task = {.lattice = &t->lattice,
-                            .home = (const double(*)[3])home,
-                            .num_points = num_points,
-                            .halo = o.halo > 0 ? o.halo : BRIO_PERIODIC_HALO};
+    brio_stars_task task = task_of(t, (const double(*)[3])home, NULL, num_points, &o);
+    if (flat) task.halo = INFINITY;
     *count = brio_stars_count(&task);
 done:
+    brio_release(ctx, home);
+    brio_periodic_free(t);
+    return status;
+}
+
+brio_status brio_periodic_try(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                              const brio_periodic_options *options, brio_periodic_trial *trial) {
+    brio_periodic_options o = {0};
+    brio_status status = BRIO_OK;
+    brio_periodic *t = NULL;
+    brio_stars stars = {0};
+    double(*home)[3] = NULL;
+    BRIO_TRY(begin(ctx, points, num_points, options, &o, &t));
+    BRIO_TRY(bring_home(t, points, num_points, &home));
+    brio_stars_task task = task_of(t, (const double(*)[3])home, weights, num_points, &o);
+    task.max_tetrahedra = trial->max_tetrahedra;
+    BRIO_TRY(brio_stars_new(ctx, &task, &stars));
+    trial->most_completed = stars.most_completed;
+    trial->flat = brio_triangulation_stats(stars.t)->dimension < 3;
+done:
+    brio_stars_free(&stars);
     brio_release(ctx, home);
     brio_periodic_free(t);
     return status;

@@ -22,7 +22,7 @@ typedef struct brio_stars {
     size_t num_redone;
     uint32_t (*extra)[4]; /* images: finite ones with four vertices, infinite ones with BRIO_INFINITE last */
     size_t num_extra, extra_capacity;
-    size_t triangulated;
+    size_t triangulated, most_completed; /* by all rounds; by one round of the completion */
     int rounds;
 } brio_stars;
 
@@ -43,6 +43,7 @@ typedef struct brio_stars_task {
     size_t num_points;
     double halo; /* in spacings */
     uint64_t seed;
+    size_t max_tetrahedra;         /* that the first triangulation may have; 0: as many as it needs */
     const brio_stars_known *known; /* NULL: images in the halo are triangulated */
 } brio_stars_task;
 
@@ -68,9 +69,22 @@ bool brio_stars_has_all(const brio_lattice *lattice, const double margin[3]);
 /** Returns whether a translate outside of the margin may be in conflict with a ball.   heaviest  no weight is more. */
 bool brio_stars_leaves(const brio_lattice *lattice, const double margin[3], double heaviest, const brio_ball *ball);
 
-/** Counts them for a call of brio_delaunay_periodic.   Returns as it does. */
+/** Counts them for a call of brio_delaunay_periodic.   Returns as it does.
+ *  flat  whether all are in a plane or on a line: all translates that matter are triangulated then. */
 brio_status brio_periodic_count(brio_context *ctx, const double *points, size_t num_points,
-                                const brio_periodic_options *options, double *count);
+                                const brio_periodic_options *options, bool flat, double *count);
+
+/** What is known of stars that are not kept. */
+typedef struct brio_periodic_trial {
+    size_t max_tetrahedra; /* in: as in brio_stars_task */
+    size_t most_completed; /* as in brio_stars */
+    bool flat;             /* all points are in a plane or on a line */
+} brio_periodic_trial;
+
+/** Finds the stars for a call of brio_delaunay_periodic, and frees them.
+ *  Returns as brio_delaunay_periodic; BRIO_ERR_TOO_LARGE also for more than max_tetrahedra. */
+brio_status brio_periodic_try(brio_context *ctx, const double *points, const double *weights, size_t num_points,
+                              const brio_periodic_options *options, brio_periodic_trial *trial);
 
 /* --- the result --- */
 

@@ -153,7 +153,7 @@ double brio_stars_count(const brio_stars_task *task) {
 
 static brio_status triangulate(layer *y, const brio_stars_task *task) {
     brio_stars *s = y->s;
-    brio_delaunay_options o = {.size = sizeof o, .seed = task->seed};
+    brio_delaunay_options o = {.size = sizeof o, .seed = task->seed, .max_tetrahedra = task->max_tetrahedra};
     s->num_known = s->images.count;
     if (task->known)
         BRIO_FORWARD(task->known->make(task->known->user, &s->images, &s->t));
@@ -378,6 +378,7 @@ static brio_status redo(layer *y) {
     for (size_t i = 0; i < task.num_own; i++) y->s->is_vertex[brio_translate_of(list[i].name).point] = is_vertex[i];
     y->s->rounds += facts.rounds;
     y->s->triangulated += facts.triangulated;
+    y->s->most_completed = facts.most_points;
 done:
     brio_release(y->ctx, list);
     brio_release(y->ctx, is_vertex);

@@ -355,6 +355,7 @@ brio_status brio_canonical_order(brio_store *store, size_t live, size_t *finite)
     sorter s = {.store = store, .buckets = 2 * (store->num_points + 2), .live = live};
     s.threads = brio_threads(ctx, live, BLOCK);
     brio_status status = BRIO_OK;
+    BRIO_TRY(brio_store_fit(store));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.order, live + AHEAD));
     BRIO_TRY(BRIO_ALLOC(ctx, s.place, store->t.count));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s.end, s.buckets));

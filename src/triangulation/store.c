@@ -113,6 +113,13 @@ brio_status brio_store_reserve(brio_store *s, size_t more) {
     return BRIO_OK;
 }
 
+brio_status brio_store_fit(brio_store *s) {
+    BRIO_FORWARD(BRIO_RESIZE(s->ctx, s->t.tet, s->t.count));
+    BRIO_FORWARD(BRIO_RESIZE(s->ctx, s->state, s->t.count));
+    s->capacity = s->t.count;
+    return BRIO_OK;
+}
+
 bool brio_store_take(brio_store *s, size_t size, size_t *begin) {
     assert(size > 0);
     *begin = __atomic_load_n(&s->t.count, __ATOMIC_RELAXED);

@@ -90,6 +90,9 @@ void brio_store_free(brio_store *store);
 /** Makes room for at least `more` further slots. Alone only. BRIO_ERR_TOO_LARGE beyond max_tetrahedra. */
 brio_status brio_store_reserve(brio_store *store, size_t more);
 
+/** Gives back the room beyond the slots that were taken. Alone only. */
+brio_status brio_store_fit(brio_store *store);
+
 /** Hands out the slots [*begin, *begin + size) of the room there is; returns false, and hands out no slot, where
  *  the room is less. Any thread may call this at any time. */
 bool brio_store_take(brio_store *store, size_t size, size_t *begin);
