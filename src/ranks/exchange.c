@@ -43,12 +43,20 @@ brio_parcel *brio_exchange_parcel(brio_exchange *x, int rank) {
     return &x->parcel[x->begun % BRIO_MOST_UNDER_WAY][rank];
 }
 
-brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, size_t size) {
+brio_status brio_exchange_room(brio_exchange *x, int rank, size_t size, void **room) {
     brio_parcel *p = brio_exchange_parcel(x, rank);
     assert(size % 8 == 0 && x->begun - x->ended < BRIO_MOST_UNDER_WAY);
     BRIO_FORWARD(BRIO_RESERVE(x->ctx, p->bytes, p->capacity, p->size + size));
-    if (size) memcpy(p->bytes + p->size, bytes, size);
+    *room = p->bytes + p->size;
     p->size += size;
+    return BRIO_OK;
+}
+
+brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, size_t size) {
+    void *room;
+    if (!size) return BRIO_OK;
+    BRIO_FORWARD(brio_exchange_room(x, rank, size, &room));
+    memcpy(room, bytes, size);
     return BRIO_OK;
 }
 
@@ -56,6 +64,7 @@ brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, siz
 
 static brio_status fail_transport(brio_exchange *x) {
     x->failure = BRIO_ERR_OPEN;
+    x->broken = true;
     return brio_fail(x->ctx, BRIO_ERR_OPEN, "rank %d on %s: the exchange with other ranks failed", x->transport.rank,
                      x->transport.host);
 }
@@ -126,9 +135,13 @@ static brio_status fail(brio_exchange *x, brio_status status) {
 }
 
 brio_status brio_exchange_agree(brio_exchange *x, brio_status status) {
-    if (x->failure != BRIO_OK) return x->failure;
-    if (status != BRIO_OK) return fail(x, status);
-    return brio_exchange_now(x, false);
+    if (x->failure != BRIO_OK)
+        status = x->failure; /* all know of it */
+    else
+        status = status == BRIO_OK ? brio_exchange_now(x, false) : fail(x, status);
+    x->failed = status != BRIO_OK;
+    if (!x->broken) x->failure = BRIO_OK;
+    return status;
 }
 
 /* --- what callers see --- */

@@ -98,7 +98,10 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 
 /** Refuses tiles that do not fit in the memory that the context may have.   at_once  tiles in memory together. */
 brio_status brio_tiles_require_memory(brio_tiles *t, int at_once);
-/** Sums the tiles' facts. */
+/** Refuses points for which the disk has no room, beyond what they take as they were added: before the work, not hours
+ *  after.   n  points of the tiles here. */
+brio_status brio_tiles_require_disk(brio_tiles *t, double n);
+/** Makes the facts the sums of the tiles' facts. */
 void brio_tiles_add_facts(brio_tiles *t);
 /** Empties tiles whose points a run before left. */
 void brio_tiles_forget(brio_tiles *t);
@@ -233,7 +236,7 @@ typedef struct {
     brio_halo_fn read;
     void *user;
 } brio_halo_reader;
-/** Returns the reader of tiles whose points are all of this process. */
+/** Returns the reader of points that are all of this process. */
 brio_halo_reader brio_tile_own_halo(brio_tiles *t);
 /** Makes the part of a tile, as brio_tiles_part. */
 brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, const brio_halo_reader *halo, brio_tile_part *p);

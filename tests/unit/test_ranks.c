@@ -87,22 +87,32 @@ static int post_end(void *user, brio_letter *received) {
 typedef struct {
     size_t n;
     bool weighted, parts, cells;
+    int ordered;      /* of the cells */
     int ranks, fails; /* fails: the rank that does, or -1 */
     int refuses;      /* 1 + the rank that ends the cells, or 0 */
+    const char *step; /* in which the rank `fails` has no memory; NULL: in that of the tiles */
+    bool goes_on;     /* each collective call that failed is made once more, when there is memory */
+    int calls;        /* of the progress of `step` before memory ends */
     uint32_t tiles;
     uint64_t seed, key;
-    brio_status expected_failure;
 } plan;
+
+/* What a rank saw of the cells. */
+typedef struct {
+    uint64_t hash; /* a sum over all numbers of all cells */
+    uint64_t count, first, last;
+    bool ascending;
+} seen_cells;
 
 typedef struct {
     const plan *plan;
     postman man;
     brio_thread thread;
-    brio_status status;
+    brio_status status, first_failure;
     brio_tiles_stats facts;
     brio_ranks_traffic traffic;
     uint64_t checksum, parts; /* parts: a sum over the indices of the vertices of all tetrahedra */
-    uint64_t cells;           /* a sum over the sites and volumes of all cells */
+    seen_cells cells;
     brio_tiles_cells_stats sums;
     bool had_points;
     char sentence[512];
@@ -123,14 +133,31 @@ static uint64_t hash_of_part(const brio_tile_part *p, bool weighted) {
     return sum;
 }
 
-static uint64_t hash_of_cell(uint64_t site, const brio_cells *cells, size_t c) {
-    uint64_t faces = cells->face_offsets[c + 1] - cells->face_offsets[c];
-    return brio_mix(site ^ brio_mix(brio_double_key(cells->volume[c]) ^ brio_mix(faces)));
+static uint64_t with_doubles(uint64_t hash, const double *x, size_t n) {
+    for (size_t i = 0; i < n; i++) hash = brio_mix(hash ^ brio_double_key(x[i]));
+    return hash;
+}
+
+static uint64_t hash_of_cell(uint64_t site, const brio_cells *cells, size_t c, bool with_faces) {
+    uint64_t begin = cells->face_offsets[c], end = cells->face_offsets[c + 1];
+    uint64_t hash = brio_mix(site ^ brio_mix(end - begin) ^ cells->bounded[c]);
+    hash = with_doubles(with_doubles(hash, &cells->volume[c], 1), &cells->area[c], 1);
+    hash = with_doubles(hash, cells->centroid + 3 * c, 3);
+    for (uint64_t f = begin; with_faces && f < end; f++) {
+        hash = with_doubles(brio_mix(hash ^ (uint64_t)cells->face_neighbours[f]), &cells->face_areas[f], 1);
+        hash = with_doubles(hash, cells->face_normals + 3 * f, 3);
+    }
+    return hash;
 }
 
 static int hash_cells(const brio_cells *cells, const uint64_t *site, void *user) {
-    uint64_t *sum = user;
-    for (size_t c = 0; c < cells->num_cells; c++) *sum += hash_of_cell(site[c], cells, c);
+    seen_cells *s = user;
+    for (size_t c = 0; c < cells->num_cells; c++) {
+        if (!s->count++) *s = (seen_cells){.count = 1, .first = site[c], .ascending = true};
+        if (s->count > 1) s->ascending &= site[c] > s->last;
+        s->last = site[c];
+        s->hash += hash_of_cell(site[c], cells, c, cells->face_neighbours != NULL);
+    }
     return 0;
 }
 
@@ -153,31 +180,57 @@ static brio_status add_share(brio_context *ctx, brio_ranks *r, const member *m) 
     return BRIO_OK;
 }
 
-/* Leaves no memory from the moment when a tile is triangulated, as a brio_progress_fn. */
-static int starve(const char *stage, double fraction, void *user) {
+typedef struct {
+    brio_context *ctx;
+    const char *step;
+    int calls; /* of the step's beginnings that pass */
+} famine;
+
+/* Leaves no memory from the moment when a step begins, as a brio_progress_fn. */
+static int starve(const char *step, double fraction, void *user) {
+    famine *f = user;
     (void)fraction;
-    if (!strcmp(stage, "insert")) brio_context_set_memory_limit(user, brio_context_memory(user) + 1000);
+    if (!strcmp(step, f->step) && f->calls-- == 0)
+        brio_context_set_memory_limit(f->ctx, brio_context_memory(f->ctx) + 1000);
     return 0;
 }
+
+/* Whether a call is made once more: its failure is noted, and its cause is gone. */
+static bool tries_again(brio_context *ctx, member *m, brio_status status) {
+    if (status == BRIO_OK || !m->plan->goes_on || m->first_failure != BRIO_OK) return false;
+    m->first_failure = status;
+    brio_context_set_progress(ctx, NULL, NULL);
+    brio_context_set_memory_limit(ctx, 0);
+    return true;
+}
+
+#define STEP(call)                                                                                                     \
+    do {                                                                                                               \
+        brio_status ended = (call);                                                                                    \
+        if (tries_again(ctx, m, ended)) ended = (call);                                                                \
+        BRIO_TRY(ended);                                                                                               \
+    } while (0)
 
 static brio_status run_member(brio_context *ctx, member *m, brio_ranks *r) {
     const plan *p = m->plan;
     brio_status status = BRIO_OK;
+    famine f = {ctx, p->step ? p->step : "insert", p->calls};
     m->had_points = brio_ranks_has_points(r);
     if (!m->had_points) BRIO_TRY(brio_ranks_agree(ctx, r, add_share(ctx, r, m), NULL));
-    if (p->fails == m->man.rank) brio_context_set_progress(ctx, starve, ctx);
-    BRIO_TRY(brio_ranks_run(ctx, r));
-    BRIO_TRY(brio_ranks_checksum(ctx, r, &m->checksum));
+    if (p->fails == m->man.rank) brio_context_set_progress(ctx, starve, &f);
+    STEP(brio_ranks_run(ctx, r));
+    STEP(brio_ranks_checksum(ctx, r, &m->checksum));
     for (uint32_t i = 0; p->parts && i < p->tiles; i++) {
         brio_tile_part part = {.size = sizeof part};
-        BRIO_TRY(brio_ranks_part(ctx, r, i, &part));
+        STEP(brio_ranks_part(ctx, r, i, &part));
         m->parts += hash_of_part(&part, p->weighted);
         brio_tile_part_free(ctx, &part);
     }
     if (p->cells) {
         brio_cells_options o = {.size = sizeof o, .box = BOX};
-        brio_tile_cells_fn take = p->refuses == m->man.rank + 1 ? refuse_cells : hash_cells;
-        BRIO_TRY(brio_ranks_cells(ctx, r, &o, take, &m->cells));
+        bool refuses = p->refuses == m->man.rank + 1;
+        STEP((m->cells.count = 0, brio_ranks_cells(ctx, r, &o, p->ordered,
+                                             refuses && !m->first_failure ? refuse_cells : hash_cells, &m->cells)));
         m->sums = *brio_ranks_cells_facts(r);
     }
     m->facts = *brio_ranks_facts(r);
@@ -209,6 +262,18 @@ static void work(void *argument) {
     for (int i = 0; i < m->plan->ranks; i++) free(m->man.held[i]);
 }
 
+/* Adds the cells of a rank to those of the ranks before it. In order, its sites are behind theirs. */
+static void add_seen(const plan *p, seen_cells *all, const seen_cells *s) {
+    if (!s->count) return;
+    if (!all->count) {
+        *all = *s;
+        return;
+    }
+    EXPECT(!p->ordered || (all->ascending && s->ascending && s->first > all->last), "%d ranks of %u tiles", p->ranks,
+           p->tiles);
+    all->hash += s->hash, all->count += s->count, all->last = s->last;
+}
+
 /* Runs all ranks. They agree in what they return, except the parts, whose sum is in the first. */
 static member run_ranks(const plan *p) {
     static post office;
@@ -223,11 +288,12 @@ static member run_ranks(const plan *p) {
     }
     for (int i = 0; i < p->ranks; i++) brio_thread_join(&members[i].thread);
     for (int i = 1; i < p->ranks; i++) {
+        EXPECT(members[i].first_failure == members[0].first_failure);
         EXPECT(members[i].status == members[0].status && !strcmp(members[i].sentence, members[0].sentence),
                "rank 0: %s; rank %d: %s", members[0].sentence, i, members[i].sentence);
         EXPECT(members[i].checksum == members[0].checksum);
         members[0].parts += members[i].parts;
-        members[0].cells += members[i].cells;
+        add_seen(p, &members[0].cells, &members[i].cells);
         EXPECT(!memcmp(&members[i].sums, &members[0].sums, sizeof members[0].sums));
     }
     brio_condition_free(&office.changed);
@@ -335,22 +401,23 @@ static void cells_are_those_of_one_process(void) {
         brio_cells_options o = {.size = sizeof o, .box = BOX};
         brio_triangulation *t;
         brio_cells *cells;
-        uint64_t sum = 0, bounded = 0;
+        uint64_t sum[2] = {0, 0}, bounded = 0; /* sum: without and with faces */
         long double volume = 0;
         EXPECT(brio_delaunay(ctx, points, w, n, &plain, &t) == BRIO_OK, "%s", brio_message(ctx));
         EXPECT(brio_voronoi_cells(ctx, t, points, w, n, &o, &cells) == BRIO_OK, "%s", brio_message(ctx));
         for (size_t c = 0; c < cells->num_cells; c++) {
-            sum += hash_of_cell(cells->site[c], cells, c);
+            for (int k = 0; k < 2; k++) sum[k] += hash_of_cell(cells->site[c], cells, c, k);
             bounded += cells->bounded[c];
             if (cells->bounded[c]) volume += cells->volume[c];
         }
         double first = 0;
         for (int k = 0; k < 3; k++) {
             plan p = {.n = n, .weighted = w, .cells = true, .ranks = RANKS[(i + 2 * k) % 5], .fails = -1};
+            p.ordered = k;
             p.tiles = 1 + (uint32_t)(i + k) % 4, p.seed = (uint64_t)i;
             member m = run_ranks(&p);
             EXPECT(m.status == BRIO_OK, "%s", m.sentence);
-            EXPECT(m.cells == sum && m.sums.cells == cells->num_cells && m.sums.bounded == bounded &&
+            EXPECT(m.cells.hash == sum[p.ordered != 2] && m.cells.count == cells->num_cells && m.sums.cells == cells->num_cells && m.sums.bounded == bounded &&
                        m.sums.faces == cells->face_offsets[cells->num_cells] &&
                        m.sums.region_volume == cells->region_volume,
                    "set %d, %d ranks of %u tiles: %llu cells", i, p.ranks, p.tiles, (unsigned long long)m.sums.cells);
@@ -409,6 +476,36 @@ static void a_rank_without_memory_ends_all_and_they_go_on(void) {
     EXPECT(files_left() == 0);
 }
 
+/* A failure of one rank had ended the exchanges for good, and with them the object. */
+static void a_call_that_failed_can_be_made_again(void) {
+    static const struct {
+        const char *step;
+        int calls;
+    } STEPS[] = {{"insert", 0}, {"insert", 1}, {"checksum", 0}, {"checksum", 1}, {"cells", 0}, {"cells", 1}};
+    size_t n = make_points(5, 3000, 0, false);
+    expected e = by_one(n, false);
+    plan p = {.n = n, .ranks = 3, .fails = -1, .tiles = 2, .cells = true, .parts = true, .goes_on = true};
+    member whole = run_ranks(&p);
+    EXPECT(whole.status == BRIO_OK && whole.first_failure == BRIO_OK && whole.checksum == e.checksum);
+    for (int rank = 0; rank < 3; rank++) {
+        for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) {
+            p.fails = rank, p.refuses = 0, p.step = STEPS[i].step, p.calls = STEPS[i].calls;
+            p.seed = i, p.ordered = (int)i % 3 ? 1 : 0;
+            member m = run_ranks(&p);
+            EXPECT(m.first_failure == BRIO_ERR_NO_MEMORY, "rank %d, %s %d", rank, p.step, p.calls);
+            EXPECT(m.status == BRIO_OK && m.checksum == e.checksum && m.parts == e.parts && m.cells.hash == whole.cells.hash &&
+                       m.facts.tetrahedra == e.stats.tetrahedra && m.facts.hidden == whole.facts.hidden,
+                   "rank %d, %s %d: %s", rank, p.step, p.calls, m.sentence);
+        }
+        p.fails = -1, p.refuses = rank + 1;
+        member m = run_ranks(&p);
+        EXPECT(m.first_failure == BRIO_ERR_CANCELLED && m.status == BRIO_OK && m.cells.hash == whole.cells.hash &&
+                   m.sums.volume_sum == whole.sums.volume_sum,
+               "rank %d: %s", rank, m.sentence);
+        EXPECT(files_left() == 0);
+    }
+}
+
 /* Ranks that wait for one that fails in the middle of the cells end with its sentence, whichever rank it is. */
 static void a_rank_that_ends_its_cells_ends_all(void) {
     for (int rank = 0; rank < 4; rank++) {
@@ -448,6 +545,7 @@ SUITE(test_ranks) {
     RUN(cells_of_ranks_are_refused);
     RUN(small_sets_with_shuffled_letters);
     RUN(a_rank_without_memory_ends_all_and_they_go_on);
+    RUN(a_call_that_failed_can_be_made_again);
     RUN(a_rank_that_ends_its_cells_ends_all);
     RUN(cells_of_no_points);
     RUN(a_bad_point_of_one_rank_ends_all);
