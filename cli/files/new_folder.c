@@ -11,13 +11,17 @@
 
 enum { MOST_NAMES = 10, MOST_FILES = 1 << 16, MOST_INDEX = 1 << 24 /* bytes */ };
 
-static const char MARK[] = ".brio-part";
+static const char MARK[] = ".brio-part", ROWS[] = ".rows";
 
 static void name_of(const new_folder *f, int number, char path[BRIO_PATH_MOST]) {
     if (number)
         snprintf(path, BRIO_PATH_MOST, "%s-%d", f->stem, number);
     else
         snprintf(path, BRIO_PATH_MOST, "%s", f->stem);
+}
+
+static void part_of(const new_folder *f, char path[BRIO_PATH_MOST]) {
+    snprintf(path, BRIO_PATH_MOST, "%s.part", f->stem);
 }
 
 static const char *escape_of(char c) {
@@ -92,12 +96,12 @@ static void remove_files(const char *folder, const char *extension, uint32_t mos
 }
 
 /* Removes what a killed run left; nothing of a folder that is another's. */
-static void remove_left(const char *folder, const char *extension) {
+static void remove_left(const char *folder, const new_folder *f) {
     char mark[BRIO_PATH_MOST + 64];
     mark_of(folder, mark);
     int lock = brio_is_there(mark) ? brio_lock_file(mark) : -1;
     if (lock < 0) return;
-    remove_files(folder, extension, MOST_FILES);
+    remove_files(folder, f->extension, f->most);
     brio_unlock_file(lock, mark);
     brio_remove_folder(folder);
 }
@@ -105,11 +109,11 @@ static void remove_left(const char *folder, const char *extension) {
 /* Removes all that killed runs left beside an index. */
 static void remove_all_left(const new_folder *f) {
     char path[BRIO_PATH_MOST];
-    snprintf(path, sizeof path, "%s.part", f->stem);
-    remove_left(path, f->extension);
+    part_of(f, path);
+    remove_left(path, f);
     for (int i = 0; i < MOST_NAMES; i++) {
         name_of(f, i, path);
-        if (strcmp(path, f->old) != 0) remove_left(path, f->extension);
+        if (strcmp(path, f->old) != 0) remove_left(path, f);
     }
 }
 
@@ -126,7 +130,7 @@ static brio_status fail_folder(run *r, const char *path) {
 static brio_status begin(run *r, const char *index, const char *extension, new_folder *f) {
     const char *dot = strrchr(index, '.');
     size_t stem = dot ? (size_t)(dot - index) : strlen(index);
-    *f = (new_folder){.extension = extension, .lock = -1};
+    *f = (new_folder){.extension = extension, .most = MOST_FILES, .lock = -1};
     if (stem >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", index);
     memcpy(f->stem, index, stem);
     find_old(index, f);
@@ -144,21 +148,27 @@ static brio_status find_name(run *r, const new_folder *f, char path[BRIO_PATH_MO
                     f->stem, MOST_NAMES - 1);
 }
 
+/* Fails if the folder STEM.part is there. */
+static brio_status check_part(run *r, const new_folder *f) {
+    char path[BRIO_PATH_MOST];
+    part_of(f, path);
+    errno = EEXIST;
+    return brio_is_there(path) ? fail_folder(r, path) : BRIO_OK;
+}
+
 brio_status cli_new_folder_check(run *r, const char *index, const char *extension) {
     new_folder f;
     char path[BRIO_PATH_MOST];
     FORWARD(begin(r, index, extension, &f));
     FORWARD(find_name(r, &f, path));
-    snprintf(path, sizeof path, "%s.part", f.stem);
-    errno = EEXIST;
-    return brio_is_there(path) ? fail_folder(r, path) : BRIO_OK;
+    return check_part(r, &f);
 }
 
-brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out) {
+/* Makes the folder STEM.part. */
+static brio_status make_part(run *r, new_folder *out) {
     char mark[BRIO_PATH_MOST + 64];
     bool made;
-    FORWARD(begin(r, index, extension, out));
-    snprintf(out->path, sizeof out->path, "%s.part", out->stem);
+    part_of(out, out->path);
     mark_of(out->path, mark);
     bool there = brio_make_folder(out->path, false, &made);
     if (there && !made) errno = EEXIST;
@@ -168,6 +178,11 @@ brio_status cli_new_folder_open(run *r, const char *index, const char *extension
     if (made) brio_remove_folder(out->path);
     *out->path = 0;
     return status;
+}
+
+brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out) {
+    FORWARD(begin(r, index, extension, out));
+    return make_part(r, out);
 }
 
 brio_status cli_new_folder_name(run *r, new_folder *f) {
@@ -186,7 +201,7 @@ brio_status cli_new_folder_name(run *r, new_folder *f) {
 void cli_new_folder_close(new_folder *f, bool published) {
     char mark[BRIO_PATH_MOST + 64];
     if (f->lock >= 0) {
-        if (!published) remove_files(f->path, f->extension, MOST_FILES);
+        if (!published) remove_files(f->path, f->extension, f->most);
         mark_of(f->path, mark);
         brio_unlock_file(f->lock, mark);
         if (!published) brio_remove_folder(f->path);
@@ -199,4 +214,42 @@ void cli_new_folder_close(new_folder *f, bool published) {
     }
     f->lock = -1;
     *f->path = 0;
+}
+
+/* --- outputs that are one file --- */
+
+static brio_status begin_for(run *r, const char *output, new_folder *f) {
+    char end[BRIO_PATH_MOST];
+    *f = (new_folder){.extension = ROWS, .most = 1, .lock = -1};
+    if (!brio_target_path(output, end)) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", output, strerror(errno));
+    if (strlen(end) >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", output);
+    strcpy(f->stem, end);
+    part_of(f, end);
+    remove_left(end, f);
+    return BRIO_OK;
+}
+
+brio_status cli_new_folder_open_for(run *r, const char *output, new_folder *out) {
+    FORWARD(begin_for(r, output, out));
+    return make_part(r, out);
+}
+
+brio_status cli_new_folder_check_for(run *r, const char *output) {
+    new_folder f;
+    FORWARD(begin_for(r, output, &f));
+    return check_part(r, &f);
+}
+
+void cli_new_folder_file(const new_folder *f, char path[BRIO_PATH_MOST + 64]) {
+    snprintf(path, BRIO_PATH_MOST + 64, "%s/0%s", f->path, ROWS);
+}
+
+brio_status cli_new_folder_adopt(run *r, const new_folder *f, const char *output) {
+    char path[BRIO_PATH_MOST + 64];
+    brio_target target;
+    cli_new_folder_file(f, path);
+    bool adopted = brio_target_find(&target, output) && brio_target_adopt(&target, path);
+    int error = errno;
+    brio_target_close(&target);
+    return adopted ? BRIO_OK : cli_fail(r, BRIO_ERR_WRITE, "%s: %s", output, strerror(error));
 }

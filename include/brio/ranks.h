@@ -41,7 +41,8 @@ typedef struct brio_transport {
     const char *host; /* a name for messages */
     void *user;
     /** Begins an exchange, and does not wait.   messages  one to each rank, in their order; bytes stay until it ends.
-     *  Returns 0, or another number if the transport failed. */
+     *  Returns 0, or another number if the transport failed: BRIO_ERR_NO_MEMORY says that there was no memory. The
+     *  transport is not called then any more, and other ranks may wait for this one: the caller must end them. */
     int (*begin)(void *user, const brio_letter *messages);
     /** Waits until the oldest exchange is complete.   received  one message from each rank, in any order; their bytes
      *  are valid until the next call of `end`. Returns what `begin` returns. */

@@ -62,11 +62,12 @@ brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, siz
 
 /* --- one exchange --- */
 
-static brio_status fail_transport(brio_exchange *x) {
-    x->failure = BRIO_ERR_OPEN;
+static brio_status fail_transport(brio_exchange *x, int code) {
+    x->failure = code == BRIO_ERR_NO_MEMORY ? BRIO_ERR_NO_MEMORY : BRIO_ERR_OPEN;
     x->broken = true;
-    return brio_fail(x->ctx, BRIO_ERR_OPEN, "rank %d on %s: the exchange with other ranks failed", x->transport.rank,
-                     x->transport.host);
+    return brio_fail(x->ctx, x->failure, "rank %d on %s: %s", x->transport.rank, x->transport.host,
+                     code == BRIO_ERR_NO_MEMORY ? "no memory for what other ranks send"
+                                                : "the exchange with other ranks failed");
 }
 
 static brio_status begin(brio_exchange *x, uint64_t note) {
@@ -76,7 +77,8 @@ static brio_status begin(brio_exchange *x, uint64_t note) {
         if (note & NOTE_FAILED) x->out[i].bytes = x->last_words, x->out[i].size = sizeof(last_words);
         if (i != x->transport.rank) x->bytes += x->out[i].size;
     }
-    if (x->transport.begin(x->transport.user, x->out)) return fail_transport(x);
+    int failed = x->transport.begin(x->transport.user, x->out);
+    if (failed) return fail_transport(x, failed);
     x->begun++;
     return BRIO_OK;
 }
@@ -84,7 +86,8 @@ static brio_status begin(brio_exchange *x, uint64_t note) {
 /* Ends the oldest exchange, and empties what was sent in it.   *failed  receives the message of a rank that failed. */
 static brio_status end(brio_exchange *x, const brio_letter **failed) {
     double start = brio_seconds();
-    if (x->transport.end(x->transport.user, x->received)) return fail_transport(x);
+    int broken = x->transport.end(x->transport.user, x->received);
+    if (broken) return fail_transport(x, broken);
     x->waited += brio_seconds() - start;
     for (int i = 0; i < x->transport.ranks; i++) x->parcel[x->ended % BRIO_MOST_UNDER_WAY][i].size = 0;
     x->ended++;

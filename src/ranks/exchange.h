@@ -32,7 +32,7 @@ typedef struct {
     brio_letter *out, *received;              /* received: in the order in which the transport gave them */
     const brio_letter **from;                 /* the same by rank */
     uint64_t begun, ended;
-    bool any; /* a rank said so in the exchange that ended last */
+    bool any;            /* a rank said so in the exchange that ended last */
     brio_status failure; /* of this call of a collective function; after `broken` of all */
     bool broken;         /* the transport failed */
     bool failed;         /* the last collective function did */

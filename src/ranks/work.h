@@ -23,13 +23,13 @@ struct brio_ranks {
     brio_ranks_traffic traffic;   /* the same */
     brio_tiles_cells_stats cells; /* of all ranks; 0 before brio_ranks_cells ended well */
     bool joined;
-    size_t own_nodes;  /* nodes of this rank's points, which come first; known once `joined` */
-    uint32_t own_root; /* node over this rank's tiles; TILE_NONE if there are no points */
-    double (*splitter)[3];        /* ranks - 1, ascending: where lists of positions are divided among ranks */
-    brio_found *sample;           /* of each own tile, the points of other ranks that it begins with */
-    brio_ball_box *seen;          /* of each own tile: all points in it are known when it begins */
-    brio_rank_served *served;     /* by rank and slot */
-    uint64_t *rank_of;            /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
+    size_t own_nodes;         /* nodes of this rank's points, which come first; known once `joined` */
+    uint32_t own_root;        /* node over this rank's tiles; TILE_NONE if there are no points */
+    double (*splitter)[3];    /* ranks - 1, ascending: where lists of positions are divided among ranks */
+    brio_found *sample;       /* of each own tile, the points of other ranks that it begins with */
+    brio_ball_box *seen;      /* of each own tile: all points in it are known when it begins */
+    brio_rank_served *served; /* by rank and slot */
+    uint64_t *rank_of;        /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
     uint64_t far_asked, far_found, rounds, question_bytes;
     bool has_result;
 };

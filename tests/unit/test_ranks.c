@@ -229,8 +229,9 @@ static brio_status run_member(brio_context *ctx, member *m, brio_ranks *r) {
     if (p->cells) {
         brio_cells_options o = {.size = sizeof o, .box = BOX};
         bool refuses = p->refuses == m->man.rank + 1;
-        STEP((m->cells.count = 0, brio_ranks_cells(ctx, r, &o, p->ordered,
-                                             refuses && !m->first_failure ? refuse_cells : hash_cells, &m->cells)));
+        STEP((m->cells.count = 0,
+              brio_ranks_cells(ctx, r, &o, p->ordered, refuses && !m->first_failure ? refuse_cells : hash_cells,
+                               &m->cells)));
         m->sums = *brio_ranks_cells_facts(r);
     }
     m->facts = *brio_ranks_facts(r);
@@ -417,7 +418,8 @@ static void cells_are_those_of_one_process(void) {
             p.tiles = 1 + (uint32_t)(i + k) % 4, p.seed = (uint64_t)i;
             member m = run_ranks(&p);
             EXPECT(m.status == BRIO_OK, "%s", m.sentence);
-            EXPECT(m.cells.hash == sum[p.ordered != 2] && m.cells.count == cells->num_cells && m.sums.cells == cells->num_cells && m.sums.bounded == bounded &&
+            EXPECT(m.cells.hash == sum[p.ordered != 2] && m.cells.count == cells->num_cells &&
+                       m.sums.cells == cells->num_cells && m.sums.bounded == bounded &&
                        m.sums.faces == cells->face_offsets[cells->num_cells] &&
                        m.sums.region_volume == cells->region_volume,
                    "set %d, %d ranks of %u tiles: %llu cells", i, p.ranks, p.tiles, (unsigned long long)m.sums.cells);
@@ -493,8 +495,9 @@ static void a_call_that_failed_can_be_made_again(void) {
             p.seed = i, p.ordered = (int)i % 3 ? 1 : 0;
             member m = run_ranks(&p);
             EXPECT(m.first_failure == BRIO_ERR_NO_MEMORY, "rank %d, %s %d", rank, p.step, p.calls);
-            EXPECT(m.status == BRIO_OK && m.checksum == e.checksum && m.parts == e.parts && m.cells.hash == whole.cells.hash &&
-                       m.facts.tetrahedra == e.stats.tetrahedra && m.facts.hidden == whole.facts.hidden,
+            EXPECT(m.status == BRIO_OK && m.checksum == e.checksum && m.parts == e.parts &&
+                       m.cells.hash == whole.cells.hash && m.facts.tetrahedra == e.stats.tetrahedra &&
+                       m.facts.hidden == whole.facts.hidden,
                    "rank %d, %s %d: %s", rank, p.step, p.calls, m.sentence);
         }
         p.fails = -1, p.refuses = rank + 1;
