@@ -184,12 +184,14 @@ typedef struct {
     brio_status status;
 } tables;
 
+/* Does not end the run where rows cannot be written: the sentence of that would be lost. */
 static int take_cells(const brio_cells *cells, const uint64_t *site, void *user) {
     tables *t = user;
+    if (t->status != BRIO_OK) return 0;
     t->status = job_table_add(t->j, &t->cells, cells, site);
     if (t->status == BRIO_OK) t->status = job_table_add(t->j, &t->faces, cells, site);
     if (t->status != BRIO_OK) cli_keep_failure(t->j->r, t->status);
-    return t->status != BRIO_OK;
+    return 0;
 }
 
 /* Returns the format of -o, or AUTO: there is none, or it holds no rows of cells. */
@@ -214,6 +216,7 @@ static brio_status finish_voronoi(job *j) {
     TRY(job_table_open(j, j->a.faces, BRIO_CELLS_FORMAT_FACES_CSV, &t.faces));
     if (t.cells.path) cli_tell_idle(r, t.cells.path, t.cells.format == BRIO_CELLS_FORMAT_CSV, false);
     TRY(brio_ranks_cells(r->ctx, j->ranks, &o, ordered, take_cells, &t));
+    TRY(job_agree(j, t.status));
     cli_lap(r, "cells");
     cli_report_tile_cells(r, brio_ranks_facts(j->ranks), brio_ranks_cells_facts(j->ranks));
     report_ranks(j);

@@ -111,6 +111,16 @@ BRIO_API brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint6
  *  tile  below the number of tiles of each rank; the same on all.   out  freed with brio_tile_part_free. */
 BRIO_API brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, brio_tile_part *out);
 
+/** Collective. Names the neighbours of the tetrahedra of one tile of each rank, as brio_tiles_neighbours does. A tile's
+ *  number in these names is that of its rank times the number of tiles of a rank, plus its own.
+ *  tile  below the number of tiles of each rank.   part  of that tile, as brio_ranks_part made it.
+ *  neighbours  #T by 4, the caller's.
+ *  Cost: that of brio_tiles_neighbours. The first call makes all parts once more, and sends the facets between two
+ *  tiles: 32 bytes for each side, and 16 back.
+ *  Returns BRIO_OK or, on all ranks, what brio_tiles_neighbours returns on one. */
+BRIO_API brio_status brio_ranks_neighbours(brio_context *ctx, brio_ranks *r, uint32_t tile, const brio_tile_part *part,
+                                           brio_tile_neighbour (*neighbours)[4]);
+
 /** Collective. Computes the cells of all vertices: each rank those of its tiles. Their numbers are those that
  *  brio_tiles_cells computes of all points.
  *  options  as in brio_voronoi_cells; the same on all ranks.

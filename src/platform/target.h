@@ -71,8 +71,8 @@ bool brio_target_publish(brio_target *target, int file);
  *  brio_target_create. The file gets the permissions, owner and group as such a one. */
 bool brio_target_adopt(brio_target *target, const char *path);
 
-/** Does the same as brio_target_publish, and keeps the file that had the name under the temporary name until brio_target_close, where the file
- *  system can exchange names. Of a set of files the others may still fail. */
+/** Does what brio_target_publish does, and keeps the file that had the name under the temporary name until
+ *  brio_target_close, where the file system can exchange names. Of a set of files the others may still fail. */
 bool brio_target_exchange(brio_target *target, int file);
 
 /** Takes the name from a file that brio_target_exchange published, and gives it back to the file that had it. */

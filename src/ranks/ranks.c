@@ -233,7 +233,7 @@ static brio_status read_halo(void *user, const uint64_t *halo, size_t n, brio_se
     return brio_ranks_rows(user, halo, n, brio_ranks_own_points, sizeof *points, points);
 }
 
-static brio_status make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p) {
+brio_status brio_ranks_make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p) {
     BRIO_EXPECT(r->ctx, r->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
     BRIO_EXPECT(r->ctx, tile < r->t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, r->t->num_tiles);
     if (!r->t->tile[tile].tetrahedra)
@@ -246,7 +246,7 @@ brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, bri
     brio_tile_part p = {.size = sizeof p};
     BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
     brio_status status = BRIO_CHECK_RESULT(ctx, brio_tile_part, out);
-    status = brio_exchange_agree(&r->x, status == BRIO_OK ? make_part(r, tile, &p) : status);
+    status = brio_exchange_agree(&r->x, status == BRIO_OK ? brio_ranks_make_part(r, tile, &p) : status);
     if (status != BRIO_OK)
         brio_tile_part_free(ctx, &p);
     else

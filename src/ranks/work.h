@@ -54,6 +54,14 @@ brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, bri
 /** Reads points of this rank, as a brio_answer_fn: rows are brio_set_point. */
 brio_status brio_ranks_own_points(brio_ranks *r, const uint64_t *places, size_t n, void *rows);
 
+/** Makes the part of a tile of this rank, which all ranks do at once. */
+brio_status brio_ranks_make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p);
+
+/** Returns the number of an own tile among those of all ranks. */
+static inline uint32_t brio_ranks_tile(const brio_ranks *r, uint32_t tile) {
+    return (uint32_t)r->rank * r->t->num_tiles + tile;
+}
+
 static inline int brio_rank_of_place(uint64_t place) {
     return (int)(place >> RANK_SHIFT);
 }

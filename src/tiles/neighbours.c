@@ -61,9 +61,8 @@ static void list_facets(const brio_tile_part *p, size_t *end, uint32_t *facet) {
     }
 }
 
-/* Names the neighbours that are in the same part. The others become those that a facet of the hull has. */
-static brio_status match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
-                                brio_tile_neighbour (*neighbours)[4]) {
+brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
+                                   brio_tile_neighbour (*neighbours)[4]) {
     uint32_t *facet = NULL;
     size_t *end = NULL;
     brio_status status = BRIO_OK;
@@ -92,53 +91,66 @@ done:
 
 /* --- files that rows are divided into --- */
 
-typedef struct {
+struct brio_facet_tray {
     brio_store_file file;
     uint8_t *bytes;
     size_t size;
-} tray;
+};
 
-typedef struct {
-    brio_tiles *t;
-    tray *tray; /* one for each tile */
-    size_t room;
-} trays;
-
-static brio_status open_trays(brio_tiles *t, const char *name, trays *out) {
+/* Returns the bytes that wait for each file. */
+static size_t room_of_tray(const brio_tiles *t) {
     size_t share = ALL_WAITING / t->num_tiles;
-    *out = (trays){.t = t, .room = share < LEAST_WAITING ? LEAST_WAITING : share < WAITING ? share : WAITING};
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, out->tray, t->num_tiles));
-    for (uint32_t i = 0; i < t->num_tiles; i++) out->tray[i].file.file = -1;
+    return share < LEAST_WAITING ? LEAST_WAITING : share < WAITING ? share : WAITING;
+}
+
+brio_status brio_facet_trays_new(brio_tiles *t, const char *name, brio_facet_tray **out) {
+    brio_facet_tray *trays = NULL;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, trays, t->num_tiles));
+    *out = trays;
+    for (uint32_t i = 0; i < t->num_tiles; i++) trays[i].file.file = -1;
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         char full[32];
         snprintf(full, sizeof full, "%s-%u", name, i);
-        BRIO_FORWARD(brio_store_create(&t->folder, full, &out->tray[i].file));
-        brio_store_shut(&out->tray[i].file);
-        BRIO_FORWARD(BRIO_ALLOC(t->ctx, out->tray[i].bytes, out->room));
+        BRIO_FORWARD(brio_store_create(&t->folder, full, &trays[i].file));
+        brio_store_shut(&trays[i].file);
+        BRIO_FORWARD(BRIO_ALLOC(t->ctx, trays[i].bytes, room_of_tray(t)));
     }
     return BRIO_OK;
 }
 
-static brio_status flush(tray *tr) {
-    brio_status status = brio_store_append(&tr->file, tr->bytes, tr->size);
-    tr->size = 0;
+static brio_status flush(brio_facet_tray *tray) {
+    brio_status status = brio_store_append(&tray->file, tray->bytes, tray->size);
+    tray->size = 0;
     return status;
 }
 
-static brio_status put(trays *all, uint32_t into, const void *row, size_t size) {
-    tray *tr = &all->tray[into];
-    if (tr->size + size > all->room) BRIO_FORWARD(flush(tr));
-    memcpy(tr->bytes + tr->size, row, size);
-    tr->size += size;
+brio_status brio_facet_trays_put(brio_tiles *t, brio_facet_tray *trays, uint32_t into, const void *row, size_t size) {
+    brio_facet_tray *tray = &trays[into];
+    if (tray->size + size > room_of_tray(t)) BRIO_FORWARD(flush(tray));
+    memcpy(tray->bytes + tray->size, row, size);
+    tray->size += size;
     return BRIO_OK;
 }
 
-static void close_trays(trays *all) {
-    for (uint32_t i = 0; all->tray && i < all->t->num_tiles; i++) {
-        brio_store_close(&all->tray[i].file);
-        brio_release(all->t->ctx, all->tray[i].bytes);
+brio_status brio_facet_trays_flush(brio_tiles *t, brio_facet_tray *trays) {
+    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_FORWARD(flush(&trays[i]));
+    return BRIO_OK;
+}
+
+void brio_facet_trays_free(brio_tiles *t, brio_facet_tray *trays) {
+    for (uint32_t i = 0; trays && i < t->num_tiles; i++) {
+        brio_store_close(&trays[i].file);
+        brio_release(t->ctx, trays[i].bytes);
     }
-    if (all->t) brio_release(all->t->ctx, all->tray);
+    brio_release(t->ctx, trays);
+}
+
+void brio_facet_files_remove(brio_tiles *t, const char *name) {
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        char full[32];
+        snprintf(full, sizeof full, "%s-%u", name, i);
+        brio_store_remove(&t->folder, full);
+    }
 }
 
 /* Reads a whole file of rows.   rows  receives them, the caller's. */
@@ -158,19 +170,12 @@ done:
 
 /* --- facets without a neighbour in their part --- */
 
-typedef struct {
-    uint64_t index[3]; /* of the vertices, ascending */
-    uint32_t tile, facet;
-} lone_facet;
+uint64_t brio_lone_facet_hash(const brio_lone_facet *l) {
+    return brio_mix(l->index[0] ^ brio_mix(l->index[1] ^ brio_mix(l->index[2])));
+}
 
-/* Says to a facet of a tile what its neighbour is. */
-typedef struct {
-    uint32_t facet;
-    brio_tile_neighbour neighbour;
-} answer;
-
-static lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t facet) {
-    lone_facet l = {.tile = tile, .facet = facet};
+static brio_lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t facet) {
+    brio_lone_facet l = {.tile = tile, .facet = facet};
     uint32_t v[3];
     vertices_of(p, facet, v);
     for (int k = 0; k < 3; k++) l.index[k] = p->index[v[k]];
@@ -178,39 +183,36 @@ static lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t
     return l;
 }
 
-/* Puts the lone facets of a tile into the files. */
-static brio_status put_lone(brio_tiles *t, uint32_t tile, trays *all) {
-    brio_tile_part p = {.size = sizeof p};
+brio_status brio_tile_lone_facets(brio_context *ctx, uint32_t tile, const brio_tile_part *p, brio_lone_facet_fn take,
+                                  void *user) {
     brio_tile_neighbour(*neighbours)[4] = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(brio_tiles_part(t->ctx, t, tile, &p));
-    BRIO_TRY(BRIO_ALLOC(t->ctx, neighbours, p.num_tetrahedra + 1));
-    BRIO_TRY(match_inside(t->ctx, tile, &p, neighbours));
-    for (size_t f = 0; f < 4 * p.num_tetrahedra; f++) {
+    BRIO_TRY(BRIO_ALLOC(ctx, neighbours, p->num_tetrahedra + 1));
+    BRIO_TRY(brio_tile_match_inside(ctx, tile, p, neighbours));
+    for (size_t f = 0; f < 4 * p->num_tetrahedra; f++) {
         if (neighbours[f / 4][f % 4].tile != BRIO_NO_TILE) continue;
-        lone_facet l = lone_facet_of(&p, tile, (uint32_t)f);
-        uint64_t hash = brio_mix(l.index[0] ^ brio_mix(l.index[1] ^ brio_mix(l.index[2])));
-        BRIO_TRY(put(all, (uint32_t)(hash % t->num_tiles), &l, sizeof l));
+        brio_lone_facet l = lone_facet_of(p, tile, (uint32_t)f);
+        BRIO_TRY(take(user, &l));
     }
 done:
-    brio_tile_part_free(t->ctx, &p);
-    brio_release(t->ctx, neighbours);
+    brio_release(ctx, neighbours);
     return status;
 }
 
 static int compare_lone(uint32_t i, uint32_t j, const void *user) {
-    const lone_facet *a = (const lone_facet *)user + i, *b = (const lone_facet *)user + j;
+    const brio_lone_facet *a = (const brio_lone_facet *)user + i, *b = (const brio_lone_facet *)user + j;
     for (int k = 0; k < 3; k++)
         if (a->index[k] != b->index[k]) return a->index[k] < b->index[k] ? -1 : 1;
     return 0;
 }
 
-/* Tells each side of the pairs of a file the other one.   *alone  grows by the facets that have no other side. */
-static brio_status answer_pairs(brio_tiles *t, const char *name, trays *all, uint64_t *alone) {
-    lone_facet *l = NULL;
+brio_status brio_facet_pairs(brio_tiles *t, uint32_t file, brio_facet_answer_fn take, void *user, uint64_t *alone) {
+    brio_lone_facet *l = NULL;
+    char name[32];
     uint32_t *row = NULL;
     size_t n = 0;
     brio_status status = BRIO_OK;
+    snprintf(name, sizeof name, "lone-%u", file);
     BRIO_TRY(read_rows(t, name, sizeof *l, (void **)&l, &n));
     BRIO_REQUIRE(t->ctx, n <= UINT32_MAX, BRIO_ERR_TOO_LARGE, "%zu facets between tiles in a file: take more tiles", n);
     BRIO_TRY(BRIO_ALLOC(t->ctx, row, n + 1));
@@ -218,59 +220,90 @@ static brio_status answer_pairs(brio_tiles *t, const char *name, trays *all, uin
     for (size_t i = 0; i < n; i++) row[i] = (uint32_t)i;
     BRIO_TRY(brio_sort_many_indices(t->ctx, row, n, compare_lone, l));
     for (size_t i = 1; i < n; i++) {
-        const lone_facet *a = &l[row[i - 1]], *b = &l[row[i]];
+        const brio_lone_facet *a = &l[row[i - 1]], *b = &l[row[i]];
         if (compare_lone(row[i - 1], row[i], l)) continue;
         *alone -= 2;
-        BRIO_TRY(put(all, a->tile, &(answer){a->facet, {b->tile, brio_tet_of(b->facet)}}, sizeof(answer)));
-        BRIO_TRY(put(all, b->tile, &(answer){b->facet, {a->tile, brio_tet_of(a->facet)}}, sizeof(answer)));
+        BRIO_TRY(take(user, &(brio_facet_answer){a->tile, a->facet, {b->tile, brio_tet_of(b->facet)}}));
+        BRIO_TRY(take(user, &(brio_facet_answer){b->tile, b->facet, {a->tile, brio_tet_of(a->facet)}}));
     }
+    brio_store_remove(&t->folder, name);
 done:
     brio_release(t->ctx, l);
     brio_release(t->ctx, row);
     return status;
 }
 
-static brio_status divide_lone(brio_tiles *t) {
-    trays lone = {0};
+brio_status brio_facet_answers_take(brio_tiles *t, uint32_t file, uint64_t all_tiles, const brio_tile_part *p,
+                                    brio_tile_neighbour (*neighbours)[4]) {
+    brio_facet_answer *a = NULL;
+    size_t n = 0;
     brio_status status = BRIO_OK;
-    BRIO_TRY(open_trays(t, "lone", &lone));
+    char name[32];
+    snprintf(name, sizeof name, "joined-%u", file);
+    BRIO_TRY(read_rows(t, name, sizeof *a, (void **)&a, &n));
+    for (size_t i = 0; i < n; i++) {
+        uint32_t tet = brio_tet_of(a[i].facet);
+        BRIO_REQUIRE(t->ctx, tet < p->num_tetrahedra && a[i].neighbour.tile < all_tiles, BRIO_ERR_OPEN,
+                     "%s/%s was changed from outside", t->folder.path, name);
+        neighbours[tet][brio_slot_of(a[i].facet)] = a[i].neighbour;
+    }
+done:
+    brio_release(t->ctx, a);
+    return status;
+}
+
+/* --- one process --- */
+
+typedef struct {
+    brio_tiles *t;
+    brio_facet_tray *trays;
+} files;
+
+static brio_status put_lone(void *user, const brio_lone_facet *l) {
+    const files *f = user;
+    uint32_t into = (uint32_t)(brio_lone_facet_hash(l) % f->t->num_tiles);
+    return brio_facet_trays_put(f->t, f->trays, into, l, sizeof *l);
+}
+
+static brio_status put_answer(void *user, const brio_facet_answer *a) {
+    const files *f = user;
+    return brio_facet_trays_put(f->t, f->trays, a->tile, a, sizeof *a);
+}
+
+static brio_status divide_lone(brio_tiles *t) {
+    files lone = {.t = t};
+    brio_tile_part p = {.size = sizeof p};
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_facet_trays_new(t, "lone", &lone.trays));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 * i / t->num_tiles));
-        BRIO_TRY(put_lone(t, i, &lone));
+        BRIO_TRY(brio_tiles_part(t->ctx, t, i, &p));
+        BRIO_TRY(brio_tile_lone_facets(t->ctx, i, &p, put_lone, &lone));
+        brio_tile_part_free(t->ctx, &p);
     }
-    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(flush(&lone.tray[i]));
+    status = brio_facet_trays_flush(t, lone.trays);
 done:
-    close_trays(&lone);
+    brio_tile_part_free(t->ctx, &p);
+    brio_facet_trays_free(t, lone.trays);
     return status;
 }
 
 static brio_status join_lone(brio_tiles *t) {
-    trays joined = {0};
+    files joined = {.t = t};
     uint64_t alone = 0;
     brio_status status = BRIO_OK;
-    BRIO_TRY(open_trays(t, "joined", &joined));
+    BRIO_TRY(brio_facet_trays_new(t, "joined", &joined.trays));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
-        char name[32];
-        snprintf(name, sizeof name, "lone-%u", i);
         BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 + 0.1 * i / t->num_tiles));
-        BRIO_TRY(answer_pairs(t, name, &joined, &alone));
-        brio_store_remove(&t->folder, name);
+        BRIO_TRY(brio_facet_pairs(t, i, put_answer, &joined, &alone));
     }
-    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(flush(&joined.tray[i]));
+    BRIO_TRY(brio_facet_trays_flush(t, joined.trays));
     BRIO_REQUIRE(t->ctx, alone == t->stats.hull_facets, BRIO_ERR_OPEN,
                  "%s: files were changed from outside: %llu facets of %llu on the hull", t->folder.path,
                  (unsigned long long)alone, (unsigned long long)t->stats.hull_facets);
 done:
-    close_trays(&joined);
+    brio_facet_trays_free(t, joined.trays);
     return status;
-}
-
-static void remove_files(brio_tiles *t, const char *name) {
-    for (uint32_t i = 0; i < t->num_tiles; i++) {
-        char full[32];
-        snprintf(full, sizeof full, "%s-%u", name, i);
-        brio_store_remove(&t->folder, full);
-    }
 }
 
 /* Finds all neighbours that are of another tile. After a failure its files give their room back. */
@@ -280,28 +313,8 @@ static brio_status join_tiles(brio_tiles *t) {
     t->has_neighbours = status == BRIO_OK;
     t->stats.scratch_bytes = t->folder.most;
     if (status == BRIO_OK) return BRIO_OK;
-    remove_files(t, "lone");
-    remove_files(t, "joined");
-    return status;
-}
-
-/* Names the neighbours of a part that are of other tiles. */
-static brio_status take_answers(brio_tiles *t, uint32_t tile, const brio_tile_part *p,
-                                brio_tile_neighbour (*neighbours)[4]) {
-    answer *a = NULL;
-    size_t n = 0;
-    brio_status status = BRIO_OK;
-    char name[32];
-    snprintf(name, sizeof name, "joined-%u", tile);
-    BRIO_TRY(read_rows(t, name, sizeof *a, (void **)&a, &n));
-    for (size_t i = 0; i < n; i++) {
-        uint32_t tet = brio_tet_of(a[i].facet);
-        BRIO_REQUIRE(t->ctx, tet < p->num_tetrahedra && a[i].neighbour.tile < t->num_tiles, BRIO_ERR_OPEN,
-                     "%s/%s was changed from outside", t->folder.path, name);
-        neighbours[tet][brio_slot_of(a[i].facet)] = a[i].neighbour;
-    }
-done:
-    brio_release(t->ctx, a);
+    brio_facet_files_remove(t, "lone");
+    brio_facet_files_remove(t, "joined");
     return status;
 }
 
@@ -316,6 +329,6 @@ brio_status brio_tiles_neighbours(brio_context *ctx, brio_tiles *t, uint32_t til
                 (unsigned long long)t->tile[tile].tetrahedra);
     if (!part->num_tetrahedra) return BRIO_OK;
     if (!t->has_neighbours) BRIO_FORWARD(join_tiles(t));
-    BRIO_FORWARD(match_inside(ctx, tile, part, neighbours));
-    return take_answers(t, tile, part, neighbours);
+    BRIO_FORWARD(brio_tile_match_inside(ctx, tile, part, neighbours));
+    return brio_facet_answers_take(t, tile, t->num_tiles, part, neighbours);
 }

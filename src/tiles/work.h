@@ -249,4 +249,49 @@ brio_status brio_tile_points(brio_tiles *t, uint64_t place, size_t count, brio_s
 /** Reads rows of `size` bytes of a file that has one for each place.   places  in ascending order. */
 brio_status brio_tile_rows(const brio_store_file *f, const uint64_t *places, size_t count, size_t size, void *rows);
 
+/** --- neighbours across tiles: the steps that one process and ranks have in common (neighbours.c) --- */
+
+/** A facet without a neighbour in the part that has it. Tiles are numbered through all processes. */
+typedef struct {
+    uint64_t index[3]; /* of the vertices, ascending */
+    uint32_t tile, facet;
+} brio_lone_facet;
+
+/** Says to a facet of a tile what its neighbour is. */
+typedef struct {
+    uint32_t tile, facet;
+    brio_tile_neighbour neighbour;
+} brio_facet_answer;
+
+/** Returns a number by which both sides of a facet meet. */
+uint64_t brio_lone_facet_hash(const brio_lone_facet *l);
+
+/** Names the neighbours that are in the same part. The others become those that a facet of the hull has. */
+brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
+                                   brio_tile_neighbour (*neighbours)[4]);
+
+/** Hands on the facets of a part that have no neighbour in it. */
+typedef brio_status (*brio_lone_facet_fn)(void *user, const brio_lone_facet *l);
+brio_status brio_tile_lone_facets(brio_context *ctx, uint32_t tile, const brio_tile_part *p, brio_lone_facet_fn take,
+                                  void *user);
+
+/** --- files of each tile: lone facets by their hash, and answers by their tile --- */
+
+typedef struct brio_facet_tray brio_facet_tray;
+/** Makes empty files NAME-0 and so on.   *out  freed by the caller, also on failure: the files stay. */
+brio_status brio_facet_trays_new(brio_tiles *t, const char *name, brio_facet_tray **out);
+brio_status brio_facet_trays_put(brio_tiles *t, brio_facet_tray *trays, uint32_t into, const void *row, size_t size);
+brio_status brio_facet_trays_flush(brio_tiles *t, brio_facet_tray *trays);
+void brio_facet_trays_free(brio_tiles *t, brio_facet_tray *trays);
+void brio_facet_files_remove(brio_tiles *t, const char *name);
+
+/** Finds the pairs of facets of file `lone-I`, removes it, and hands on an answer to each side.
+ *  *alone  grows by the facets that have no other side. */
+typedef brio_status (*brio_facet_answer_fn)(void *user, const brio_facet_answer *a);
+brio_status brio_facet_pairs(brio_tiles *t, uint32_t file, brio_facet_answer_fn take, void *user, uint64_t *alone);
+
+/** Names the neighbours of a part by the answers of file `joined-I`.   all_tiles  of all processes. */
+brio_status brio_facet_answers_take(brio_tiles *t, uint32_t file, uint64_t all_tiles, const brio_tile_part *p,
+                                    brio_tile_neighbour (*neighbours)[4]);
+
 #endif

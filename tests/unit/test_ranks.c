@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MOST = 6000, MOST_RANKS = 8, BOXES = 4 };
+enum { MOST = 6000, MOST_RANKS = 8, BOXES = 4, MOST_TILES = 4 /* of a rank whose neighbours are seen */ };
 
 static double points[3 * MOST], weights[MOST];
 static char folder[64];
@@ -86,7 +86,7 @@ static int post_end(void *user, brio_letter *received) {
 
 typedef struct {
     size_t n;
-    bool weighted, parts, cells;
+    bool weighted, parts, cells, neighbours;
     int ordered;      /* of the cells */
     int ranks, fails; /* fails: the rank that does, or -1 */
     int refuses;      /* 1 + the rank that ends the cells, or 0 */
@@ -104,6 +104,13 @@ typedef struct {
     bool ascending;
 } seen_cells;
 
+/* A tile's tetrahedra by the indices of their vertices, and their neighbours. */
+typedef struct {
+    size_t count;
+    uint64_t (*tet)[4];
+    brio_tile_neighbour (*neighbours)[4];
+} seen_tile;
+
 typedef struct {
     const plan *plan;
     postman man;
@@ -113,6 +120,7 @@ typedef struct {
     brio_ranks_traffic traffic;
     uint64_t checksum, parts; /* parts: a sum over the indices of the vertices of all tetrahedra */
     seen_cells cells;
+    seen_tile tile[MOST_TILES];
     brio_tiles_cells_stats sums;
     bool had_points;
     char sentence[512];
@@ -211,6 +219,21 @@ static bool tries_again(brio_context *ctx, member *m, brio_status status) {
         BRIO_TRY(ended);                                                                                               \
     } while (0)
 
+static brio_status see_neighbours(brio_context *ctx, brio_ranks *r, uint32_t tile, seen_tile *s) {
+    brio_tile_part part = {.size = sizeof part};
+    brio_status status = brio_ranks_part(ctx, r, tile, &part);
+    if (status != BRIO_OK) return status;
+    free(s->tet), free(s->neighbours);
+    s->count = part.num_tetrahedra;
+    s->tet = malloc((s->count + 1) * sizeof *s->tet);
+    s->neighbours = malloc((s->count + 1) * sizeof *s->neighbours);
+    for (size_t i = 0; i < s->count; i++)
+        for (int k = 0; k < 4; k++) s->tet[i][k] = part.index[part.tetrahedra[i][k]];
+    status = brio_ranks_neighbours(ctx, r, tile, &part, s->neighbours);
+    brio_tile_part_free(ctx, &part);
+    return status;
+}
+
 static brio_status run_member(brio_context *ctx, member *m, brio_ranks *r) {
     const plan *p = m->plan;
     brio_status status = BRIO_OK;
@@ -226,6 +249,7 @@ static brio_status run_member(brio_context *ctx, member *m, brio_ranks *r) {
         m->parts += hash_of_part(&part, p->weighted);
         brio_tile_part_free(ctx, &part);
     }
+    for (uint32_t i = 0; p->neighbours && i < p->tiles; i++) STEP(see_neighbours(ctx, r, i, &m->tile[i]));
     if (p->cells) {
         brio_cells_options o = {.size = sizeof o, .box = BOX};
         bool refuses = p->refuses == m->man.rank + 1;
@@ -275,6 +299,33 @@ static void add_seen(const plan *p, seen_cells *all, const seen_cells *s) {
     all->hash += s->hash, all->count += s->count, all->last = s->last;
 }
 
+static bool has_vertex(const uint64_t tet[4], uint64_t v) {
+    return tet[0] == v || tet[1] == v || tet[2] == v || tet[3] == v;
+}
+
+/* Returns the facets without a neighbour. Neighbours share the facet, and each names the other one. */
+static uint64_t check_neighbours(const plan *p, const member *members) {
+    uint64_t hull = 0;
+    for (uint32_t t = 0; t < (uint32_t)p->ranks * p->tiles; t++) {
+        const seen_tile *s = &members[t / p->tiles].tile[t % p->tiles];
+        for (size_t i = 0; i < s->count; i++)
+            for (int k = 0; k < 4; k++) {
+                brio_tile_neighbour n = s->neighbours[i][k];
+                hull += n.tile == BRIO_NO_TILE;
+                if (n.tile == BRIO_NO_TILE) continue;
+                const seen_tile *other = &members[n.tile / p->tiles].tile[n.tile % p->tiles];
+                bool mutual = false;
+                for (int v = 0; v < 4; v++) {
+                    brio_tile_neighbour back = other->neighbours[n.tetrahedron][v];
+                    mutual |= back.tile == t && back.tetrahedron == i;
+                    EXPECT(v == k || has_vertex(other->tet[n.tetrahedron], s->tet[i][v]));
+                }
+                EXPECT(mutual && (n.tile != t || n.tetrahedron != i), "tile %u, tetrahedron %zu", t, i);
+            }
+    }
+    return hull;
+}
+
 /* Runs all ranks. They agree in what they return, except the parts, whose sum is in the first. */
 static member run_ranks(const plan *p) {
     static post office;
@@ -297,6 +348,10 @@ static member run_ranks(const plan *p) {
         add_seen(p, &members[0].cells, &members[i].cells);
         EXPECT(!memcmp(&members[i].sums, &members[0].sums, sizeof members[0].sums));
     }
+    if (p->neighbours && members[0].status == BRIO_OK)
+        EXPECT(check_neighbours(p, members) == members[0].facts.hull_facets);
+    for (int i = 0; i < p->ranks; i++)
+        for (uint32_t t = 0; t < MOST_TILES; t++) free(members[i].tile[t].tet), free(members[i].tile[t].neighbours);
     brio_condition_free(&office.changed);
     brio_mutex_free(&office.lock);
     return members[0];
@@ -433,6 +488,18 @@ static void cells_are_those_of_one_process(void) {
     }
 }
 
+static void neighbours_of_all_ranks_are_mutual(void) {
+    static const int RANKS[] = {1, 2, 3, 5, 8};
+    for (int i = 0; i < (SHORT_TESTS ? 14 : 70); i++) {
+        plan p = {.neighbours = true, .weighted = i / 7 % 2, .fails = -1, .tiles = 1 + (uint32_t)i % MOST_TILES};
+        p.ranks = RANKS[i % 5], p.seed = (uint64_t)i;
+        p.n = make_points(700 + (uint64_t)i, SHORT_TESTS ? 600 : 3000, i % 7, p.weighted);
+        if (i % 7 == 2 && p.n > 400) p.n = 400;
+        expected e = by_one(p.n, p.weighted);
+        compare(&p, &e, "neighbours");
+    }
+}
+
 static void cells_of_ranks_are_refused(void) {
     plan p = {.n = make_points(7, 400, 0, false), .cells = true, .ranks = 3, .fails = -1, .refuses = 2, .tiles = 2};
     member m = run_ranks(&p);
@@ -483,10 +550,12 @@ static void a_call_that_failed_can_be_made_again(void) {
     static const struct {
         const char *step;
         int calls;
-    } STEPS[] = {{"insert", 0}, {"insert", 1}, {"checksum", 0}, {"checksum", 1}, {"cells", 0}, {"cells", 1}};
+    } STEPS[] = {{"insert", 0}, {"insert", 1},     {"checksum", 0},   {"checksum", 1},  {"cells", 0},
+                 {"cells", 1},  {"neighbours", 0}, {"neighbours", 1}, {"neighbours", 2}};
     size_t n = make_points(5, 3000, 0, false);
     expected e = by_one(n, false);
     plan p = {.n = n, .ranks = 3, .fails = -1, .tiles = 2, .cells = true, .parts = true, .goes_on = true};
+    p.neighbours = true;
     member whole = run_ranks(&p);
     EXPECT(whole.status == BRIO_OK && whole.first_failure == BRIO_OK && whole.checksum == e.checksum);
     for (int rank = 0; rank < 3; rank++) {
@@ -545,6 +614,7 @@ SUITE(test_ranks) {
     mkdir(folder, 0700);
     RUN(ranks_give_what_one_process_gives);
     RUN(cells_are_those_of_one_process);
+    RUN(neighbours_of_all_ranks_are_mutual);
     RUN(cells_of_ranks_are_refused);
     RUN(small_sets_with_shuffled_letters);
     RUN(a_rank_without_memory_ends_all_and_they_go_on);
