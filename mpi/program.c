@@ -102,8 +102,11 @@ static brio_status read_all(job *j) {
     uint64_t *points = calloc(n + 1, sizeof *points);
     brio_status status = BRIO_OK;
     j->first = calloc(n + 1, sizeof *j->first);
-    if (!points || !j->first) TRY(job_agree(j, cli_fail(j->r, BRIO_ERR_NO_MEMORY, "no memory for %zu files", n)));
-    if (n > 1 || !brio_ranks_has_points(j->ranks)) TRY(job_agree(j, read_share(j, points)));
+    if (!points || !j->first)
+        status = cli_fail(j->r, BRIO_ERR_NO_MEMORY, "no memory for %zu files", n);
+    else if (n > 1 || !brio_ranks_has_points(j->ranks))
+        status = read_share(j, points);
+    TRY(job_agree(j, status));
     MPI_Allreduce(points, j->first, (int)n, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     for (size_t i = 0, before = 0; i < n; i++) {
         size_t count = j->first[i];
@@ -215,6 +218,7 @@ static brio_status finish_voronoi(job *j) {
     TRY(job_table_open(j, r->common.output, format_of(r), &t.cells));
     TRY(job_table_open(j, j->a.faces, BRIO_CELLS_FORMAT_FACES_CSV, &t.faces));
     if (t.cells.path) cli_tell_idle(r, t.cells.path, t.cells.format == BRIO_CELLS_FORMAT_CSV, false);
+    if (t.faces.path) cli_tell_idle(r, t.faces.path, true, false);
     TRY(brio_ranks_cells(r->ctx, j->ranks, &o, ordered, take_cells, &t));
     TRY(job_agree(j, t.status));
     cli_lap(r, "cells");
@@ -306,6 +310,8 @@ static brio_status check(run *r, arguments *a) {
             return cli_fail(r, BRIO_ERR_ARGUMENT, "-: the ranks have no standard input; give files");
     double box[6];
     if (a->box) FORWARD(cli_read_box(r, a->box, box));
+    if (cli_showing(r))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: ranks show nothing; brio view shows files", cli_showing(r));
     FORWARD(check_format(r));
     return cli_check_tiles(r, &a->weights, a->tiles);
 }

@@ -84,6 +84,7 @@ typedef struct {
     void *user;
     brio_tiles_cells_stats stats;
     exact_sum volume;
+    uint64_t scratch_bytes; /* of all ranks, the most that there were */
     const brio_set_point *halo;
     brio_ordered_cells *order; /* NULL: cells are handed on as they are computed */
     uint64_t *first;           /* of each rank but 0, the least site of its range */
@@ -244,11 +245,12 @@ done:
 typedef struct {
     brio_tiles_cells_stats stats;
     exact_sum volume;
+    uint64_t scratch_bytes;
 } share;
 
 static brio_status add_shares(cell_run *c, const brio_cells_options *o) {
     brio_ranks *r = c->r;
-    share s = {c->stats, c->volume};
+    share s = {c->stats, c->volume, r->t->folder.most};
     brio_tiles_cells_stats all = {.size = sizeof all, .region_volume = INFINITY};
     exact_sum volume = {.terms = 0};
     carry(&s.volume);
@@ -261,6 +263,7 @@ static brio_status add_shares(cell_run *c, const brio_cells_options *o) {
         all.outside += s.stats.outside;
         all.region_volume = fmin(all.region_volume, s.stats.region_volume);
         add_sum(&volume, &s.volume);
+        c->scratch_bytes += s.scratch_bytes;
     }
     all.volume_sum = rounded(&volume);
     if (!all.cells) BRIO_FORWARD(brio_tile_region(r->ctx, o, &all.region_volume));
@@ -301,7 +304,7 @@ brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const brio_cells_
     BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
     cell_run c = {.r = r, .take = take, .user = user, .stats = {.size = sizeof c.stats, .region_volume = INFINITY}};
     brio_status status = brio_exchange_agree(&r->x, run(&c, options, ordered));
-    if (status == BRIO_OK) r->cells = c.stats;
+    if (status == BRIO_OK) r->cells = c.stats, r->facts.scratch_bytes = c.scratch_bytes;
     brio_ordered_cells_free(c.order);
     brio_release(ctx, c.first);
     return status;

@@ -111,7 +111,8 @@ class Mpi(MpiCase):
         plane = self.rows("plane.xyz", [[x, y, 4] for x in range(9) for y in range(9)])
         for code, text, *arguments in ((1, "not x0,y0,z0", path, "--box=1"), (1, "write cells to .npy", path, "-o", "x.vtu"),
                                        (1, "write cells to .npy", path, "-o", "-"), (1, "side by side", path, "-o", "/dev/null",
-                                                                                     "--format=csv"),
+                                        "--format=csv"),
+                                       (1, "ranks show nothing", path, "--view", "x.html"),
                                        (1, "--compress", path, "-o", "x.npy", "--compress"),
                                        (1, "name the same file", path, "-o", "x.csv", "--faces", "x.csv"), (3, "in a plane", plane)):
             result = self.mpi(2, *arguments, check=False, command="voronoi")
