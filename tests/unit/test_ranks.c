@@ -87,12 +87,13 @@ static int post_end(void *user, brio_letter *received) {
 typedef struct {
     size_t n;
     bool weighted, parts, cells, neighbours;
-    int ordered;      /* of the cells */
-    int ranks, fails; /* fails: the rank that does, or -1 */
-    int refuses;      /* 1 + the rank that ends the cells, or 0 */
-    const char *step; /* in which the rank `fails` has no memory; NULL: in that of the tiles */
-    bool goes_on;     /* each collective call that failed is made once more, when there is memory */
-    int calls;        /* of the progress of `step` before memory ends */
+    int ordered;       /* of the cells */
+    int ranks, fails;  /* fails: the rank that does, or -1 */
+    int refuses;       /* 1 + the rank that ends the cells, or 0 */
+    const char *step;  /* in which the rank `fails` has no memory; NULL: in that of the tiles */
+    size_t allocation; /* of `step` that fails once on the rank `fails`; 0: none */
+    bool goes_on;      /* each collective call that failed is made once more, when there is memory */
+    int calls;         /* of the progress of `step` before memory ends */
     uint32_t tiles;
     uint64_t seed, key;
 } plan;
@@ -116,6 +117,7 @@ typedef struct {
     postman man;
     brio_thread thread;
     brio_status status, first_failure;
+    size_t allocations; /* until one fails; 0: none does */
     brio_tiles_stats facts;
     brio_ranks_traffic traffic;
     uint64_t checksum, parts; /* parts: a sum over the indices of the vertices of all tetrahedra */
@@ -203,6 +205,40 @@ static int starve(const char *step, double fraction, void *user) {
     return 0;
 }
 
+/* --- a rank's memory --- */
+
+static bool gives(member *m) {
+    return m->allocations == 0 || --m->allocations > 0;
+}
+
+static void *give(size_t size, void *user) {
+    return gives(user) ? malloc(size) : NULL;
+}
+
+static void *give_more(void *block, size_t size, void *user) {
+    return gives(user) ? realloc(block, size) : NULL;
+}
+
+static void take_back(void *block, void *user) {
+    (void)user;
+    free(block);
+}
+
+/* Lets an allocation of a step fail, if the plan says so. */
+static void arm(member *m, const char *step) {
+    const plan *p = m->plan;
+    bool here = p->allocation && p->fails == m->man.rank && step && !strcmp(step, p->step);
+    m->allocations = here ? p->allocation : 0;
+}
+
+static brio_context *context_of(member *m) {
+    const brio_allocator memory = {give, give_more, take_back, m};
+    brio_context *ctx;
+    if (!m->plan->allocation) return new_context();
+    EXPECT(brio_context_new(&memory, &ctx) == BRIO_OK);
+    return ctx;
+}
+
 /* Whether a call is made once more: its failure is noted, and its cause is gone. */
 static bool tries_again(brio_context *ctx, member *m, brio_status status) {
     if (status == BRIO_OK || !m->plan->goes_on || m->first_failure != BRIO_OK) return false;
@@ -240,16 +276,21 @@ static brio_status run_member(brio_context *ctx, member *m, brio_ranks *r) {
     famine f = {ctx, p->step ? p->step : "insert", p->calls};
     m->had_points = brio_ranks_has_points(r);
     if (!m->had_points) BRIO_TRY(brio_ranks_agree(ctx, r, add_share(ctx, r, m), NULL));
-    if (p->fails == m->man.rank) brio_context_set_progress(ctx, starve, &f);
+    if (p->fails == m->man.rank && !p->allocation) brio_context_set_progress(ctx, starve, &f);
+    arm(m, "run");
     STEP(brio_ranks_run(ctx, r));
+    arm(m, "checksum");
     STEP(brio_ranks_checksum(ctx, r, &m->checksum));
+    arm(m, NULL);
     for (uint32_t i = 0; p->parts && i < p->tiles; i++) {
         brio_tile_part part = {.size = sizeof part};
         STEP(brio_ranks_part(ctx, r, i, &part));
         m->parts += hash_of_part(&part, p->weighted);
         brio_tile_part_free(ctx, &part);
     }
+    arm(m, "neighbours");
     for (uint32_t i = 0; p->neighbours && i < p->tiles; i++) STEP(see_neighbours(ctx, r, i, &m->tile[i]));
+    arm(m, "cells");
     if (p->cells) {
         brio_cells_options o = {.size = sizeof o, .box = BOX};
         bool refuses = p->refuses == m->man.rank + 1;
@@ -266,7 +307,7 @@ done:
 
 static void work(void *argument) {
     member *m = argument;
-    brio_context *ctx = new_context();
+    brio_context *ctx = context_of(m);
     brio_ranks *r = NULL;
     brio_transport t = {.size = sizeof t,
                         .rank = m->man.rank,
@@ -578,6 +619,32 @@ static void a_call_that_failed_can_be_made_again(void) {
     }
 }
 
+/* Each allocation of a step fails once. Other ranks may have come farther than the rank that has no memory, and take part in
+ * the exchanges again. */
+static void a_step_that_failed_anywhere_can_be_made_again(void) {
+    static const char *const STEPS[] = {"run", "checksum", "neighbours", "cells"};
+    size_t n = make_points(6, 300, 0, false);
+    plan p = {.n = n, .ranks = 3, .fails = -1, .tiles = 2, .goes_on = true, .parts = true, .cells = true};
+    p.ordered = 1, p.neighbours = true;
+    member whole = run_ranks(&p);
+    EXPECT(whole.checksum == by_one(n, false).checksum);
+    p.fails = 1;
+    for (size_t i = 0; i < sizeof STEPS / sizeof *STEPS; i++) {
+        size_t failed = 0;
+        p.step = STEPS[i];
+        for (p.allocation = 1;; p.allocation += 1 + (SHORT_TESTS ? p.allocation / 32 : 0)) {
+            member m = run_ranks(&p);
+            if (m.first_failure == BRIO_OK) break;
+            failed++;
+            if (m.status == BRIO_ERR_ARGUMENT && strstr(m.sentence, "while it divided the points")) continue;
+            EXPECT(m.status == BRIO_OK && m.checksum == whole.checksum && m.parts == whole.parts &&
+                       m.cells.hash == whole.cells.hash,
+                   "%s, allocation %zu: %s", p.step, p.allocation, m.sentence);
+        }
+        EXPECT(failed > 10, "%s: %zu", p.step, failed);
+    }
+}
+
 /* Ranks that wait for one that fails in the middle of the cells end with its sentence, whichever rank it is. */
 static void a_rank_that_ends_its_cells_ends_all(void) {
     for (int rank = 0; rank < 4; rank++) {
@@ -619,6 +686,7 @@ SUITE(test_ranks) {
     RUN(small_sets_with_shuffled_letters);
     RUN(a_rank_without_memory_ends_all_and_they_go_on);
     RUN(a_call_that_failed_can_be_made_again);
+    RUN(a_step_that_failed_anywhere_can_be_made_again);
     RUN(a_rank_that_ends_its_cells_ends_all);
     RUN(cells_of_no_points);
     RUN(a_bad_point_of_one_rank_ends_all);
