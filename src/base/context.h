@@ -36,7 +36,8 @@ struct brio_context {
     brio_mapping kept[BRIO_MOST_KEPT]; /* unused mappings, see kept.h */
     int num_kept, keeping;
     size_t kept_bytes;
-    char *scratch; /* folder of mapped files, or NULL */
+    char *scratch;        /* folder of mapped files, or NULL */
+    bool scratch_in_runs; /* its missing pages are read with those about them (memory.c) */
     brio_progress_fn progress;
     void *progress_user;
     brio_bar bar;      /* the part that the running stage owns */

@@ -5,6 +5,7 @@
 #include "base/scratch_file.h"
 #include "base/team.h"
 #include "base/versioned.h"
+#include "platform/disk.h"
 #include "platform/pages.h"
 #include <assert.h>
 #include <stdlib.h>
@@ -86,6 +87,15 @@ void brio_context_set_memory_limit(brio_context *ctx, size_t bytes) {
     ctx->caller_limit = bytes;
 }
 
+/* Finds whether missing pages of scratch files are to be read with those about them: where the disk's window for that
+ * is known, at most MOST_WINDOW, and one in SHARE bytes of the memory. MOST_WINDOW: measured (docs/decisions/032), 16
+ * to 128 KiB are alike; the usual window of Linux. SHARE: chosen. */
+static bool scratch_in_runs(const brio_context *ctx) {
+    enum { MOST_WINDOW = 1 << 17, SHARE = 64 };
+    size_t window = brio_read_around(ctx->scratch);
+    return window > 0 && window <= MOST_WINDOW && window <= brio_memory_limit(ctx) / SHARE;
+}
+
 brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
     BRIO_EXPECT(ctx, !folder || !ctx->custom, BRIO_ERR_ARGUMENT,
                 "a scratch folder and a caller's allocator exclude each other");
@@ -95,6 +105,7 @@ brio_status brio_context_set_scratch(brio_context *ctx, const char *folder) {
     if (folder) {
         BRIO_FORWARD(BRIO_ALLOC(ctx, ctx->scratch, strlen(folder) + 1));
         strcpy(ctx->scratch, folder);
+        ctx->scratch_in_runs = scratch_in_runs(ctx);
     }
     return BRIO_OK;
 }

@@ -4,9 +4,10 @@
  * I2  A mapped block starts at a page.
  * I3  `live` is the sum of the sizes of all blocks outside scratch files.
  *
- * A page fault on a scratch file reads one page, unless the block is read in sequence. By default the system would read
- * as much as its device is set to, up to megabytes. Where memory is short, such reads displace pages in use. Code that
- * knows what it needs next asks for that (read_ahead.h). */
+ * A page fault on a scratch file reads the window that the disk is set to, if that is small: rows that are near in
+ * space lie near each other, so a page is seldom needed alone. Windows of megabytes, which some machines have, would
+ * displace pages in use where memory is short: then a fault reads one page, unless the block is read in sequence. Code
+ * that knows what it needs next asks for that (read_ahead.h, team.h). */
 #include "base/memory.h"
 #include "base/kept.h"
 #include "base/poison.h"
@@ -111,7 +112,7 @@ static void *map_file(brio_context *ctx, size_t size, brio_scratch_file *file, b
     if (*status != BRIO_OK) return NULL;
     void *base = brio_pages_map_file(file->cached, size);
     if (base) {
-        brio_pages_advise(base, size, BRIO_PAGES_RANDOM);
+        if (!file->in_runs) brio_pages_advise(base, size, BRIO_PAGES_RANDOM);
         return base;
     }
     *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file of %zu bytes cannot be mapped: %s", ctx->scratch,
@@ -214,7 +215,7 @@ static brio_status lost(brio_context *ctx) {
 
 void brio_expect_random(const void *block) {
     const block_header *h = header_of(block);
-    if (h->kind == KIND_FILE) brio_pages_advise(base_of(block), h->size, BRIO_PAGES_RANDOM);
+    if (h->kind == KIND_FILE && !h->file.in_runs) brio_pages_advise(base_of(block), h->size, BRIO_PAGES_RANDOM);
 }
 
 void brio_expect_sequence(const void *block) {

@@ -21,10 +21,10 @@ void brio_release(brio_context *ctx, void *block);
 size_t brio_memory_limit(const brio_context *ctx);
 
 /** Announces that the block will be read from its beginning to its end: a page fault on its scratch file then reads
- *  ahead. No effect on blocks in memory. */
+ *  ahead, as far as the disk is set to. No effect on blocks in memory. */
 void brio_expect_sequence(const void *block);
 
-/** Ends brio_expect_sequence: a page fault reads one page again, as it does for new blocks. */
+/** Ends brio_expect_sequence: a page fault reads what it does for new blocks. */
 void brio_expect_random(const void *block);
 
 /** Copies the bytes [offset, offset + size) of a block from or to memory, for data that is used once, in sequence. A

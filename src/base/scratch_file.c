@@ -101,10 +101,10 @@ bool brio_scratch_room(const brio_context *ctx, uint64_t *bytes) {
 brio_status brio_scratch_open(brio_context *ctx, size_t size, brio_scratch_file *out) {
     int file = brio_open_nameless(ctx->scratch);
     if (file < 0) return no_room(ctx, size, errno);
-    *out = (brio_scratch_file){.cached = file, .direct = -1};
+    *out = (brio_scratch_file){.cached = file, .direct = -1, .in_runs = ctx->scratch_in_runs};
     brio_status status = brio_scratch_grow(ctx, out, size);
     if (status != BRIO_OK) brio_scratch_close(out);
-    /* a page fault reads one page unless the block is read in sequence, see memory.c */
+    /* a system call reads what it asks for; page faults see memory.c */
     if (status == BRIO_OK) brio_advise_cache(file, 0, 0, BRIO_CACHE_RANDOM);
     return status;
 }

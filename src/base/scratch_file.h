@@ -10,6 +10,7 @@ enum { BRIO_SCRATCH_PAGE = 4096 }; /* transfers that bypass the system's cache a
 typedef struct {
     int cached, direct; /* descriptors; direct is -1 unless brio_scratch_direct opened it */
     size_t size;        /* bytes; the mark behind them is lost if somebody else cuts the file */
+    bool in_runs;       /* missing pages are read with those about them */
 } brio_scratch_file;
 
 /** Makes an empty file in a folder, as brio_scratch_open does, and closes it.

@@ -81,7 +81,8 @@ brio_status brio_sample_spacing(brio_context *ctx, const brio_triangulation *t, 
                          count - first < 2 * SLICE ? count : first + 2 * SLICE);
         BRIO_TRY(brio_for_parts(ctx, threads, num_samples, offer_slice, &m));
     }
-    BRIO_TRY(brio_for(ctx, threads, num_samples, measure_part, &m));
+    BRIO_TRY(brio_sweep(ctx, threads, num_samples, measure_part, &m, BRIO_READS(m.list), BRIO_WRITES(m.spacing),
+                        BRIO_WRITES(m.second)));
 done:
     brio_release(ctx, m.list);
     return status;

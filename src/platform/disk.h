@@ -32,6 +32,10 @@ typedef enum {
     BRIO_CACHE_NEVER   /* these are not read again soon */
 } brio_cache_use;
 
+/** Returns how many bytes the system reads at once where a page of a mapped file in a folder is missing and no advice
+ *  was given: those about it. 0 where that is not known. */
+size_t brio_read_around(const char *folder);
+
 /** Says how bytes will be used; size 0 stands for all behind `place`. */
 void brio_advise_cache(int file, uint64_t place, uint64_t size, brio_cache_use use);
 

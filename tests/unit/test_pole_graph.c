@@ -204,10 +204,12 @@ static void blocks_of_a_round_are_apart(void) {
         brio_node_blocks b, again;
         make_graph(&r, ctx, trial);
         brio_context_set_threads(ctx, 1);
-        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &b) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){1 + (int)(trial % 4), NODES, trial},
+                                     &b) == BRIO_OK);
         check_blocks(&r, &b);
         brio_context_set_threads(ctx, 3);
-        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, 1 + (int)(trial % 4), trial, &again) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){1 + (int)(trial % 4), NODES, trial},
+                                     &again) == BRIO_OK);
         EXPECT(again.num_rounds == b.num_rounds && !memcmp(again.place, b.place, sizeof *b.place * NODES) &&
                !memcmp(again.block, b.block, sizeof *b.block * b.first_round[b.num_rounds]));
         shared += b.first_round[b.num_rounds] > b.num_rounds;
@@ -216,6 +218,43 @@ static void blocks_of_a_round_are_apart(void) {
     }
     EXPECT(shared > 100, "rounds of several blocks: %zu", shared);
     EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+/* Windows of the curve, of one block and larger, change no block, and of two that an edge joins the first stays the
+ * first. */
+static void windows_keep_the_order_of_joined_blocks(void) {
+    static random_graph r;
+    brio_context *ctx = new_context();
+    size_t more = 0;
+    for (uint64_t trial = 0; trial < 300; trial++) {
+        brio_node_blocks b, in_windows;
+        size_t round[NODES], later[NODES], wrong = 0;
+        make_graph(&r, ctx, trial);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){1, NODES, trial}, &b) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){1, trial % 12, trial}, &in_windows) ==
+               BRIO_OK);
+        check_blocks(&r, &in_windows);
+        EXPECT(in_windows.num_blocks == b.num_blocks && in_windows.num_rounds >= b.num_rounds);
+        EXPECT(in_windows.first_round[in_windows.num_rounds] == b.first_round[b.num_rounds]);
+        more += in_windows.num_rounds > b.num_rounds;
+        for (size_t i = 0; i < b.num_blocks; i++) round[i] = later[i] = SIZE_MAX;
+        for (size_t k = 0; k < b.num_rounds; k++)
+            for (size_t i = b.first_round[k]; i < b.first_round[k + 1]; i++) round[b.block[i]] = k;
+        for (size_t k = 0; k < in_windows.num_rounds; k++)
+            for (size_t i = in_windows.first_round[k]; i < in_windows.first_round[k + 1]; i++)
+                later[in_windows.block[i]] = k;
+        for (uint32_t p = 0; p < NODES; p++)
+            for (size_t e = r.first[p]; e < r.first[p + 1]; e++) {
+                uint32_t here = b.place[p], there = b.place[r.edge[e].node];
+                if (here == BRIO_NO_PLACE || there == BRIO_NO_PLACE) continue;
+                wrong += (round[b.of[here]] < round[b.of[there]]) != (later[b.of[here]] < later[b.of[there]]);
+            }
+        EXPECT(wrong == 0, "trial %d: %zu edges", (int)trial, wrong);
+        brio_node_blocks_free(&b);
+        brio_node_blocks_free(&in_windows);
+    }
+    EXPECT(more > 100, "more rounds than in one window: %zu", more);
     brio_context_free(ctx);
 }
 
@@ -257,9 +296,10 @@ static void blocks_do_not_depend_on_nodes_far_away(void) {
         int bits = 1 + (int)(trial % 3);
         make_graph(&r, ctx, trial);
         part_graph(&r, trial % 2 ? 0x1p30 : 0x1p48);
-        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, bits, trial, &beside) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){bits, NODES, trial}, &beside) ==
+               BRIO_OK);
         memset(r.fixed + NEAR, 1, NODES - NEAR);
-        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, bits, trial, &alone) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){bits, NODES, trial}, &alone) == BRIO_OK);
         size_t parted = count_parted(&alone, &beside);
         EXPECT(parted == 0, "%zu pairs", parted);
         several += alone.num_blocks > 2 && beside.count > alone.count;
@@ -301,7 +341,7 @@ static void settled_blocks_have_least_energy(void) {
     for (uint64_t trial = 0; trial < 60; trial++) {
         brio_node_blocks b;
         make_graph(&r, ctx, trial);
-        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, BITS, trial, &b) == BRIO_OK);
+        EXPECT(brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){BITS, NODES, trial}, &b) == BRIO_OK);
         for (size_t block = 0; block < b.num_blocks; block++) {
             size_t begin = b.begin[block], size = b.end[block] - begin;
             double before = energy_of(&r), least = least_energy(&r, b.node + begin, size);
@@ -326,7 +366,7 @@ static brio_status settle_random_blocks(brio_context *ctx) {
     brio_roof roof = {.flow = brio_flow_new(ctx)};
     make_graph(&r, ctx, 5);
     brio_context_set_threads(ctx, 2);
-    brio_status status = brio_node_blocks_find(&r.g, r.label, r.fixed, 3, 5, &b);
+    brio_status status = brio_node_blocks_find(&r.g, r.label, r.fixed, (brio_block_rule){3, NODES, 5}, &b);
     for (size_t block = 0; status == BRIO_OK && block < b.num_blocks; block++)
         status = brio_roof_settle(&roof, &r.g, &b, block, r.label);
     brio_node_blocks_free(&b);
@@ -342,6 +382,7 @@ SUITE(test_pole_graph) {
     RUN(edges_are_those_of_the_triangulation_and_the_samples);
     RUN(highest_priority_and_lowest_pole_come_first);
     RUN(blocks_of_a_round_are_apart);
+    RUN(windows_keep_the_order_of_joined_blocks);
     RUN(blocks_do_not_depend_on_nodes_far_away);
     RUN(settled_blocks_have_least_energy);
     RUN(every_failed_allocation_is_a_status);

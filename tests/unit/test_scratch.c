@@ -89,7 +89,8 @@ static void vertex_of_very_many_tetrahedra_gives_the_same_arrays(void) {
 
 /* --- loops along arrays --- */
 
-enum { ROWS = 1 << 19 };
+/* PAGES: of an array of ROWS rows of two numbers. */
+enum { ROWS = 1 << 19, PAGES = ROWS * 16 / 4096 };
 
 typedef struct {
     uint64_t (*from)[2], (*to)[2];
@@ -135,7 +136,8 @@ static long copy_all(brio_context *ctx, bool sweeps) {
     return taken;
 }
 
-/* A loop that says which arrays it goes along finds its pages there: at most one page in eight is fetched by a fault. */
+/* A loop that says which arrays it goes along finds its pages there: at most one page in eight is fetched by a fault. So
+ * does any loop along rows where the disk's window is small: pages that are missing come with those about them. */
 static void a_sweep_waits_for_few_pages(void) {
     brio_context *ctx;
     brio_context_new(NULL, &ctx);
@@ -145,8 +147,10 @@ static void a_sweep_waits_for_few_pages(void) {
         copy_all(ctx, true);
         EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
         long without = copy_all(ctx, false), with = copy_all(ctx, true);
-        EXPECT(with <= without / 8, "%ld of %ld", with, without);
+        EXPECT(with <= PAGES / 8, "%ld of %d", with, PAGES);
+        EXPECT(!ctx->scratch_in_runs || without <= PAGES / 8, "%ld of %d", without, PAGES);
     }
+    if (!ctx->scratch_in_runs) printf("skipped: pages in runs, since this disk's window is unknown or large\n");
     brio_context_free(ctx);
 }
 

@@ -19,6 +19,10 @@
 /* FEW: the passes end with one that flips at most 1/FEW of all nodes flipped so far. All chosen. */
 enum { FEW = 100, NODES_A_THREAD = 512, NODES_A_SUM = 2048 };
 
+/* What is worked on together takes one in SHARE bytes of the memory (chosen). NODE_BYTES: of a node of a graph of votes
+ * with its edges. */
+enum { SHARE = 4, NODE_BYTES = 128 };
+
 typedef struct {
     const brio_signed_graph *g;
     const uint8_t *fixed;
@@ -62,12 +66,20 @@ static void sum_up(problem *pr) {
     }
 }
 
+/* Returns how many nodes are worked on together: all, or where the graph is in scratch files as many as a part of the
+ * memory holds, so that they are read once for all their rounds. */
+static size_t worked_on_together(const brio_signed_graph *g) {
+    return g->ctx->scratch ? brio_memory_limit(g->ctx) / SHARE / NODE_BYTES : g->count;
+}
+
 /* Improves every block that has a violated edge once. Each pass doubles the size of the blocks. */
 static brio_status settle_blocks(problem *pr, int pass) {
     brio_status status = BRIO_OK;
     brio_node_blocks b;
-    BRIO_TRY(brio_node_blocks_find(pr->g, pr->label, pr->fixed, pr->descent->first_bits + pass,
-                                   brio_hash(1, (uint64_t)pass), &b));
+    const brio_block_rule rule = {.bits = pr->descent->first_bits + pass,
+                                  .together = worked_on_together(pr->g),
+                                  .draw = brio_hash(1, (uint64_t)pass)};
+    BRIO_TRY(brio_node_blocks_find(pr->g, pr->label, pr->fixed, rule, &b));
     for (size_t round = 0; round < b.num_rounds; round++) {
         double part = (pass + (double)round / (double)b.num_rounds) / pr->descent->passes;
         BRIO_TRY(brio_progress(pr->g->ctx, "label", pr->descent->from + (1 - pr->descent->from) * part));

@@ -3,11 +3,16 @@
  * Only nodes near violated edges take part, because a set of nodes whose flip lowers the energy has a violated edge on
  * its border. Space is halved at multiples of powers of two, in x, y and z in turn, until a cell has few nodes: a cell
  * is a block. The grid is shifted by a random vector. Nodes that one grid separates, another one keeps together. Two
- * blocks that an edge joins must not change at the same time, so the blocks are coloured, and a colour is a round. The
- * order in which blocks choose colours is that of a hash of their cells.
+ * blocks that an edge joins must not change at the same time, so the blocks are coloured, and a block waits for those
+ * beside it whose colours are less. The order in which blocks choose colours is that of a hash of their cells.
  *
- * So a block depends on the nodes of its cell and of the cell twice as large, and its round on blocks beside it that
+ * So a block depends on the nodes of its cell and of the cell twice as large, and its colour on blocks beside it that
  * have less hashes, and so on along a chain, which is short. Nodes elsewhere change neither.
+ *
+ * In memory a colour is a round. Where the graph is in scratch files, each round of all blocks would read all of it: so
+ * the rounds of a window of the curve, as large as fits in a part of the memory, come before those of the next one. A
+ * window takes in what its blocks wait for. Whatever the windows are, each block comes after the blocks beside it of
+ * less colours and before the others, so the labels are the same.
  *
  * Based on: Morton. A computer oriented geodetic data base and a new technique in file sequencing. IBM 1966 (the order
  *           in which cells are lists of neighbours).
@@ -42,6 +47,7 @@ typedef struct {
 typedef struct {
     const brio_signed_graph *g;
     const uint8_t *label, *fixed;
+    size_t together; /* nodes of a window */
     int threads;     /* of all loops here */
     uint8_t hop;     /* the depth of the nodes whose neighbours are reached now */
     joiner *joiners; /* one for each thread */
@@ -293,10 +299,14 @@ done:
     return status;
 }
 
+/* Joins the blocks that begin at some of the places: along the curve, since what is near is read together. */
 static void join_part(void *user, size_t begin, size_t end, int thread) {
     finder *f = user;
-    for (size_t block = begin; block < end; block++)
-        if (f->trouble[block]) brio_report(&f->joined, join(f, &f->joiners[thread], (uint32_t)block));
+    for (size_t i = begin; i < end; i++) {
+        uint32_t block = f->out->of[i];
+        if (f->out->begin[block] == i && f->trouble[block])
+            brio_report(&f->joined, join(f, &f->joiners[thread], block));
+    }
 }
 
 static brio_status join_all(finder *f) {
@@ -304,7 +314,7 @@ static brio_status join_all(finder *f) {
     brio_context *ctx = f->out->ctx;
     size_t n = f->out->num_blocks;
     for (int t = 0; t < f->threads; t++) BRIO_TRY(BRIO_ALLOC_ZERO(ctx, f->joiners[t].seen, n));
-    BRIO_TRY(brio_for_chunks(ctx, n < (size_t)f->threads ? (int)n : f->threads, n, 1, join_part, f));
+    BRIO_TRY(brio_for_chunks(ctx, f->threads, f->out->count, NODES_A_CHUNK, join_part, f));
     status = f->joined;
 done:
     return status;
@@ -329,41 +339,106 @@ done:
     return status;
 }
 
-/* Gives each block, in order, the first round that no earlier block joined to it has.
- *  taken  #blocks + 1, all 0: for each round, 1 + the last block that cannot have it. */
-static void colour_blocks(const finder *f, uint32_t *round, uint32_t *taken) {
-    brio_node_blocks *b = f->out;
+/* Gives each block, in order, the first colour that no earlier block joined to it has.
+ *  taken  #blocks + 1, all 0: for each colour, 1 + the last block that cannot have it. */
+static void colour_blocks(const finder *f, uint32_t *colour, uint32_t *taken) {
+    const brio_node_blocks *b = f->out;
     for (size_t block = 0, i = 0; block < b->num_blocks; block++) {
         if (!f->trouble[block]) continue;
         for (; i < f->num_pairs && f->pair[i] >> 32 == block; i++)
-            taken[round[(uint32_t)f->pair[i]]] = (uint32_t)block + 1;
-        uint32_t r = 0;
-        while (taken[r] == block + 1) r++;
-        round[block] = r;
-        if (r >= b->num_rounds) b->num_rounds = r + 1;
+            taken[colour[(uint32_t)f->pair[i]]] = (uint32_t)block + 1;
+        uint32_t c = 0;
+        while (taken[c] == block + 1) c++;
+        colour[block] = c;
     }
 }
 
-static int compare_places(uint32_t a, uint32_t b, const void *user) {
-    const size_t *begin = user;
-    return (begin[a] > begin[b]) - (begin[a] < begin[b]);
+/* What is known when blocks are put into rounds. Block b waits for the blocks earlier[first[b]] to earlier[first[b + 1]
+ * - 1]: those joined to it whose colours are less. */
+typedef struct {
+    uint32_t *colour; /* #blocks */
+    size_t *first;    /* #blocks + 1 */
+    uint32_t *earlier;
+    uint8_t *listed; /* #blocks */
+    const size_t *begin;
+    size_t num_listed, room; /* blocks that have a round; room for rounds */
+} schedule;
+
+/* Returns the block of a pair that waits for the other one. */
+static uint32_t waiting(const schedule *s, uint64_t pair, uint32_t *other) {
+    uint32_t a = (uint32_t)(pair >> 32), b = (uint32_t)pair;
+    bool a_waits = s->colour[a] > s->colour[b];
+    *other = a_waits ? b : a;
+    return a_waits ? a : b;
 }
 
-/* Lists the blocks of each round along the curve of their cells: they do not touch, so their order does not matter, and
- * what is near is worked on together. */
-static brio_status list_rounds(const finder *f, const uint32_t *round) {
+static brio_status list_earlier(const finder *f, schedule *s) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = f->out->ctx;
+    size_t n = f->out->num_blocks;
+    uint32_t other;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->first, n + 1));
+    BRIO_TRY(BRIO_ALLOC(ctx, s->earlier, f->num_pairs));
+    for (size_t i = 0; i < f->num_pairs; i++) s->first[waiting(s, f->pair[i], &other)]++;
+    for (size_t b = 0, end = 0; b <= n; b++) end += s->first[b], s->first[b] = end;
+    for (size_t i = 0; i < f->num_pairs; i++) {
+        uint32_t b = waiting(s, f->pair[i], &other);
+        s->earlier[--s->first[b]] = other;
+    }
+done:
+    return status;
+}
+
+/* Lists a block, those that it waits for, those that these wait for, and so on, as far as they are not listed. */
+static void list_block(schedule *s, brio_node_blocks *b, uint32_t block) {
+    size_t at = s->num_listed;
+    if (s->listed[block]) return;
+    s->listed[block] = 1;
+    b->block[s->num_listed++] = block;
+    for (; at < s->num_listed; at++)
+        for (size_t i = s->first[b->block[at]]; i < s->first[b->block[at] + 1]; i++) {
+            uint32_t other = s->earlier[i];
+            if (!s->listed[other]) b->block[s->num_listed++] = other;
+            s->listed[other] = 1;
+        }
+}
+
+/* Compares colours, then places along the curve of the cells: blocks of a colour do not touch, so their order does not
+ * matter, and what is near is worked on together. */
+static int compare_turns(uint32_t a, uint32_t b, const void *user) {
+    const schedule *s = user;
+    if (s->colour[a] != s->colour[b]) return s->colour[a] < s->colour[b] ? -1 : 1;
+    return (s->begin[a] > s->begin[b]) - (s->begin[a] < s->begin[b]);
+}
+
+/* Makes rounds of the blocks that were listed since block[from] was. */
+static brio_status add_rounds(schedule *s, brio_node_blocks *b, size_t from) {
+    brio_status status = brio_sort_many_indices(b->ctx, b->block + from, s->num_listed - from, compare_turns, s);
+    for (size_t i = from; i < s->num_listed && status == BRIO_OK; i++) {
+        if (i > from && s->colour[b->block[i]] == s->colour[b->block[i - 1]]) continue;
+        status = BRIO_RESERVE(b->ctx, b->first_round, s->room, b->num_rounds + 2);
+        if (status == BRIO_OK) b->first_round[b->num_rounds++] = i;
+    }
+    return status;
+}
+
+/* Lists the blocks of each round, window after window of the curve, each with what its blocks wait for. */
+static brio_status list_rounds(const finder *f, schedule *s) {
     brio_status status = BRIO_OK;
     brio_node_blocks *b = f->out;
-    BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, b->first_round, b->num_rounds + 1));
+    size_t from = 0, nodes = 0;
+    s->begin = b->begin;
+    BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, s->listed, b->num_blocks));
     BRIO_TRY(BRIO_ALLOC(b->ctx, b->block, b->num_blocks));
-    for (size_t i = 0; i < b->num_blocks; i++)
-        if (f->trouble[i]) b->first_round[round[i]]++;
-    for (size_t r = 0, end = 0; r <= b->num_rounds; r++) end += b->first_round[r], b->first_round[r] = end;
-    for (size_t i = b->num_blocks; i-- > 0;)
-        if (f->trouble[i]) b->block[--b->first_round[round[i]]] = (uint32_t)i;
-    for (size_t r = 0; r < b->num_rounds; r++)
-        BRIO_TRY(brio_sort_many_indices(b->ctx, b->block + b->first_round[r], b->first_round[r + 1] - b->first_round[r],
-                                        compare_places, b->begin));
+    BRIO_TRY(BRIO_RESERVE(b->ctx, b->first_round, s->room, 1));
+    for (size_t i = 0; i < b->count; i = b->end[b->of[i]]) {
+        if (f->trouble[b->of[i]]) list_block(s, b, b->of[i]);
+        nodes += b->end[b->of[i]] - i;
+        if (nodes < f->together && b->end[b->of[i]] < b->count) continue;
+        BRIO_TRY(add_rounds(s, b, from));
+        from = s->num_listed, nodes = 0;
+    }
+    b->first_round[b->num_rounds] = s->num_listed;
 done:
     return status;
 }
@@ -371,29 +446,34 @@ done:
 static brio_status divide_into_rounds(finder *f) {
     brio_status status = BRIO_OK;
     brio_context *ctx = f->out->ctx;
-    uint32_t *round = NULL, *taken = NULL;
+    schedule s = {0};
+    uint32_t *taken = NULL;
     BRIO_TRY(find_trouble(f));
     BRIO_TRY(list_pairs(f));
-    BRIO_TRY(BRIO_ALLOC(ctx, round, f->out->num_blocks));
+    BRIO_TRY(BRIO_ALLOC(ctx, s.colour, f->out->num_blocks));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, taken, f->out->num_blocks + 1));
-    colour_blocks(f, round, taken);
-    BRIO_TRY(list_rounds(f, round));
+    colour_blocks(f, s.colour, taken);
+    BRIO_TRY(list_earlier(f, &s));
+    BRIO_TRY(list_rounds(f, &s));
 done:
-    brio_release(ctx, round);
+    brio_release(ctx, s.colour);
+    brio_release(ctx, s.first);
+    brio_release(ctx, s.earlier);
+    brio_release(ctx, s.listed);
     brio_release(ctx, taken);
     return status;
 }
 
 /* --- the blocks --- */
 
-brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *label, const uint8_t *fixed, int bits,
-                                  uint64_t draw, brio_node_blocks *out) {
+brio_status brio_node_blocks_find(const brio_signed_graph *g, const uint8_t *label, const uint8_t *fixed,
+                                  brio_block_rule rule, brio_node_blocks *out) {
     brio_status status = BRIO_OK;
     int threads = brio_threads(g->ctx, g->count, NODES_A_THREAD);
-    finder f = {.g = g, .label = label, .fixed = fixed, .threads = threads, .out = out};
-    *out = (brio_node_blocks){.ctx = g->ctx, .bits = bits};
+    finder f = {.g = g, .label = label, .fixed = fixed, .together = rule.together, .threads = threads, .out = out};
+    *out = (brio_node_blocks){.ctx = g->ctx, .bits = rule.bits};
     BRIO_TRY(list_region(&f));
-    BRIO_TRY(find_top(&f, draw));
+    BRIO_TRY(find_top(&f, rule.draw));
     BRIO_TRY(list_blocks(&f));
     BRIO_TRY(set_places(&f));
     BRIO_TRY(divide_into_rounds(&f));
