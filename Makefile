@@ -71,6 +71,7 @@ mpi:
 	cmake -S . -B build-mpi -DCMAKE_BUILD_TYPE=Release -DBRIO_TESTS=OFF -DBRIO_MPI=ON
 	cmake --build build-mpi -j $(JOBS) --target brio-cli brio-mpi
 	/usr/bin/python3 tests/mpi/test_mpi.py build-mpi
+	/usr/bin/python3 tests/mpi/test_mpi_faults.py build-mpi
 
 # Lines and branches of src and cli that the tests and the fuzzers' inputs reach: a table, and pages in out/coverage.
 # COVERAGE="-R unit" runs some of the tests: docs/measured/reliability.md.

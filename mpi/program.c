@@ -1,33 +1,20 @@
 /* brio-mpi: what `brio delaunay --tiles` and `brio voronoi --tiles` compute, by the ranks of an MPI job. Rank 0 reports;
  * all have one exit code. */
-#include "brio/mpi.h"
 #include "cli/files/files.h"
-#include "cli/files/new_file.h"
+#include "cli/files/lost.h"
 #include "cli/files/read_write.h"
 #include "cli/report/plain.h"
 #include "cli/run/interrupt.h"
 #include "cli/run/run.h"
 #include "cli/steps/tiles.h"
-#include "cli/steps/weights.h"
-#include "platform/folder.h"
+#include "mpi/job.h"
 #include "platform/program.h"
 #include "platform/thread.h"
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    MOST_TILES = 1 << 12,
-    FILE_SHIFT = 40 /* of a point's name: below it the index in its file */
-};
-
-static const char VTU[] = ".vtu";
-
-typedef struct {
-    weights_options weights;
-    uint64_t tiles;
-    const char *box;
-} arguments;
+enum { MOST_TILES = 1 << 12 };
 
 #define TILES_A_RANK                                                                                                   \
     {                                                                                                                  \
@@ -40,17 +27,9 @@ static const option of_voronoi[] = {
     WEIGHTS_ROWS(arguments, weights),
     TILES_A_RANK,
     {"box", 0, OPTION_TEXT, offsetof(arguments, box), "B", "clip the cells to x0,y0,z0,x1,y1,z1", 0},
+    {"faces", 0, OPTION_OUTPUT, offsetof(arguments, faces), "FILE", "write a row for each face of each cell (.csv)", 0},
     {0},
 };
-
-typedef struct {
-    run *r;
-    arguments a;
-    brio_mpi *mpi;
-    brio_ranks *ranks;
-    int rank, size;
-    uint64_t *first; /* of each file, the index of its first point */
-} job;
 
 /* --- reading --- */
 
@@ -106,7 +85,7 @@ static brio_status read_share(job *j, uint64_t *points) {
     return BRIO_OK;
 }
 
-static brio_status agree(job *j, brio_status status) {
+brio_status job_agree(job *j, brio_status status) {
     run *r = j->r;
     const char *sentence = status != BRIO_OK ? cli_message(r, status) : NULL;
     if (status != BRIO_OK && cli_interrupted()) status = BRIO_ERR_CANCELLED, sentence = "interrupted";
@@ -123,8 +102,11 @@ static brio_status read_all(job *j) {
     uint64_t *points = calloc(n + 1, sizeof *points);
     brio_status status = BRIO_OK;
     j->first = calloc(n + 1, sizeof *j->first);
-    if (!points || !j->first) TRY(agree(j, cli_fail(j->r, BRIO_ERR_NO_MEMORY, "no memory for %zu files", n)));
-    if (n > 1 || !brio_ranks_has_points(j->ranks)) TRY(agree(j, read_share(j, points)));
+    if (!points || !j->first)
+        status = cli_fail(j->r, BRIO_ERR_NO_MEMORY, "no memory for %zu files", n);
+    else if (n > 1 || !brio_ranks_has_points(j->ranks))
+        status = read_share(j, points);
+    TRY(job_agree(j, status));
     MPI_Allreduce(points, j->first, (int)n, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
     for (size_t i = 0, before = 0; i < n; i++) {
         size_t count = j->first[i];
@@ -133,81 +115,6 @@ static brio_status read_all(job *j) {
     }
 done:
     free(points);
-    return status;
-}
-
-/* --- output --- */
-
-static void name_part(const char *folder, uint64_t number, char path[BRIO_PATH_MOST + 64]) {
-    snprintf(path, BRIO_PATH_MOST + 64, "%s/%" PRIu64 "%s", folder, number, VTU);
-}
-
-/* Writes a tile of this rank into a folder. */
-static brio_status write_part(job *j, brio_tile_part *part, uint32_t tile, const char *folder) {
-    char path[BRIO_PATH_MOST + 64];
-    for (size_t v = 0; v < part->num_vertices; v++) {
-        uint64_t name = part->index[v];
-        part->index[v] = j->first[name >> FILE_SHIFT] + (name & ((UINT64_C(1) << FILE_SHIFT) - 1));
-    }
-    name_part(folder, (uint64_t)j->rank * j->a.tiles + tile, path);
-    return cli_write_part(j->r, part, brio_ranks_facts(j->ranks)->weighted, path);
-}
-
-static brio_status write_parts(job *j, const char *folder) {
-    brio_status status = BRIO_OK;
-    for (uint32_t i = 0; i < j->a.tiles; i++) {
-        brio_tile_part part = {.size = sizeof part};
-        FORWARD(brio_ranks_part(j->r->ctx, j->ranks, i, &part));
-        status = write_part(j, &part, i, folder);
-        if (status != BRIO_OK) cli_keep_failure(j->r, status);
-        brio_tile_part_free(j->r->ctx, &part);
-        FORWARD(agree(j, status));
-    }
-    return BRIO_OK;
-}
-
-/* Makes the folder, on rank 0. */
-static brio_status open_folder(job *j, new_folder *folder) {
-    return j->rank ? BRIO_OK : cli_new_folder_open(j->r, j->r->common.output, VTU, folder);
-}
-
-/* Rank 0 gives the folder its name, and then writes the index: without it there is no output. */
-static brio_status publish(job *j, new_folder *folder) {
-    char path[BRIO_PATH_MOST + 64];
-    uint64_t all = (uint64_t)j->size * j->a.tiles;
-    if (j->rank) return BRIO_OK;
-    for (uint64_t i = 0; i < all; i++) {
-        name_part(folder->path, i, path);
-        if (!brio_is_there(path))
-            return cli_fail(j->r, BRIO_ERR_WRITE,
-                            "%s: another rank wrote it, and it is not there: all ranks must see one folder", path);
-    }
-    FORWARD(cli_new_folder_name(j->r, folder));
-    return cli_write_tiles_index(j->r, folder->path, (uint32_t)all, brio_ranks_facts(j->ranks)->weighted);
-}
-
-/* Removes what this rank wrote into the folder, and the folder if it was the last in it. */
-static void remove_parts(job *j, const char *folder) {
-    char path[BRIO_PATH_MOST + 64];
-    for (uint32_t i = 0; i < j->a.tiles; i++) {
-        name_part(folder, (uint64_t)j->rank * j->a.tiles + i, path);
-        brio_remove_file(path);
-    }
-    brio_remove_folder(folder);
-}
-
-/* Writes all files, then the index. On failure the files are removed, and an older output stays as it was. */
-static brio_status write_all(job *j) {
-    new_folder folder = {.lock = -1};
-    brio_status status = BRIO_OK;
-    TRY(agree(j, open_folder(j, &folder)));
-    MPI_Bcast(folder.path, sizeof folder.path, MPI_CHAR, 0, MPI_COMM_WORLD);
-    TRY(write_parts(j, folder.path));
-    status = agree(j, publish(j, &folder));
-done:
-    if (j->rank == 0) cli_new_folder_close(&folder, status == BRIO_OK);
-    if (j->rank && status != BRIO_OK && *folder.path) remove_parts(j, folder.path);
-    cli_lap(j->r, "write");
     return status;
 }
 
@@ -226,8 +133,10 @@ static const command delaunay = {
 static const command voronoi = {
     .name = "voronoi",
     .operands = "IN...",
-    .summary = "Voronoi cells of points by the ranks of an MPI job, counted and summed; power cells with weights",
-    .examples = "mpirun -n 8 brio-mpi voronoi scan.laz --scratch /var/tmp --box 0,0,0,1,1,1\n",
+    .summary = "Voronoi cells of points by the ranks of an MPI job; power cells with weights",
+    .examples = "mpirun -n 8 brio-mpi voronoi scan.laz --scratch /var/tmp --box 0,0,0,1,1,1 -o cells.npy\n",
+    .has_output = true,
+    .outputs = ".npy .csv",
     .options = of_voronoi,
 };
 
@@ -268,34 +177,74 @@ static brio_status finish_delaunay(job *j) {
     cli_lap(r, "checksum");
     cli_report_tiles(r, brio_ranks_facts(j->ranks), checksum);
     report_ranks(j);
-    return r->common.output ? write_all(j) : BRIO_OK;
+    return r->common.output ? job_write_parts(j) : BRIO_OK;
 }
 
-/* Computes the cells, for their counts and sums. */
+/* What takes the cells of a rank. */
+typedef struct {
+    job *j;
+    job_table cells, faces;
+    brio_status status;
+} tables;
+
+/* Does not end the run where rows cannot be written: the sentence of that would be lost. */
+static int take_cells(const brio_cells *cells, const uint64_t *site, void *user) {
+    tables *t = user;
+    if (t->status != BRIO_OK) return 0;
+    t->status = job_table_add(t->j, &t->cells, cells, site);
+    if (t->status == BRIO_OK) t->status = job_table_add(t->j, &t->faces, cells, site);
+    if (t->status != BRIO_OK) cli_keep_failure(t->j->r, t->status);
+    return 0;
+}
+
+/* Returns the format of -o, or AUTO: there is none, or it holds no rows of cells. */
+static brio_cells_format format_of(const run *r) {
+    const common_options *c = &r->common;
+    brio_cells_format format = c->output ? brio_cells_format_of(c->format ? c->format : c->output) : 0;
+    return format == BRIO_CELLS_FORMAT_VTU ? BRIO_CELLS_FORMAT_AUTO : format;
+}
+
+/* Computes the cells, and writes the tables that are asked for. */
 static brio_status finish_voronoi(job *j) {
     run *r = j->r;
     double box[6];
     brio_cells_options o = {.size = sizeof o};
+    int ordered = j->a.faces ? 1 : r->common.output ? 2 : 0;
+    tables t = {.j = j};
+    brio_status status = BRIO_OK;
     if (j->a.box) FORWARD(cli_read_box(r, j->a.box, box));
     if (j->a.box) o.box = box;
-    FORWARD(brio_ranks_cells(r->ctx, j->ranks, &o, NULL, NULL));
+    t.faces.folder.lock = t.faces.rows = -1;
+    TRY(job_table_open(j, r->common.output, format_of(r), &t.cells));
+    TRY(job_table_open(j, j->a.faces, BRIO_CELLS_FORMAT_FACES_CSV, &t.faces));
+    if (t.cells.path) cli_tell_idle(r, t.cells.path, t.cells.format == BRIO_CELLS_FORMAT_CSV, false);
+    if (t.faces.path) cli_tell_idle(r, t.faces.path, true, false);
+    TRY(brio_ranks_cells(r->ctx, j->ranks, &o, ordered, take_cells, &t));
+    TRY(job_agree(j, t.status));
     cli_lap(r, "cells");
     cli_report_tile_cells(r, brio_ranks_facts(j->ranks), brio_ranks_cells_facts(j->ranks));
     report_ranks(j);
-    return BRIO_OK;
+    TRY(job_table_join(j, &t.cells));
+    TRY(job_table_join(j, &t.faces));
+    status = job_table_publish(j, &t.cells);
+    if (status == BRIO_OK) status = job_table_publish(j, &t.faces);
+    status = job_agree(j, status);
+    cli_lap(r, "write");
+done:
+    job_table_close(&t.cells);
+    job_table_close(&t.faces);
+    return status;
 }
 
 static brio_status triangulate(job *j) {
     run *r = j->r;
     bool cells = r->command == &voronoi;
-    brio_ranks_options o = {
-        .size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)j->a.tiles, .stars = cells};
+    brio_ranks_options o = {.size = sizeof o, .scratch = r->common.scratch, .tiles = (uint32_t)j->a.tiles};
     brio_transport t = brio_mpi_transport(j->mpi);
+    if (cells) o.stars = j->a.faces ? 1 : r->common.output ? 3 : 2;
     o.key = key_of(j);
     MPI_Bcast(&o.key, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
-    FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* tiles are in memory */
     FORWARD(brio_ranks_new(r->ctx, &t, &o, &j->ranks));
-    j->first = NULL;
     FORWARD(read_all(j));
     cli_lap(r, "read");
     FORWARD(brio_ranks_run(r->ctx, j->ranks));
@@ -312,23 +261,41 @@ static void print_help(void) {
     puts("usage: mpirun -n RANKS brio-mpi delaunay IN... --scratch DIR [options]\n"
          "       mpirun -n RANKS brio-mpi voronoi IN... --scratch DIR [options]\n\n"
          "What 'brio delaunay IN --tiles N' and 'brio voronoi IN --tiles N' compute, by many processes on many hosts:\n"
-         "docs/mpi.md. Cells are counted and summed; none are written.\n\n"
+         "docs/mpi.md.\n\n"
          "  --tiles-per-rank N   tiles of each rank, two of which are in memory (default 4)\n"
          "  --scratch DIR        a folder of each host, for about 190 bytes a point of its ranks\n"
-         "  -o FILE.pvtu         delaunay: also write a file for each tile; a folder that all hosts see\n"
+         "  -o FILE              delaunay: .pvtu, a file for each tile; voronoi: .npy or .csv, a row for each cell.\n"
+         "                       In a folder that all hosts see\n"
          "  --box B              voronoi: clip the cells to x0,y0,z0,x1,y1,z1\n"
+         "  --faces FILE.csv     voronoi: a row for each face of each cell\n"
          "  --max-memory SIZE    of each rank\n"
          "and --json, --quiet, --progress, --threads, --input-format, --columns, --drop-invalid, --salvage,\n"
          "--unweighted, --weights-mod, --compress as 'brio delaunay' has them.");
 }
 
+/* Finds everything wrong with a table that can be found before the work. */
+static brio_status check_table(run *r, const char *path) {
+    if (!path) return BRIO_OK;
+    if (cli_is_single(path)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: ranks write side by side, into a file", path);
+    FORWARD(cli_check_target(r, path));
+    return cli_new_folder_check_for(r, path);
+}
+
 /* Rank 0 checks the output for all: it removes what a killed run left of it, which others would find half removed. */
 static brio_status check_output(run *r) {
-    int rank, status = BRIO_OK;
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (rank == 0) status = (int)cli_check_tile_files(r, ".pvtu");
-    MPI_Bcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD);
-    return (brio_status)status;
+    const arguments *a = r->arguments;
+    if (r->command == &delaunay) return cli_check_tile_files(r, ".pvtu");
+    FORWARD(check_table(r, r->common.output));
+    return check_table(r, a->faces);
+}
+
+/* Returns what is wrong with the names of tables. */
+static brio_status check_format(run *r) {
+    const char *output = r->common.output;
+    if (r->command == &delaunay || !output) return BRIO_OK;
+    if (r->common.compress) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress: cells are written without compression");
+    if (format_of(r) != BRIO_CELLS_FORMAT_AUTO) return BRIO_OK;
+    return cli_fail_output(r, "%s: ranks write cells to .npy and .csv", output);
 }
 
 static brio_status check(run *r, arguments *a) {
@@ -343,10 +310,10 @@ static brio_status check(run *r, arguments *a) {
             return cli_fail(r, BRIO_ERR_ARGUMENT, "-: the ranks have no standard input; give files");
     double box[6];
     if (a->box) FORWARD(cli_read_box(r, a->box, box));
-    if (r->common.output && !r->command->has_output)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "-o: cells are counted and summed by ranks, not written");
-    FORWARD(cli_check_tiles(r, &a->weights, a->tiles));
-    return check_output(r);
+    if (cli_showing(r))
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: ranks show nothing; brio view shows files", cli_showing(r));
+    FORWARD(check_format(r));
+    return cli_check_tiles(r, &a->weights, a->tiles);
 }
 
 static brio_status parse(run *r, arguments *a, int argc, char **argv, bool *help) {
@@ -374,6 +341,12 @@ static int stop(void *user) {
     return cli_interrupted();
 }
 
+static void print_sentence(run *r, brio_status status) {
+    fputs("brio-mpi: ", stderr);
+    cli_print_plain(stderr, cli_message(r, status));
+    fputc('\n', stderr);
+}
+
 /* Reports, on rank 0. Returns the exit code. */
 static int finish(job *j, brio_status status) {
     run *r = j->r;
@@ -391,23 +364,50 @@ static int finish(job *j, brio_status status) {
         cli_text_write(stdout, &r->facts, r->command->name, r->common.verbose);
     if (!r->common.quiet) cli_notes_print(stderr, "warning", &r->warnings);
     if (status != BRIO_OK) {
-        fputs("brio-mpi: ", stderr);
-        cli_print_plain(stderr, cli_message(r, status));
-        fputc('\n', stderr);
+        print_sentence(r, status);
         if (!r->common.quiet) cli_notes_print(stderr, "hint", &r->hints);
     }
     if (fflush(stdout) && status == BRIO_OK) code = cli_exit_code(BRIO_ERR_WRITE);
     return code;
 }
 
+/* Makes the failure of one rank that of all, before there are exchanges. The sentence is that of the least rank. */
+static brio_status agree_early(job *j, brio_status status) {
+    run *r = j->r;
+    char words[1024] = "", host[MPI_MAX_PROCESSOR_NAME];
+    int mine = status != BRIO_OK ? j->rank : j->size, least, failed = status != BRIO_OK, all, length;
+    MPI_Allreduce(&mine, &least, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    MPI_Allreduce(&failed, &all, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    if (!all) return BRIO_OK;
+    int code = (int)status;
+    MPI_Get_processor_name(host, &length);
+    if (j->rank == least && all < j->size)
+        snprintf(words, sizeof words, "rank %d on %s: %s", j->rank, host, cli_message(r, status));
+    else if (j->rank == least)
+        snprintf(words, sizeof words, "%s", cli_message(r, status));
+    MPI_Bcast(&code, 1, MPI_INT, least, MPI_COMM_WORLD);
+    MPI_Bcast(words, sizeof words, MPI_CHAR, least, MPI_COMM_WORLD);
+    return cli_fail(r, (brio_status)code, "%s", words);
+}
+
+/* Prepares this rank. */
+static brio_status begin_job(job *j) {
+    run *r = j->r;
+    if (!j->mpi) return cli_fail(r, BRIO_ERR_NO_MEMORY, "no memory for the exchange of %d ranks", j->size);
+    FORWARD(cli_check_common(r));
+    FORWARD(cli_begin(r));
+    FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* tiles are in memory */
+    return j->rank ? BRIO_OK : check_output(r);
+}
+
 static brio_status run_job(job *j, int argc, char **argv, bool *help) {
     run *r = j->r;
-    FORWARD(parse(r, &j->a, argc, argv, help));
+    FORWARD(parse(r, &j->a, argc, argv, help)); /* alike on all ranks */
     if (*help) return BRIO_OK;
     if (!r->common.threads) r->common.threads = threads_of_rank();
     if (j->rank) r->common.quiet = true, r->common.progress = false;
-    FORWARD(cli_check_common(r));
-    FORWARD(cli_begin(r));
+    FORWARD(agree_early(j, begin_job(j)));
+    brio_mpi_set_stop(j->mpi, stop, NULL);
     cli_opening_facts(r);
     r->lap = cli_clock();
     return triangulate(j);
@@ -430,15 +430,13 @@ int main(int argc, char **argv) {
     if (argc < 2 || strcmp(argv[1], r.command->name)) {
         help = argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"));
         if (!help) status = cli_fail(&r, BRIO_ERR_ARGUMENT, "expected 'delaunay' or 'voronoi'; see --help");
-    } else if (!j.mpi) {
-        status = cli_fail(&r, BRIO_ERR_NO_MEMORY, "no memory for the exchange of %d ranks", j.size);
     } else {
-        brio_mpi_set_stop(j.mpi, stop, NULL);
         status = run_job(&j, argc - 2, argv + 2, &help);
     }
     if (help && j.rank == 0) print_help();
     int code = help ? 0 : finish(&j, status);
-    bool broken = j.ranks && cli_interrupted(); /* others may wait for what does not come */
+    bool broken = j.mpi && brio_mpi_has_failed(j.mpi); /* others wait for what does not come */
+    if (broken && j.rank) print_sentence(&r, status);  /* rank 0 may not get to know it */
     brio_ranks_free(j.ranks);
     free(j.first);
     cli_end(&r);

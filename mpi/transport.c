@@ -4,6 +4,7 @@
  * MPI's counts can tell. Messages between two ranks stay in order, so that the tags of even and of odd exchanges
  * suffice. What waits looks at the network, then sleeps: twice as long each time, up to a millisecond. */
 #include "brio/mpi.h"
+#include <brio/context.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -33,7 +34,7 @@ struct brio_mpi {
     int num_receives, most_receives;
     int (*stop)(void *user);
     void *stop_user;
-    int failed;
+    int failed; /* what the call returned that did */
 };
 
 /* --- requests --- */
@@ -42,7 +43,7 @@ static int reserve(MPI_Request **requests, int *most, int count) {
     if (count < *most) return 0;
     int room = 2 * count + 16;
     MPI_Request *grown = realloc(*requests, (size_t)room * sizeof **requests);
-    if (!grown) return 1;
+    if (!grown) return BRIO_ERR_NO_MEMORY;
     *requests = grown, *most = room;
     return 0;
 }
@@ -50,7 +51,7 @@ static int reserve(MPI_Request **requests, int *most, int count) {
 static int send_bytes(brio_mpi *m, exchange *e, const brio_letter *letter, int tag) {
     for (uint64_t at = 0; at < letter->size; at += PIECE) {
         int size = letter->size - at < PIECE ? (int)(letter->size - at) : PIECE;
-        if (reserve(&e->sends, &e->most_sends, e->num_sends)) return 1;
+        if (reserve(&e->sends, &e->most_sends, e->num_sends)) return BRIO_ERR_NO_MEMORY;
         if (MPI_Isend((const char *)letter->bytes + at, size, MPI_BYTE, letter->rank, tag, m->comm,
                       &e->sends[e->num_sends++]))
             return 1;
@@ -61,7 +62,7 @@ static int send_bytes(brio_mpi *m, exchange *e, const brio_letter *letter, int t
 static int receive_bytes(brio_mpi *m, uint8_t *to, uint64_t bytes, int from, int tag) {
     for (uint64_t at = 0; at < bytes; at += PIECE) {
         int size = bytes - at < PIECE ? (int)(bytes - at) : PIECE;
-        if (reserve(&m->receives, &m->most_receives, m->num_receives)) return 1;
+        if (reserve(&m->receives, &m->most_receives, m->num_receives)) return BRIO_ERR_NO_MEMORY;
         if (MPI_Irecv(to + at, size, MPI_BYTE, from, tag, m->comm, &m->receives[m->num_receives++])) return 1;
     }
     return 0;
@@ -92,7 +93,8 @@ static int begin(brio_mpi *m, const brio_letter *letters) {
     if (MPI_Ialltoall(e->out, 2, MPI_UINT64_T, e->in, 2, MPI_UINT64_T, m->comm, &e->noted)) return 1;
     for (int i = 0; i < m->ranks; i++) { /* each rank begins with another, so that none gets all at once */
         int to = (m->rank + i) % m->ranks;
-        if (to != m->rank && send_bytes(m, e, &letters[to], tag)) return 1;
+        int failed = to != m->rank ? send_bytes(m, e, &letters[to], tag) : 0;
+        if (failed) return failed;
     }
     m->begun++;
     return 0;
@@ -116,12 +118,13 @@ static int end(brio_mpi *m, brio_letter *received) {
     uint64_t all = 0;
     if (wait_for(m, 1, &e->noted)) return 1;
     for (int i = 0; i < m->ranks; i++) all += rounded(e->in[i].size);
-    if (make_room(m, all)) return 1;
+    if (make_room(m, all)) return BRIO_ERR_NO_MEMORY;
     m->num_receives = 0;
     uint8_t *at = m->room;
     for (int i = 0; i < m->ranks; at += rounded(e->in[i++].size)) {
         received[i] = (brio_letter){.bytes = at, .size = e->in[i].size, .note = e->in[i].note, .rank = i};
-        if (i != m->rank && receive_bytes(m, at, e->in[i].size, i, tag)) return 1;
+        int failed = i != m->rank ? receive_bytes(m, at, e->in[i].size, i, tag) : 0;
+        if (failed) return failed;
     }
     if (e->in[m->rank].size) memcpy((void *)received[m->rank].bytes, e->to_self, e->in[m->rank].size);
     if (wait_for(m, m->num_receives, m->receives) || wait_for(m, e->num_sends, e->sends)) return 1;
@@ -131,13 +134,13 @@ static int end(brio_mpi *m, brio_letter *received) {
 
 static int begin_or_fail(void *user, const brio_letter *letters) {
     brio_mpi *m = user;
-    m->failed |= begin(m, letters);
+    if (!m->failed) m->failed = begin(m, letters);
     return m->failed;
 }
 
 static int end_or_fail(void *user, brio_letter *received) {
     brio_mpi *m = user;
-    m->failed |= end(m, received);
+    if (!m->failed) m->failed = end(m, received);
     return m->failed;
 }
 
@@ -180,6 +183,10 @@ brio_transport brio_mpi_transport(brio_mpi *m) {
 void brio_mpi_set_stop(brio_mpi *m, int (*stop)(void *user), void *user) {
     m->stop = stop;
     m->stop_user = user;
+}
+
+int brio_mpi_has_failed(const brio_mpi *m) {
+    return m->failed != 0;
 }
 
 void brio_mpi_free(brio_mpi *m) {

@@ -53,6 +53,17 @@ brio_status cli_new_folder_check(run *r, const char *index, const char *extensio
 /** Makes the folder STEM.part. Removes what killed runs left. Call cli_new_folder_close even if this fails. */
 brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out);
 
+/** Makes the folder OUTPUT.part for one file, 0.rows, that processes write side by side, and that becomes the output.
+ *  The output is where its links lead. Call cli_new_folder_close even if this fails. */
+brio_status cli_new_folder_open_for(run *r, const char *output, new_folder *out);
+/** Refuses an output whose folder could not be made: before the work. */
+brio_status cli_new_folder_check_for(run *r, const char *output);
+/** Writes the path of that file. */
+void cli_new_folder_file(const new_folder *f, char path[BRIO_PATH_MOST + 64]);
+/** Makes that file, which was flushed to the disk, the output. Then the folder is closed as one that is not
+ *  published. */
+brio_status cli_new_folder_adopt(run *r, const new_folder *f, const char *output);
+
 /** Gives the folder its name: STEM, or where that is taken STEM-1, STEM-2 up to 9. Call before the index is written. */
 brio_status cli_new_folder_name(run *r, new_folder *f);
 

@@ -13,7 +13,7 @@
 
 enum { MOST_NAMES = 10, MOST_FILES = 1 << 16, MOST_INDEX = 1 << 28 /* bytes */ };
 
-static const char MARK[] = ".brio-part";
+static const char MARK[] = ".brio-part", ROWS[] = ".rows";
 
 static void name_of(const new_folder *f, int number, char path[BRIO_PATH_MOST]) {
     if (number)
@@ -31,6 +31,10 @@ static void quote(char c, bool json, char quoted[8]) {
         snprintf(quoted, 8, "\\%c", c);
     else
         snprintf(quoted, 8, "%s", !json && escape ? escape : (char[2]){c, 0});
+}
+
+static void part_of(const new_folder *f, char path[BRIO_PATH_MOST]) {
+    snprintf(path, BRIO_PATH_MOST, "%s.part", f->stem);
 }
 
 void cli_write_attribute(FILE *file, const char *text) {
@@ -133,18 +137,18 @@ static int make_mark(const char *mark, const char *extension, uint32_t files) {
     return lock;
 }
 
-/* Removes what a killed run left; nothing of a folder that is another's.   extension  of files where the run was killed
- * before its mark had one. */
-static void remove_left(const char *folder, const char *extension) {
+/* Removes what a killed run left; nothing of a folder that is another's.   f  says how many files of which extension
+ * there may be where the run was killed before its mark did. */
+static void remove_left(const char *folder, const new_folder *f) {
     char mark[BRIO_PATH_MOST + 64], text[48] = "", of_run[16] = "";
-    uint32_t files = MOST_FILES;
+    uint32_t files = 0;
     mark_of(folder, mark);
     int lock = brio_is_there(mark) ? brio_lock_file(mark) : -1;
     if (lock < 0) return;
     (void)brio_read_bytes_at(lock, text, sizeof text - 1, 0);
     bool known = sscanf(text, "%" SCNu32 " %15s", &files, of_run) == 2 && *of_run == '.' && !strchr(of_run, '/');
-    if (!known || files > MOST_FILES) files = MOST_FILES;
-    remove_files(folder, known ? of_run : extension, files);
+    if (!known || files > MOST_FILES) files = f->most_files;
+    remove_files(folder, known ? of_run : f->extension, files);
     brio_unlock_file(lock, mark);
     brio_remove_folder(folder);
 }
@@ -152,11 +156,11 @@ static void remove_left(const char *folder, const char *extension) {
 /* Removes all that killed runs left beside an index. */
 static void remove_all_left(const new_folder *f) {
     char path[BRIO_PATH_MOST];
-    snprintf(path, sizeof path, "%s.part", f->stem);
-    remove_left(path, f->extension);
+    part_of(f, path);
+    remove_left(path, f);
     for (int i = 0; i < MOST_NAMES; i++) {
         name_of(f, i, path);
-        if (strcmp(path, f->old) != 0) remove_left(path, f->extension);
+        if (strcmp(path, f->old) != 0) remove_left(path, f);
     }
 }
 
@@ -208,31 +212,42 @@ static brio_status refuse_old_inputs(run *r, const new_folder *f) {
     return BRIO_OK;
 }
 
+/* Fails if the folder STEM.part is there. */
+static brio_status check_part(run *r, const new_folder *f) {
+    char path[BRIO_PATH_MOST];
+    part_of(f, path);
+    errno = EEXIST;
+    return brio_is_there(path) ? fail_folder(r, path) : BRIO_OK;
+}
+
 brio_status cli_new_folder_check(run *r, const char *index, const char *extension) {
     new_folder f;
     char path[BRIO_PATH_MOST];
     FORWARD(begin(r, index, extension, &f));
     FORWARD(refuse_old_inputs(r, &f));
     FORWARD(find_name(r, &f, path));
-    snprintf(path, sizeof path, "%s.part", f.stem);
-    errno = EEXIST;
-    return brio_is_there(path) ? fail_folder(r, path) : BRIO_OK;
+    return check_part(r, &f);
 }
 
-brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out) {
+/* Makes the folder STEM.part. */
+static brio_status make_part(run *r, new_folder *out) {
     char mark[BRIO_PATH_MOST + 64];
     bool made;
-    FORWARD(begin(r, index, extension, out));
-    snprintf(out->path, sizeof out->path, "%s.part", out->stem);
+    part_of(out, out->path);
     mark_of(out->path, mark);
     bool there = brio_make_folder(out->path, false, &made);
     if (there && !made) errno = EEXIST;
-    if (there && made) out->lock = make_mark(mark, extension, MOST_FILES);
+    if (there && made) out->lock = make_mark(mark, out->extension, out->most_files);
     if (out->lock >= 0) return BRIO_OK;
     brio_status status = fail_folder(r, out->path);
     if (made) brio_remove_folder(out->path);
     *out->path = 0;
     return status;
+}
+
+brio_status cli_new_folder_open(run *r, const char *index, const char *extension, new_folder *out) {
+    FORWARD(begin(r, index, extension, out));
+    return make_part(r, out);
 }
 
 brio_status cli_new_folder_name(run *r, new_folder *f) {
@@ -271,4 +286,42 @@ void cli_new_folder_close(new_folder *f, bool published) {
     }
     f->lock = -1;
     *f->path = 0;
+}
+
+/* --- outputs that are one file --- */
+
+static brio_status begin_for(run *r, const char *output, new_folder *f) {
+    char end[BRIO_PATH_MOST];
+    *f = (new_folder){.extension = ROWS, .most_files = 1, .lock = -1};
+    if (!brio_target_path(output, end)) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", output, strerror(errno));
+    if (strlen(end) >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", output);
+    strcpy(f->stem, end);
+    part_of(f, end);
+    remove_left(end, f);
+    return BRIO_OK;
+}
+
+brio_status cli_new_folder_open_for(run *r, const char *output, new_folder *out) {
+    FORWARD(begin_for(r, output, out));
+    return make_part(r, out);
+}
+
+brio_status cli_new_folder_check_for(run *r, const char *output) {
+    new_folder f;
+    FORWARD(begin_for(r, output, &f));
+    return check_part(r, &f);
+}
+
+void cli_new_folder_file(const new_folder *f, char path[BRIO_PATH_MOST + 64]) {
+    snprintf(path, BRIO_PATH_MOST + 64, "%s/0%s", f->path, ROWS);
+}
+
+brio_status cli_new_folder_adopt(run *r, const new_folder *f, const char *output) {
+    char path[BRIO_PATH_MOST + 64];
+    brio_target target;
+    cli_new_folder_file(f, path);
+    bool adopted = brio_target_find(&target, output) && brio_target_adopt(&target, path);
+    int error = errno;
+    brio_target_close(&target);
+    return adopted ? BRIO_OK : cli_fail(r, BRIO_ERR_WRITE, "%s: %s", output, strerror(error));
 }

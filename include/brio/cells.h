@@ -136,6 +136,12 @@ typedef struct brio_cells_table brio_cells_table;
 BRIO_API brio_status brio_cells_table_new(brio_context *ctx, const char *path, brio_cells_format format,
                                           uint64_t num_cells, brio_cells_table **out);
 
+/** Begins a piece of such a file: some successive rows, for who writes pieces side by side and puts them together.
+ *  num_cells  of all pieces.   is_first  whether what stands before all rows is in it.
+ *  The others as brio_cells_table_new has them, and so are the statuses. */
+BRIO_API brio_status brio_cells_table_piece(brio_context *ctx, const char *path, brio_cells_format format,
+                                            uint64_t num_cells, int is_first, brio_cells_table **out);
+
 /** Appends the rows of cells, which have areas, centroids and faces.
  *  site  the number of each cell's site, in place of cells->site; NULL: those.   Returns as brio_cells_table_new. */
 BRIO_API brio_status brio_cells_table_add(brio_context *ctx, brio_cells_table *table, const brio_cells *cells,

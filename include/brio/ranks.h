@@ -2,7 +2,8 @@
  *
  * The processes are ranks of a transport, which sends bytes among them: libbrio-mpi has one for MPI, and the caller may
  * have another. All ranks call the same collective functions in the same order; a rank alone calls brio_ranks_add, and
- * the functions that say so. A failure of one rank is the failure of all, with one sentence.
+ * the functions that say so. A failure of one rank is the failure of all, with one sentence. After it all ranks may
+ * call the next function, unless the transport failed.
  * docs/mpi.md says what it costs; docs/decisions/021-ranks.md why it is right.
  *
  *     brio_ranks_options o = {.size = sizeof o, .scratch = "/var/tmp", .tiles = 4};
@@ -40,7 +41,8 @@ typedef struct brio_transport {
     const char *host; /* a name for messages */
     void *user;
     /** Begins an exchange, and does not wait.   messages  one to each rank, in their order; bytes stay until it ends.
-     *  Returns 0, or another number if the transport failed. */
+     *  Returns 0, or another number if the transport failed: BRIO_ERR_NO_MEMORY says that there was no memory. The
+     *  transport is not called then any more, and other ranks may wait for this one: the caller must end them. */
     int (*begin)(void *user, const brio_letter *messages);
     /** Waits until the oldest exchange is complete.   received  one message from each rank, in any order; their bytes
      *  are valid until the next call of `end`. Returns what `begin` returns. */
@@ -53,8 +55,7 @@ typedef struct brio_ranks_options {
     size_t size;
     const char *scratch; /* a folder of this host with room for about 190 bytes a point of this rank */
     uint32_t tiles;      /* of each rank, at most 4,096; 0 means 4; the same on all ranks. Two are in memory */
-    int stars;           /* not 0: keeps what brio_ranks_cells needs: 16 bytes for each tetrahedron of two tiles. The
-                            same on all ranks */
+    int stars;           /* as in brio_tiles_options, for brio_ranks_cells; the same on all ranks */
     uint64_t key; /* as in brio_tiles_options; the same on all ranks. A run goes on if all ranks have their folders */
 } brio_ranks_options;
 
@@ -93,7 +94,8 @@ BRIO_API brio_status brio_ranks_add(brio_context *ctx, brio_ranks *r, const doub
  *  Returns BRIO_OK on all ranks, or on all the failure of one: the sentence then names the rank and its host. */
 BRIO_API brio_status brio_ranks_agree(brio_context *ctx, brio_ranks *r, brio_status status, const char *sentence);
 
-/** Collective. Divides all points into tiles, and triangulates these: brio_tiles_run.
+/** Collective. Divides all points into tiles, and triangulates these: brio_tiles_run. After a failure a further call
+ *  does what brio_tiles_run does.
  *  Returns BRIO_OK or, on all ranks, what brio_tiles_run returns on one. */
 BRIO_API brio_status brio_ranks_run(brio_context *ctx, brio_ranks *r);
 
@@ -109,16 +111,30 @@ BRIO_API brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint6
  *  tile  below the number of tiles of each rank; the same on all.   out  freed with brio_tile_part_free. */
 BRIO_API brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, brio_tile_part *out);
 
+/** Collective. Names the neighbours of the tetrahedra of one tile of each rank, as brio_tiles_neighbours does. A tile's
+ *  number in these names is that of its rank times the number of tiles of a rank, plus its own.
+ *  tile  below the number of tiles of each rank.   part  of that tile, as brio_ranks_part made it.
+ *  neighbours  #T by 4, the caller's.
+ *  Cost: that of brio_tiles_neighbours. The first call makes all parts once more, and sends the facets between two
+ *  tiles: 32 bytes for each side, and 16 back.
+ *  Returns BRIO_OK or, on all ranks, what brio_tiles_neighbours returns on one. */
+BRIO_API brio_status brio_ranks_neighbours(brio_context *ctx, brio_ranks *r, uint32_t tile, const brio_tile_part *part,
+                                           brio_tile_neighbour (*neighbours)[4]);
+
 /** Collective. Computes the cells of all vertices: each rank those of its tiles. Their numbers are those that
  *  brio_tiles_cells computes of all points.
  *  options  as in brio_voronoi_cells; the same on all ranks.
- *  take  NULL, or receives the cells of this rank's tiles, as brio_tiles_cells without `ordered` hands them on. If it
- *  returns another number than 0, the run ends on all ranks.   user  handed to `take`.
- *  Memory: what brio_tiles_cells needs, and 48 bytes for each point of a tile's halo. Cost: each point of a halo is
- *  asked for, 8 bytes, and sent, 40. No more of the disk is needed.
+ *  ordered  as in brio_tiles_cells; the same on all ranks. 0: each rank gets the cells of its tiles, as they are
+ *           computed. 1 and 2: rank after rank, the cells come in ascending order of their sites. Each rank gets those
+ *           of a range of sites, about as many as another rank.
+ *  take  NULL, or receives the cells. If it returns another number than 0, the run ends on all ranks.
+ *  user  handed to `take`.
+ *  Memory: what brio_tiles_cells needs, and 48 bytes for each point of a tile's halo; with `ordered` also 1 kB for each
+ *  tile of all ranks. Cost: each point of a halo is asked for, 8 bytes, and sent, 40; with `ordered` each cell and face
+ *  is sent with as many bytes as it takes of the disk.
  *  Returns BRIO_OK or, on all ranks, what brio_tiles_cells returns on one.
- *  Based on: [Kulisch Miranker 1986], for the sum of volumes. */
-BRIO_API brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const brio_cells_options *options,
+ *  Based on: [Kulisch Miranker 1986], for the sum of volumes; [Frazer McKellar 1970], for the order. */
+BRIO_API brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const brio_cells_options *options, int ordered,
                                       brio_tile_cells_fn take, void *user);
 
 /** Returns the facts of the cells of all ranks, of the last call of brio_ranks_cells that ended well. volume_sum is
@@ -126,8 +142,8 @@ BRIO_API brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const br
  *  view is valid until brio_ranks_free. */
 BRIO_API const brio_tiles_cells_stats *brio_ranks_cells_facts(const brio_ranks *r);
 
-/** Frees everything, and removes this rank's files, unless the run has a key and failed after the points were divided:
- *  then a run that follows goes on with them. NULL is accepted. Not collective. */
+/** Frees everything, and removes this rank's files, unless the run has a key and the last collective call failed, after
+ *  the points were divided: then a run that follows goes on with them. NULL is accepted. Not collective. */
 BRIO_API void brio_ranks_free(brio_ranks *r);
 
 #ifdef __cplusplus

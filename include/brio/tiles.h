@@ -127,7 +127,7 @@ typedef struct brio_tile_neighbour {
  *  The rows are those of brio_tiles_part, which are the same in every call and for every number of threads.
  *  part  of the tile, as brio_tiles_part made it.
  *  neighbours  #T by 4, the caller's: entry i receives the neighbour across the facet opposite to vertex i.
- *  Cost: the first call reads the parts of all tiles, and writes 88 bytes for each facet between two tiles, 32 for one
+ *  Cost: the first call reads the parts of all tiles, and writes 96 bytes for each facet between two tiles, 32 for one
  *  of the hull. Each call sorts the facets of its tile. Memory: 16 bytes a tetrahedron of a tile; in the first call a
  *  part, 48 bytes a tetrahedron, and at most 4 MB, or 1 kB a tile. The files stay until brio_tiles_free. If the first
  *  call fails to make them, it removes them, and a further call tries again.

@@ -155,6 +155,7 @@ struct brio_cells_table {
     char *path;
     brio_cells_format format;
     uint64_t rows, written; /* of cells */
+    bool is_piece;
 };
 
 void brio_cells_table_free(brio_cells_table *table) {
@@ -165,9 +166,8 @@ void brio_cells_table_free(brio_cells_table *table) {
     brio_release(ctx, table);
 }
 
-brio_status brio_cells_table_new(brio_context *ctx, const char *path, brio_cells_format format, uint64_t num_cells,
-                                 brio_cells_table **out) {
-    BRIO_DOOR;
+static brio_status open_table(brio_context *ctx, const char *path, brio_cells_format format, uint64_t num_cells,
+                              bool has_head, brio_cells_table **out) {
     brio_cells_table *table = NULL;
     brio_status status = BRIO_OK;
     size_t size = strlen(path) + 1;
@@ -182,12 +182,26 @@ brio_status brio_cells_table_new(brio_context *ctx, const char *path, brio_cells
     BRIO_TRY(BRIO_ALLOC(ctx, table->path, size));
     memcpy(table->path, path, size);
     BRIO_TRY(brio_output_open(&table->out, ctx, table->path, BRIO_NO_PROGRESS));
-    BRIO_TRY(write_head(&table->out, format, num_cells, false));
+    if (has_head) BRIO_TRY(write_head(&table->out, format, num_cells, false));
     *out = table;
     table = NULL;
 done:
     brio_cells_table_free(table);
     return status;
+}
+
+brio_status brio_cells_table_new(brio_context *ctx, const char *path, brio_cells_format format, uint64_t num_cells,
+                                 brio_cells_table **out) {
+    BRIO_DOOR;
+    return open_table(ctx, path, format, num_cells, true, out);
+}
+
+brio_status brio_cells_table_piece(brio_context *ctx, const char *path, brio_cells_format format, uint64_t num_cells,
+                                   int is_first, brio_cells_table **out) {
+    BRIO_DOOR;
+    BRIO_FORWARD(open_table(ctx, path, format, num_cells, is_first, out));
+    (*out)->is_piece = true;
+    return BRIO_OK;
 }
 
 brio_status brio_cells_table_add(brio_context *ctx, brio_cells_table *table, const brio_cells *cells,
@@ -202,7 +216,8 @@ brio_status brio_cells_table_add(brio_context *ctx, brio_cells_table *table, con
 
 brio_status brio_cells_table_finish(brio_context *ctx, brio_cells_table *table) {
     BRIO_DOOR;
-    BRIO_EXPECT(ctx, table->format != BRIO_CELLS_FORMAT_NPY || table->written == table->rows, BRIO_ERR_ARGUMENT,
+    bool counts = table->format == BRIO_CELLS_FORMAT_NPY && !table->is_piece;
+    BRIO_EXPECT(ctx, !counts || table->written == table->rows, BRIO_ERR_ARGUMENT,
                 "%s: %llu cells were announced, and %llu came", table->path, (unsigned long long)table->rows,
                 (unsigned long long)table->written);
     BRIO_FORWARD(brio_output_finish(&table->out));

@@ -67,8 +67,12 @@ static inline bool brio_target_is_nameless(const brio_target *target) {
  *  file  the descriptor of brio_target_create, which must be open if the file is nameless. */
 bool brio_target_publish(brio_target *target, int file);
 
-/** Does the same, and keeps the file that had the name under the temporary name until brio_target_close, where the file
- *  system can exchange names. Of a set of files the others may still fail. */
+/** Gives the target's name to a file that was made elsewhere in the file system, by its path, in place of one of
+ *  brio_target_create. The file gets the permissions, owner and group as such a one. */
+bool brio_target_adopt(brio_target *target, const char *path);
+
+/** Does what brio_target_publish does, and keeps the file that had the name under the temporary name until
+ *  brio_target_close, where the file system can exchange names. Of a set of files the others may still fail. */
 bool brio_target_exchange(brio_target *target, int file);
 
 /** Takes the name from a file that brio_target_exchange published, and gives it back to the file that had it. */

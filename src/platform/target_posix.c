@@ -275,6 +275,17 @@ bool brio_target_publish(brio_target *target, int file) {
     return target->published || rename_file(target, false);
 }
 
+bool brio_target_adopt(brio_target *target, const char *path) {
+    struct stat old;
+    if (fstatat(target->folder, target->name, &old, 0) == 0) {
+        int file = open(path, O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
+        bool taken = file >= 0 && take_permissions(file, &old);
+        if (file >= 0) close(file);
+        if (!taken) return false;
+    }
+    return renameat(AT_FDCWD, path, target->folder, target->name) == 0;
+}
+
 bool brio_target_exchange(brio_target *target, int file) {
     if (!target->is_new) return true;
     if (!target->is_named && !give_name(target, file)) return false;

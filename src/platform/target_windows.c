@@ -142,6 +142,14 @@ bool brio_target_publish(brio_target *target, int file) {
     return !target->is_new || target->published || rename_file(target);
 }
 
+bool brio_target_adopt(brio_target *target, const char *path) {
+    brio_wide_path from, to;
+    if (!brio_wide_path_of(path, &from) || !path_in(target, target->name, &to)) return false;
+    bool moved = MoveFileExW(from.text, to.text, MOVEFILE_REPLACE_EXISTING | MOVEFILE_WRITE_THROUGH);
+    if (!moved) brio_windows_error();
+    return moved;
+}
+
 /* Replaces: names are not exchanged here. */
 bool brio_target_exchange(brio_target *target, int file) {
     return brio_target_publish(target, file);

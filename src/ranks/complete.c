@@ -293,6 +293,7 @@ static brio_status take_samples(brio_ranks *r) {
 static brio_status exchange_samples(brio_ranks *r) {
     brio_found found = {.ctx = r->ctx};
     brio_status status = BRIO_OK;
+    for (uint32_t i = 0; i < r->t->num_tiles; i++) r->sample[i].count = 0;
     BRIO_TRY(ask_samples(r, &found));
     BRIO_TRY(answer_samples(r, &found));
     status = take_samples(r);

@@ -126,6 +126,7 @@ brio_status brio_ranks_divide(brio_ranks *r) {
     uint64_t points, most_hash;
     BRIO_TRY(brio_tiles_end_taking(r->t));
     BRIO_TRY(add_heads(r, &points, &most_hash));
+    BRIO_TRY(brio_tiles_require_disk(r->t, (double)points / r->ranks));
     BRIO_TRY(gather_sample(r, points, most_hash));
     BRIO_TRY(cut(r));
     BRIO_TRY(brio_tile_trays_new(r->t, &trays));
@@ -207,13 +208,26 @@ static brio_status append_far(brio_ranks *r, brio_tile_roots *roots) {
     return roots->count ? brio_tile_tree_join(t, roots) : BRIO_OK;
 }
 
+/* Forgets the nodes of other ranks, and those over all, that a run before appended, which failed later. */
+static void leave_far(brio_ranks *r) {
+    brio_tiles *t = r->t;
+    if (!r->joined) r->own_nodes = t->num_nodes;
+    r->joined = true;
+    r->own_root = r->own_nodes ? (uint32_t)r->own_nodes - 1 : TILE_NONE;
+    t->num_nodes = r->own_nodes;
+    for (size_t i = 0; i < t->num_nodes; i++)
+        if (t->node[i].tile != TILE_NONE) t->tile[t->node[i].tile].root = (uint32_t)i;
+    brio_release(r->ctx, r->splitter);
+    r->splitter = NULL;
+}
+
 brio_status brio_ranks_join(brio_ranks *r) {
     brio_tiles *t = r->t;
     brio_tile_node *upper = NULL;
     brio_tile_roots roots = {.count = 0};
     size_t count = 0;
     brio_status status = BRIO_OK;
-    r->own_root = t->num_nodes ? (uint32_t)t->num_nodes - 1 : TILE_NONE;
+    leave_far(r);
     BRIO_TRY(join_ends(r));
     BRIO_TRY(brio_tile_tree_upper(t, &upper, &count));
     BRIO_TRY(brio_exchange_all(&r->x, upper, count * sizeof *upper));

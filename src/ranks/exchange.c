@@ -43,21 +43,31 @@ brio_parcel *brio_exchange_parcel(brio_exchange *x, int rank) {
     return &x->parcel[x->begun % BRIO_MOST_UNDER_WAY][rank];
 }
 
-brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, size_t size) {
+brio_status brio_exchange_room(brio_exchange *x, int rank, size_t size, void **room) {
     brio_parcel *p = brio_exchange_parcel(x, rank);
     assert(size % 8 == 0 && x->begun - x->ended < BRIO_MOST_UNDER_WAY);
     BRIO_FORWARD(BRIO_RESERVE(x->ctx, p->bytes, p->capacity, p->size + size));
-    if (size) memcpy(p->bytes + p->size, bytes, size);
+    *room = p->bytes + p->size;
     p->size += size;
+    return BRIO_OK;
+}
+
+brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, size_t size) {
+    void *room;
+    if (!size) return BRIO_OK;
+    BRIO_FORWARD(brio_exchange_room(x, rank, size, &room));
+    memcpy(room, bytes, size);
     return BRIO_OK;
 }
 
 /* --- one exchange --- */
 
-static brio_status fail_transport(brio_exchange *x) {
-    x->failure = BRIO_ERR_OPEN;
-    return brio_fail(x->ctx, BRIO_ERR_OPEN, "rank %d on %s: the exchange with other ranks failed", x->transport.rank,
-                     x->transport.host);
+static brio_status fail_transport(brio_exchange *x, int code) {
+    x->failure = code == BRIO_ERR_NO_MEMORY ? BRIO_ERR_NO_MEMORY : BRIO_ERR_OPEN;
+    x->broken = true;
+    return brio_fail(x->ctx, x->failure, "rank %d on %s: %s", x->transport.rank, x->transport.host,
+                     code == BRIO_ERR_NO_MEMORY ? "no memory for what other ranks send"
+                                                : "the exchange with other ranks failed");
 }
 
 static brio_status begin(brio_exchange *x, uint64_t note) {
@@ -67,7 +77,8 @@ static brio_status begin(brio_exchange *x, uint64_t note) {
         if (note & NOTE_FAILED) x->out[i].bytes = x->last_words, x->out[i].size = sizeof(last_words);
         if (i != x->transport.rank) x->bytes += x->out[i].size;
     }
-    if (x->transport.begin(x->transport.user, x->out)) return fail_transport(x);
+    int failed = x->transport.begin(x->transport.user, x->out);
+    if (failed) return fail_transport(x, failed);
     x->begun++;
     return BRIO_OK;
 }
@@ -75,7 +86,8 @@ static brio_status begin(brio_exchange *x, uint64_t note) {
 /* Ends the oldest exchange, and empties what was sent in it.   *failed  receives the message of a rank that failed. */
 static brio_status end(brio_exchange *x, const brio_letter **failed) {
     double start = brio_seconds();
-    if (x->transport.end(x->transport.user, x->received)) return fail_transport(x);
+    int broken = x->transport.end(x->transport.user, x->received);
+    if (broken) return fail_transport(x, broken);
     x->waited += brio_seconds() - start;
     for (int i = 0; i < x->transport.ranks; i++) x->parcel[x->ended % BRIO_MOST_UNDER_WAY][i].size = 0;
     x->ended++;
@@ -126,9 +138,13 @@ static brio_status fail(brio_exchange *x, brio_status status) {
 }
 
 brio_status brio_exchange_agree(brio_exchange *x, brio_status status) {
-    if (x->failure != BRIO_OK) return x->failure;
-    if (status != BRIO_OK) return fail(x, status);
-    return brio_exchange_now(x, false);
+    if (x->failure != BRIO_OK)
+        status = x->failure; /* all know of it */
+    else
+        status = status == BRIO_OK ? brio_exchange_now(x, false) : fail(x, status);
+    x->failed = status != BRIO_OK;
+    if (!x->broken) x->failure = BRIO_OK;
+    return status;
 }
 
 /* --- what callers see --- */

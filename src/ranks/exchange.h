@@ -6,7 +6,11 @@
  * A rank that fails puts its sentence into the next exchange that it begins, with the number f. Every rank ends f, for
  * at most two are under way, and none is begun beyond f + 1 before f has ended. On seeing the sentence each rank begins
  * f + 1, if it has not, and ends it: then nothing is under way anywhere, and all return the same status. If several
- * fail, the least number, and of it the least rank, has the sentence. */
+ * fail, the least number, and of it the least rank, has the sentence.
+ *
+ * So after brio_exchange_agree all ranks stand at the same number, and exchanges go on. Only a transport that failed
+ * ends them for good. What a later call exchanges must then follow from what all ranks have alike: a rank may have
+ * finished a step that another one failed in. */
 #ifndef BRIO_RANKS_EXCHANGE_H
 #define BRIO_RANKS_EXCHANGE_H
 
@@ -28,8 +32,10 @@ typedef struct {
     brio_letter *out, *received;              /* received: in the order in which the transport gave them */
     const brio_letter **from;                 /* the same by rank */
     uint64_t begun, ended;
-    bool any; /* a rank said so in the exchange that ended last */
-    brio_status failure;
+    bool any;            /* a rank said so in the exchange that ended last */
+    brio_status failure; /* of this call of a collective function; after `broken` of all */
+    bool broken;         /* the transport failed */
+    bool failed;         /* the last collective function did */
     char last_words[640];
     uint64_t bytes; /* sent to other ranks */
     double waited;
@@ -41,6 +47,8 @@ void brio_exchange_free(brio_exchange *x);
 
 /** Appends bytes, a multiple of 8, to what goes to a rank in the next exchange. */
 brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, size_t size);
+/** Appends room for bytes.   *room  receives where, valid until more is appended. */
+brio_status brio_exchange_room(brio_exchange *x, int rank, size_t size, void **room);
 /** Returns the parcel to a rank of the next exchange. */
 brio_parcel *brio_exchange_parcel(brio_exchange *x, int rank);
 
@@ -54,7 +62,8 @@ brio_status brio_exchange_now(brio_exchange *x, bool any);
 /** Sends the same bytes to all ranks, and receives theirs. */
 brio_status brio_exchange_all(brio_exchange *x, const void *bytes, size_t size);
 
-/** Ends a collective function.   status  of this rank, whose sentence is in the context. Returns that of all ranks. */
+/** Ends a collective function.   status  of this rank, whose sentence is in the context. Returns that of all ranks.
+ *  Exchanges may go on afterwards, unless the transport failed. */
 brio_status brio_exchange_agree(brio_exchange *x, brio_status status);
 
 #endif

@@ -18,14 +18,14 @@ static brio_status agree_on_points(brio_ranks *r) {
     return BRIO_OK;
 }
 
-static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *o) {
-    brio_tiles_options of_tiles = {.size = sizeof of_tiles,
-                                   .scratch = o->scratch,
-                                   .tiles = o->tiles ? o->tiles : TILES,
-                                   .stars = o->stars ? 2 : 0};
-    BRIO_EXPECT(r->ctx, of_tiles.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles of a rank; at most %d", o->tiles,
+static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *options) {
+    brio_ranks_options o = {0};
+    BRIO_FORWARD(BRIO_TAKE(r->ctx, brio_ranks_options, options, &o));
+    brio_tiles_options of_tiles = {
+        .size = sizeof of_tiles, .scratch = o.scratch, .tiles = o.tiles ? o.tiles : TILES, .stars = o.stars};
+    BRIO_EXPECT(r->ctx, of_tiles.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles of a rank; at most %d", o.tiles,
                 MOST_TILES);
-    if (o->key) of_tiles.key = brio_hash(brio_hash(o->key, (uint64_t)r->ranks), (uint64_t)r->rank) | 1;
+    if (o.key) of_tiles.key = brio_hash(brio_hash(o.key, (uint64_t)r->ranks), (uint64_t)r->rank) | 1;
     BRIO_FORWARD(brio_tiles_new(r->ctx, &of_tiles, &r->t));
     r->t->first_place = (uint64_t)r->rank << RANK_SHIFT;
     BRIO_FORWARD(BRIO_ALLOC_ZERO(r->ctx, r->sample, r->t->num_tiles));
@@ -38,13 +38,11 @@ static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *o) {
 brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
                            brio_ranks **out) {
     BRIO_DOOR;
-    brio_ranks_options o = {0};
     brio_transport how = {0};
     brio_ranks *r = NULL;
     brio_status status = BRIO_OK;
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_transport, transport, &how));
-    BRIO_TRY(BRIO_TAKE(ctx, brio_ranks_options, options, &o));
     BRIO_REQUIRE(ctx,
                  how.begin && how.end && how.host && how.ranks > 0 && how.ranks <= MOST_RANKS && how.rank >= 0 &&
                      how.rank < how.ranks,
@@ -53,7 +51,7 @@ brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, c
     r->ctx = ctx, r->rank = how.rank, r->ranks = how.ranks;
     r->cells.size = sizeof r->cells;
     BRIO_TRY(brio_exchange_new(ctx, &how, &r->x));
-    BRIO_TRY(brio_exchange_agree(&r->x, open_tiles(r, &o)));
+    BRIO_TRY(brio_exchange_agree(&r->x, open_tiles(r, options)));
     *out = r;
     r = NULL;
 done:
@@ -64,7 +62,7 @@ done:
 void brio_ranks_free(brio_ranks *r) {
     if (!r) return;
     brio_context *ctx = r->ctx;
-    if (r->t && r->t->key && r->t->has_points && r->x.failure != BRIO_OK) brio_tiles_leave(r->t);
+    if (r->t && r->t->key && r->t->has_points && r->x.failed) brio_tiles_leave(r->t);
     for (uint32_t i = 0; r->sample && i < r->t->num_tiles; i++) brio_release(ctx, r->sample[i].point);
     brio_release(ctx, r->sample);
     brio_release(ctx, r->seen);
@@ -159,8 +157,12 @@ static brio_status add_facts(brio_ranks *r) {
     f.stats = r->t->stats;
     BRIO_FORWARD(brio_exchange_all(&r->x, &f, sizeof f));
     r->traffic = (brio_ranks_traffic){.size = sizeof r->traffic, .least_points = UINT64_MAX};
-    r->facts.size = sizeof r->facts;
-    r->facts.weighted = r->t->weighted;
+    r->facts = (brio_tiles_stats){.size = sizeof r->facts,
+                                  .points = r->facts.points,
+                                  .duplicates = r->facts.duplicates,
+                                  .dimension = r->facts.dimension,
+                                  .weighted = r->t->weighted,
+                                  .divide_seconds = r->facts.divide_seconds};
     for (int i = 0; i < r->ranks; i++) {
         memcpy(&f, r->x.from[i]->bytes, sizeof f);
         add_stats(&r->facts, &f.stats);
@@ -185,7 +187,9 @@ static brio_status divide(brio_ranks *r) {
 
 static brio_status run(brio_ranks *r) {
     double start = brio_seconds();
-    BRIO_EXPECT(r->ctx, !r->has_result && !r->t->torn, BRIO_ERR_ARGUMENT, "the ranks have run already");
+    BRIO_EXPECT(r->ctx, !r->has_result, BRIO_ERR_ARGUMENT, "the tiles are triangulated already");
+    BRIO_EXPECT(r->ctx, !r->t->torn, BRIO_ERR_ARGUMENT,
+                "an earlier run ended while it divided the points: add them anew");
     if (!r->t->has_points) BRIO_FORWARD(divide(r));
     BRIO_FORWARD(brio_ranks_join(r));
     r->facts.divide_seconds = brio_seconds() - start;
@@ -198,21 +202,21 @@ static brio_status run(brio_ranks *r) {
     }
     BRIO_FORWARD(add_facts(r));
     r->facts.triangulate_seconds = brio_seconds() - start;
-    r->has_result = true;
     return BRIO_OK;
 }
 
 brio_status brio_ranks_run(brio_context *ctx, brio_ranks *r) {
     BRIO_DOOR;
     BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
-    return brio_exchange_agree(&r->x, run(r));
+    brio_status status = brio_exchange_agree(&r->x, run(r));
+    r->has_result |= status == BRIO_OK; /* on all ranks or on none */
+    return status;
 }
 
 brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint64_t *checksum) {
     BRIO_DOOR;
     double start = brio_seconds();
     BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
-    BRIO_EXPECT(ctx, r->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
     brio_status status = brio_exchange_agree(&r->x, brio_ranks_sum(r, checksum));
     r->facts.rank_seconds = brio_seconds() - start;
     return status;
@@ -220,28 +224,29 @@ brio_status brio_ranks_checksum(brio_context *ctx, brio_ranks *r, uint64_t *chec
 
 /* --- parts --- */
 
-brio_status brio_ranks_own_point(brio_ranks *r, uint64_t place, void *row) {
-    return brio_tile_points(r->t, place, 1, row);
+brio_status brio_ranks_own_points(brio_ranks *r, const uint64_t *places, size_t n, void *rows) {
+    const brio_halo_reader own = brio_tile_own_halo(r->t);
+    return own.read(own.user, places, n, rows);
 }
 
 static brio_status read_halo(void *user, const uint64_t *halo, size_t n, brio_set_point *points) {
-    return brio_ranks_rows(user, halo, n, brio_ranks_own_point, sizeof *points, points);
+    return brio_ranks_rows(user, halo, n, brio_ranks_own_points, sizeof *points, points);
 }
 
-static brio_status make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p) {
+brio_status brio_ranks_make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p) {
+    BRIO_EXPECT(r->ctx, r->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
+    BRIO_EXPECT(r->ctx, tile < r->t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, r->t->num_tiles);
     if (!r->t->tile[tile].tetrahedra)
-        return brio_ranks_rows(r, NULL, 0, brio_ranks_own_point, sizeof(brio_set_point), NULL);
+        return brio_ranks_rows(r, NULL, 0, brio_ranks_own_points, sizeof(brio_set_point), NULL);
     return brio_tile_part_make(r->t, tile, &(brio_halo_reader){read_halo, r}, p);
 }
 
 brio_status brio_ranks_part(brio_context *ctx, brio_ranks *r, uint32_t tile, brio_tile_part *out) {
     BRIO_DOOR;
     brio_tile_part p = {.size = sizeof p};
-    BRIO_FORWARD(BRIO_CHECK_RESULT(ctx, brio_tile_part, out));
     BRIO_EXPECT(ctx, ctx == r->ctx, BRIO_ERR_ARGUMENT, "the ranks are of another context");
-    BRIO_EXPECT(ctx, r->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
-    BRIO_EXPECT(ctx, tile < r->t->num_tiles, BRIO_ERR_ARGUMENT, "tile %u of %u", tile, r->t->num_tiles);
-    brio_status status = brio_exchange_agree(&r->x, make_part(r, tile, &p));
+    brio_status status = BRIO_CHECK_RESULT(ctx, brio_tile_part, out);
+    status = brio_exchange_agree(&r->x, status == BRIO_OK ? brio_ranks_make_part(r, tile, &p) : status);
     if (status != BRIO_OK)
         brio_tile_part_free(ctx, &p);
     else

@@ -13,10 +13,10 @@
 
 /* --- rows of other ranks --- */
 
-brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, brio_row_fn answer, size_t size,
+brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, brio_answer_fn answer, size_t size,
                             void *rows) {
     brio_exchange *x = &r->x;
-    uint64_t row[8];
+    void *room;
     size_t *next = NULL;
     brio_status status = BRIO_OK;
     for (size_t i = 0; i < n; i++)
@@ -24,11 +24,10 @@ brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, bri
     BRIO_TRY(brio_exchange_now(x, false));
     for (int i = 0; i < r->ranks; i++) {
         const brio_letter *m = &x->received[i];
-        const uint64_t *place = m->bytes;
-        for (size_t k = 0; k < m->size / sizeof *place; k++) {
-            BRIO_TRY(answer(r, place[k], row));
-            BRIO_TRY(brio_exchange_put(x, m->rank, row, size));
-        }
+        size_t asked = m->size / sizeof *places;
+        if (!asked) continue;
+        BRIO_TRY(brio_exchange_room(x, m->rank, asked * size, &room));
+        BRIO_TRY(answer(r, m->bytes, asked, room));
     }
     BRIO_TRY(brio_exchange_now(x, false));
     BRIO_TRY(BRIO_ALLOC_ZERO(r->ctx, next, r->ranks));
@@ -124,6 +123,8 @@ static brio_status rank_vertices(brio_ranks *r) {
     brio_status status = BRIO_OK;
     uint64_t points = 0;
     for (uint32_t i = 0; i < r->t->num_tiles; i++) points += r->t->tile[i].points;
+    brio_release(r->ctx, r->rank_of);
+    r->rank_of = NULL;
     BRIO_TRY(gather_part(r, &part));
     BRIO_TRY(send_ranks(r, &part));
     BRIO_TRY(BRIO_ALLOC(r->ctx, r->rank_of, points + 1));
@@ -139,8 +140,9 @@ done:
 
 /* --- sums --- */
 
-static brio_status answer_rank(brio_ranks *r, uint64_t place, void *row) {
-    memcpy(row, &r->rank_of[place - r->t->first_place], sizeof *r->rank_of);
+static brio_status answer_ranks(brio_ranks *r, const uint64_t *places, size_t n, void *rows) {
+    uint64_t *rank = rows;
+    for (size_t i = 0; i < n; i++) rank[i] = r->rank_of[places[i] - r->t->first_place];
     return BRIO_OK;
 }
 
@@ -152,7 +154,7 @@ static brio_status add_hashes(brio_ranks *r, uint32_t tile, uint64_t *sum) {
     brio_status status = BRIO_OK;
     if (facts->points) BRIO_TRY(brio_tile_result_read(r->t, tile, true, &result));
     BRIO_TRY(BRIO_ALLOC(r->ctx, halo, facts->halo + 1));
-    BRIO_TRY(brio_ranks_rows(r, result.halo, facts->halo, answer_rank, sizeof *halo, halo));
+    BRIO_TRY(brio_ranks_rows(r, result.halo, facts->halo, answer_ranks, sizeof *halo, halo));
     for (size_t i = 0; i < facts->tetrahedra; i++) {
         for (int k = 0; k < 4; k++) {
             uint32_t v = result.tetrahedra[i][k];
@@ -171,8 +173,10 @@ done:
 
 brio_status brio_ranks_sum(brio_ranks *r, uint64_t *checksum) {
     uint64_t sum = 0, all = brio_mix(r->facts.vertices);
+    BRIO_EXPECT(r->ctx, r->has_result, BRIO_ERR_ARGUMENT, "the tiles are not triangulated yet");
     if (r->facts.dimension == 3) {
-        if (!r->rank_of) BRIO_FORWARD(rank_vertices(r));
+        BRIO_FORWARD(brio_exchange_now(&r->x, !r->rank_of)); /* a call before may have failed on some ranks alone */
+        if (r->x.any) BRIO_FORWARD(rank_vertices(r));
         for (uint32_t i = 0; i < r->t->num_tiles; i++) {
             BRIO_FORWARD(brio_progress(r->ctx, "checksum", 0.5 + 0.5 * i / r->t->num_tiles));
             BRIO_FORWARD(add_hashes(r, i, &sum));

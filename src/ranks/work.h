@@ -22,12 +22,14 @@ struct brio_ranks {
     brio_tiles_stats facts;       /* of all ranks */
     brio_ranks_traffic traffic;   /* the same */
     brio_tiles_cells_stats cells; /* of all ranks; 0 before brio_ranks_cells ended well */
-    uint32_t own_root;            /* node over this rank's tiles; TILE_NONE if there are no points */
-    double (*splitter)[3];        /* ranks - 1, ascending: where lists of positions are divided among ranks */
-    brio_found *sample;           /* of each own tile, the points of other ranks that it begins with */
-    brio_ball_box *seen;          /* of each own tile: all points in it are known when it begins */
-    brio_rank_served *served;     /* by rank and slot */
-    uint64_t *rank_of;            /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
+    bool joined;
+    size_t own_nodes;         /* nodes of this rank's points, which come first; known once `joined` */
+    uint32_t own_root;        /* node over this rank's tiles; TILE_NONE if there are no points */
+    double (*splitter)[3];    /* ranks - 1, ascending: where lists of positions are divided among ranks */
+    brio_found *sample;       /* of each own tile, the points of other ranks that it begins with */
+    brio_ball_box *seen;      /* of each own tile: all points in it are known when it begins */
+    brio_rank_served *served; /* by rank and slot */
+    uint64_t *rank_of;        /* of each own place: its vertex' rank among all; NULL before brio_ranks_sum */
     uint64_t far_asked, far_found, rounds, question_bytes;
     bool has_result;
 };
@@ -43,13 +45,22 @@ brio_status brio_ranks_complete(brio_ranks *r);
 /** Sums the hashes of all tetrahedra. */
 brio_status brio_ranks_sum(brio_ranks *r, uint64_t *checksum);
 
-/** Fetches rows by their places from the ranks that have them.   answer  gives a row of an own place.
+/** Writes the rows of own places. */
+typedef brio_status (*brio_answer_fn)(brio_ranks *r, const uint64_t *places, size_t n, void *rows);
+/** Fetches rows by their places from the ranks that have them.   answer  is called once for each rank that asks.
  *  rows  n of `size` bytes, a multiple of 8. */
-typedef brio_status (*brio_row_fn)(brio_ranks *r, uint64_t place, void *row);
-brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, brio_row_fn answer, size_t size,
+brio_status brio_ranks_rows(brio_ranks *r, const uint64_t *places, size_t n, brio_answer_fn answer, size_t size,
                             void *rows);
-/** Reads a point of this rank, as a brio_row_fn: a brio_set_point. */
-brio_status brio_ranks_own_point(brio_ranks *r, uint64_t place, void *row);
+/** Reads points of this rank, as a brio_answer_fn: rows are brio_set_point. */
+brio_status brio_ranks_own_points(brio_ranks *r, const uint64_t *places, size_t n, void *rows);
+
+/** Makes the part of a tile of this rank, which all ranks do at once. */
+brio_status brio_ranks_make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p);
+
+/** Returns the number of an own tile among those of all ranks. */
+static inline uint32_t brio_ranks_tile(const brio_ranks *r, uint32_t tile) {
+    return (uint32_t)r->rank * r->t->num_tiles + tile;
+}
 
 static inline int brio_rank_of_place(uint64_t place) {
     return (int)(place >> RANK_SHIFT);

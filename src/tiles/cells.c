@@ -20,16 +20,10 @@ typedef struct {
     size_t site_capacity;
 } cell_run;
 
-void brio_tile_cells_count(const brio_cells *cells, brio_tiles_cells_stats *s, double *lost) {
-    for (size_t c = 0; c < cells->num_cells; c++) {
-        double x = cells->volume[c], sum = s->volume_sum, next = sum + x;
-        s->cells++;
-        if (cells->face_offsets) s->faces += cells->face_offsets[c + 1] - cells->face_offsets[c];
-        if (!cells->bounded[c]) continue;
-        s->bounded++;
-        if (isfinite(next)) *lost += fabs(sum) >= fabs(x) ? (sum - next) + x : (x - next) + sum;
-        s->volume_sum = next;
-    }
+void brio_tile_cells_count(const brio_cells *cells, brio_tiles_cells_stats *s) {
+    s->cells += cells->num_cells;
+    if (cells->face_offsets) s->faces += cells->face_offsets[cells->num_cells];
+    for (size_t c = 0; c < cells->num_cells; c++) s->bounded += cells->bounded[c];
 }
 
 /* Counts the sites that are not in the box. */
@@ -140,9 +134,20 @@ typedef struct {
     double lost;
 } caller;
 
+/* Adds the volumes of bounded cells. The rounding errors go to c->lost [Neumaier 1974]. */
+static void add_volumes(caller *c, const brio_cells *cells) {
+    for (size_t i = 0; i < cells->num_cells; i++) {
+        double x = cells->volume[i], sum = c->stats->volume_sum, next = sum + x;
+        if (!cells->bounded[i]) continue;
+        if (isfinite(next)) c->lost += fabs(sum) >= fabs(x) ? (sum - next) + x : (x - next) + sum;
+        c->stats->volume_sum = next;
+    }
+}
+
 static brio_status call(void *user, brio_cells *cells, const uint64_t *site) {
     caller *c = user;
-    brio_tile_cells_count(cells, c->stats, &c->lost);
+    brio_tile_cells_count(cells, c->stats);
+    add_volumes(c, cells);
     BRIO_EXPECT(c->ctx, !c->take(cells, site, c->user), BRIO_ERR_CANCELLED,
                 "cells: the caller's function ended the run");
     return BRIO_OK;

@@ -65,12 +65,36 @@ brio_status brio_tile_run_cells(brio_tiles *t, uint32_t tile, const brio_cells_o
 brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options, bool with_faces,
                                          const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats);
 
-/** Returns the bytes that wait for the files into which brio_tiles_run_ordered_cells divides. */
-double brio_ordered_cells_buffers(size_t tiles, bool with_faces);
-
-/** Adds cells to the counts and to the sum of volumes, whose rounding errors go to *lost [Neumaier 1974]. */
-void brio_tile_cells_count(const brio_cells *cells, brio_tiles_cells_stats *stats, double *lost);
+/** Adds cells to the counts. */
+void brio_tile_cells_count(const brio_cells *cells, brio_tiles_cells_stats *stats);
 /** Refuses cells that do not fill the region, as brio_voronoi_cells does. */
 brio_status brio_tile_cells_check(brio_context *ctx, const brio_tiles_cells_stats *stats);
+
+/* --- cells in order --- */
+
+/** Cells on their way into the order of their sites: parts, of which each has the sites of a range, in files. */
+typedef struct brio_ordered_cells brio_ordered_cells;
+
+enum { BRIO_ORDERED_PARTS = 2 }; /* for each tile: the cells of a part, with faces, fit where a tile fitted */
+
+/** Makes the files.
+ *  end  of all parts but the last, ascending: part i has the sites below end[i] that no part before it has. Copied.
+ *  with_faces  false: of the faces no more than their number.
+ *  *out  freed by the caller, also on failure. */
+brio_status brio_ordered_cells_new(brio_tiles *t, const brio_cells_options *options, bool with_faces,
+                                   const uint64_t *end, brio_ordered_cells **out);
+/** Removes the files. NULL is accepted. */
+void brio_ordered_cells_free(brio_ordered_cells *o);
+/** Returns the bytes that wait for the files. */
+double brio_ordered_cells_buffers(size_t tiles, bool with_faces);
+
+/** Packs a cell into bytes, a multiple of 8, which any process of the same kind can put into its files.
+ *  *bytes  valid until the next call. */
+brio_status brio_ordered_cells_pack(brio_ordered_cells *o, const brio_cells *cells, size_t c, uint64_t site,
+                                    const void **bytes, size_t *size);
+/** Puts a cell into its file.   *size  receives how many of the bytes were the cell's. */
+brio_status brio_ordered_cells_put(brio_ordered_cells *o, const void *bytes, size_t *size);
+/** Hands all cells on in ascending order of their sites; each file is removed when it was read. Call once. */
+brio_status brio_ordered_cells_hand_on(brio_ordered_cells *o, const brio_tile_cells_sink *sink);
 
 #endif

@@ -59,9 +59,8 @@ static void list_facets(const brio_tile_part *p, size_t *end, uint32_t *facet) {
     }
 }
 
-/* Names the neighbours that are in the same part. The others become those that a facet of the hull has. */
-static brio_status match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
-                                brio_tile_neighbour (*neighbours)[4]) {
+brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
+                                   brio_tile_neighbour (*neighbours)[4]) {
     uint32_t *facet = NULL;
     size_t *end = NULL;
     brio_status status = BRIO_OK;
@@ -90,19 +89,12 @@ done:
 
 /* --- facets without a neighbour in their part --- */
 
-typedef struct {
-    uint64_t index[3]; /* of the vertices, ascending */
-    uint32_t tile, facet;
-} lone_facet;
+uint64_t brio_lone_facet_hash(const brio_lone_facet *l) {
+    return brio_mix(l->index[0] ^ brio_mix(l->index[1] ^ brio_mix(l->index[2])));
+}
 
-/* Says to a facet of a tile what its neighbour is. */
-typedef struct {
-    uint32_t facet;
-    brio_tile_neighbour neighbour;
-} answer;
-
-static lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t facet) {
-    lone_facet l = {.tile = tile, .facet = facet};
+static brio_lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t facet) {
+    brio_lone_facet l = {.tile = tile, .facet = facet};
     uint32_t v[3];
     vertices_of(p, facet, v);
     for (int k = 0; k < 3; k++) l.index[k] = p->index[v[k]];
@@ -110,36 +102,31 @@ static lone_facet lone_facet_of(const brio_tile_part *p, uint32_t tile, uint32_t
     return l;
 }
 
-/* Puts the lone facets of a tile into the files. */
-static brio_status put_lone(brio_tiles *t, uint32_t tile, brio_row_files *all) {
-    brio_tile_part p = {.size = sizeof p};
+brio_status brio_tile_lone_facets(brio_context *ctx, uint32_t tile, const brio_tile_part *p, brio_lone_facet_fn take,
+                                  void *user) {
     brio_tile_neighbour(*neighbours)[4] = NULL;
     brio_status status = BRIO_OK;
-    BRIO_TRY(brio_tiles_part(t->ctx, t, tile, &p));
-    BRIO_TRY(BRIO_ALLOC(t->ctx, neighbours, p.num_tetrahedra + 1));
-    BRIO_TRY(match_inside(t->ctx, tile, &p, neighbours));
-    for (size_t f = 0; f < 4 * p.num_tetrahedra; f++) {
+    BRIO_TRY(BRIO_ALLOC(ctx, neighbours, p->num_tetrahedra + 1));
+    BRIO_TRY(brio_tile_match_inside(ctx, tile, p, neighbours));
+    for (size_t f = 0; f < 4 * p->num_tetrahedra; f++) {
         if (neighbours[f / 4][f % 4].tile != BRIO_NO_TILE) continue;
-        lone_facet l = lone_facet_of(&p, tile, (uint32_t)f);
-        uint64_t hash = brio_mix(l.index[0] ^ brio_mix(l.index[1] ^ brio_mix(l.index[2])));
-        BRIO_TRY(brio_row_files_put(all, (uint32_t)(hash % t->num_tiles), &l, sizeof l));
+        brio_lone_facet l = lone_facet_of(p, tile, (uint32_t)f);
+        BRIO_TRY(take(user, &l));
     }
 done:
-    brio_tile_part_free(t->ctx, &p);
-    brio_release(t->ctx, neighbours);
+    brio_release(ctx, neighbours);
     return status;
 }
 
 static int compare_lone(uint32_t i, uint32_t j, const void *user) {
-    const lone_facet *a = (const lone_facet *)user + i, *b = (const lone_facet *)user + j;
+    const brio_lone_facet *a = (const brio_lone_facet *)user + i, *b = (const brio_lone_facet *)user + j;
     for (int k = 0; k < 3; k++)
         if (a->index[k] != b->index[k]) return a->index[k] < b->index[k] ? -1 : 1;
     return 0;
 }
 
-/* Tells each side of the pairs of a file the other one.   *alone  grows by the facets that have no other side. */
-static brio_status answer_pairs(brio_tiles *t, uint32_t file, brio_row_files *all, uint64_t *alone) {
-    lone_facet *l = NULL;
+brio_status brio_facet_pairs(brio_tiles *t, uint32_t file, brio_facet_answer_fn take, void *user, uint64_t *alone) {
+    brio_lone_facet *l = NULL;
     uint32_t *row = NULL;
     size_t n = 0;
     brio_status status = BRIO_OK;
@@ -150,30 +137,68 @@ static brio_status answer_pairs(brio_tiles *t, uint32_t file, brio_row_files *al
     for (size_t i = 0; i < n; i++) row[i] = (uint32_t)i;
     BRIO_TRY(brio_sort_many_indices(t->ctx, row, n, compare_lone, l));
     for (size_t i = 1; i < n; i++) {
-        const lone_facet *a = &l[row[i - 1]], *b = &l[row[i]];
+        const brio_lone_facet *a = &l[row[i - 1]], *b = &l[row[i]];
         if (compare_lone(row[i - 1], row[i], l)) continue;
         *alone -= 2;
-        BRIO_TRY(
-            brio_row_files_put(all, a->tile, &(answer){a->facet, {b->tile, brio_tet_of(b->facet)}}, sizeof(answer)));
-        BRIO_TRY(
-            brio_row_files_put(all, b->tile, &(answer){b->facet, {a->tile, brio_tet_of(a->facet)}}, sizeof(answer)));
+        BRIO_TRY(take(user, &(brio_facet_answer){a->tile, a->facet, {b->tile, brio_tet_of(b->facet)}}));
+        BRIO_TRY(take(user, &(brio_facet_answer){b->tile, b->facet, {a->tile, brio_tet_of(a->facet)}}));
     }
+    brio_row_files_remove(&t->folder, "lone", file);
 done:
     brio_release(t->ctx, l);
     brio_release(t->ctx, row);
     return status;
 }
 
+brio_status brio_facet_answers_take(brio_tiles *t, uint32_t file, uint64_t all_tiles, const brio_tile_part *p,
+                                    brio_tile_neighbour (*neighbours)[4]) {
+    brio_facet_answer *a = NULL;
+    size_t n = 0;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_row_files_read(&t->folder, "joined", file, sizeof *a, (void **)&a, &n));
+    for (size_t i = 0; i < n; i++) {
+        uint32_t tet = brio_tet_of(a[i].facet);
+        BRIO_REQUIRE(t->ctx, tet < p->num_tetrahedra && a[i].neighbour.tile < all_tiles, BRIO_ERR_OPEN,
+                     "%s/joined-%u was changed from outside", t->folder.path, file);
+        neighbours[tet][brio_slot_of(a[i].facet)] = a[i].neighbour;
+    }
+done:
+    brio_release(t->ctx, a);
+    return status;
+}
+
+void brio_facet_files_remove(brio_tiles *t) {
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        brio_row_files_remove(&t->folder, "lone", i);
+        brio_row_files_remove(&t->folder, "joined", i);
+    }
+}
+
+/* --- one process --- */
+
+static brio_status put_lone(void *user, const brio_lone_facet *l) {
+    brio_row_files *lone = user;
+    return brio_row_files_put(lone, (uint32_t)(brio_lone_facet_hash(l) % lone->count), l, sizeof *l);
+}
+
+static brio_status put_answer(void *user, const brio_facet_answer *a) {
+    return brio_row_files_put(user, a->tile, a, sizeof *a);
+}
+
 static brio_status divide_lone(brio_tiles *t) {
     brio_row_files lone = {0};
+    brio_tile_part p = {.size = sizeof p};
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_row_files_open(&t->folder, "lone", t->num_tiles, &lone));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 * i / t->num_tiles));
-        BRIO_TRY(put_lone(t, i, &lone));
+        BRIO_TRY(brio_tiles_part(t->ctx, t, i, &p));
+        BRIO_TRY(brio_tile_lone_facets(t->ctx, i, &p, put_lone, &lone));
+        brio_tile_part_free(t->ctx, &p);
     }
-    BRIO_TRY(brio_row_files_flush(&lone));
+    status = brio_row_files_flush(&lone);
 done:
+    brio_tile_part_free(t->ctx, &p);
     brio_row_files_close(&lone);
     return status;
 }
@@ -185,8 +210,7 @@ static brio_status join_lone(brio_tiles *t) {
     BRIO_TRY(brio_row_files_open(&t->folder, "joined", t->num_tiles, &joined));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         BRIO_TRY(brio_progress(t->ctx, "neighbours", 0.9 + 0.1 * i / t->num_tiles));
-        BRIO_TRY(answer_pairs(t, i, &joined, &alone));
-        brio_row_files_remove(&t->folder, "lone", i);
+        BRIO_TRY(brio_facet_pairs(t, i, put_answer, &joined, &alone));
     }
     BRIO_TRY(brio_row_files_flush(&joined));
     BRIO_REQUIRE(t->ctx, alone == t->stats.hull_facets, BRIO_ERR_OPEN,
@@ -197,10 +221,6 @@ done:
     return status;
 }
 
-static void remove_files(brio_tiles *t, const char *name) {
-    for (uint32_t i = 0; i < t->num_tiles; i++) brio_row_files_remove(&t->folder, name, i);
-}
-
 /* Finds all neighbours that are of another tile. After a failure its files give their room back. */
 static brio_status join_tiles(brio_tiles *t) {
     brio_status status = divide_lone(t);
@@ -208,26 +228,7 @@ static brio_status join_tiles(brio_tiles *t) {
     t->has_neighbours = status == BRIO_OK;
     t->stats.scratch_bytes = t->folder.most;
     if (status == BRIO_OK) return BRIO_OK;
-    remove_files(t, "lone");
-    remove_files(t, "joined");
-    return status;
-}
-
-/* Names the neighbours of a part that are of other tiles. */
-static brio_status take_answers(brio_tiles *t, uint32_t tile, const brio_tile_part *p,
-                                brio_tile_neighbour (*neighbours)[4]) {
-    answer *a = NULL;
-    size_t n = 0;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_row_files_read(&t->folder, "joined", tile, sizeof *a, (void **)&a, &n));
-    for (size_t i = 0; i < n; i++) {
-        uint32_t tet = brio_tet_of(a[i].facet);
-        BRIO_REQUIRE(t->ctx, tet < p->num_tetrahedra && a[i].neighbour.tile < t->num_tiles, BRIO_ERR_OPEN,
-                     "%s/joined-%u was changed from outside", t->folder.path, tile);
-        neighbours[tet][brio_slot_of(a[i].facet)] = a[i].neighbour;
-    }
-done:
-    brio_release(t->ctx, a);
+    brio_facet_files_remove(t);
     return status;
 }
 
@@ -242,6 +243,6 @@ brio_status brio_tiles_neighbours(brio_context *ctx, brio_tiles *t, uint32_t til
                 (unsigned long long)t->tile[tile].tetrahedra);
     if (!part->num_tetrahedra) return BRIO_OK;
     if (!t->has_neighbours) BRIO_FORWARD(join_tiles(t));
-    BRIO_FORWARD(match_inside(ctx, tile, part, neighbours));
-    return take_answers(t, tile, part, neighbours);
+    BRIO_FORWARD(brio_tile_match_inside(ctx, tile, part, neighbours));
+    return brio_facet_answers_take(t, tile, t->num_tiles, part, neighbours);
 }

@@ -9,9 +9,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* PARTS: files for each tile, so that the cells of one, with faces, fit where a tile fitted. AT_ONCE: cells that are
- * handed on together. BUFFER: bytes that wait for a file, at most; all together have ALL_BUFFERS. Chosen. */
-enum { PARTS = 2, AT_ONCE = 1 << 11, BUFFER = 1 << 16, LEAST_BUFFER = 1 << 10, ALL_BUFFERS = 1 << 25 };
+/* AT_ONCE: cells that are handed on together. BUFFER: bytes that wait for a file, at most; all together have
+ * ALL_BUFFERS. Chosen. */
+enum { AT_ONCE = 1 << 11, BUFFER = 1 << 16, LEAST_BUFFER = 1 << 10, ALL_BUFFERS = 1 << 25 };
 
 typedef struct {
     uint64_t site;
@@ -31,14 +31,18 @@ typedef struct {
     size_t used, room;
 } tray;
 
-typedef struct {
+struct brio_ordered_cells {
     brio_tiles *t;
     bool areas, centroids, sizes;
     bool counts, faces; /* counts: the number of faces of each cell; faces: the faces themselves */
-    uint64_t share;     /* sites of a part */
     size_t num_parts;
+    uint64_t *end;             /* of each part except the last */
     tray *cells_of, *faces_of; /* of each part */
-} ordering;
+    uint8_t *packed;           /* the cell that was packed last */
+    size_t packed_capacity;
+};
+
+typedef brio_ordered_cells ordering;
 
 /* --- to the files --- */
 
@@ -56,32 +60,51 @@ static brio_status put(tray *f, const void *bytes, size_t size) {
     return BRIO_OK;
 }
 
-static brio_status put_cell(ordering *o, const brio_cells *cells, size_t c, uint64_t site) {
-    size_t part = (size_t)(site / o->share);
+brio_status brio_ordered_cells_pack(brio_ordered_cells *o, const brio_cells *cells, size_t c, uint64_t site,
+                                    const void **bytes, size_t *size) {
     cell_row row = {.site = site, .volume = cells->volume[c], .bounded = cells->bounded[c]};
-    assert(part < o->num_parts);
     if (o->areas) row.area = cells->area[c];
     if (o->centroids) memcpy(row.centroid, cells->centroid + 3 * c, sizeof row.centroid);
     if (o->counts) row.faces = (uint32_t)(cells->face_offsets[c + 1] - cells->face_offsets[c]);
-    if (!o->faces) return put(&o->cells_of[part], &row, sizeof row);
-    for (uint64_t f = cells->face_offsets[c]; f < cells->face_offsets[c + 1]; f++) {
+    *size = sizeof row + (o->faces ? row.faces * sizeof(face_row) : 0);
+    BRIO_FORWARD(BRIO_RESERVE(o->t->ctx, o->packed, o->packed_capacity, *size));
+    *bytes = o->packed;
+    memcpy(o->packed, &row, sizeof row);
+    for (uint32_t i = 0; o->faces && i < row.faces; i++) {
+        uint64_t f = cells->face_offsets[c] + i;
         face_row face = {.neighbour = cells->face_neighbours[f]};
         if (o->sizes) {
             face.area = cells->face_areas[f];
             memcpy(face.normal, cells->face_normals + 3 * f, sizeof face.normal);
         }
-        BRIO_FORWARD(put(&o->faces_of[part], &face, sizeof face));
-    }
-    return put(&o->cells_of[part], &row, sizeof row);
-}
-
-static brio_status put_cells(void *user, brio_cells *cells, const uint64_t *site) {
-    ordering *o = user;
-    for (size_t c = 0; c < cells->num_cells; c++) {
-        BRIO_FORWARD(put_cell(o, cells, c, site[c]));
-        BRIO_FORWARD(brio_look(o->t->ctx, 1));
+        memcpy(o->packed + sizeof row + i * sizeof face, &face, sizeof face);
     }
     return BRIO_OK;
+}
+
+/* Returns the part of a site: the number of ends that are not above it. */
+static size_t part_of(const ordering *o, uint64_t site) {
+    size_t low = 0, high = o->num_parts - 1;
+    while (low < high) {
+        size_t middle = (low + high) / 2;
+        if (o->end[middle] <= site)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+brio_status brio_ordered_cells_put(brio_ordered_cells *o, const void *bytes, size_t *size) {
+    cell_row row;
+    memcpy(&row, bytes, sizeof row);
+    const uint8_t *face = (const uint8_t *)bytes + sizeof row;
+    size_t part = part_of(o, row.site), num_faces = o->faces ? row.faces : 0;
+    *size = sizeof row + num_faces * sizeof(face_row);
+    for (size_t f = 0; f < num_faces; f++)
+        BRIO_FORWARD(put(&o->faces_of[part], face + f * sizeof(face_row), sizeof(face_row)));
+    BRIO_FORWARD(put(&o->cells_of[part], &row, sizeof row));
+    return brio_look(o->t->ctx, 1);
 }
 
 static void name_of(const char *kind, size_t part, char name[32]) {
@@ -95,7 +118,7 @@ static size_t room_of_tray(size_t num_parts) {
 }
 
 double brio_ordered_cells_buffers(size_t tiles, bool with_faces) {
-    size_t num_parts = (size_t)PARTS * tiles;
+    size_t num_parts = BRIO_ORDERED_PARTS * tiles;
     return (with_faces ? 2.0 : 1.0) * (double)num_parts * (double)room_of_tray(num_parts);
 }
 
@@ -117,8 +140,7 @@ static void close_trays(ordering *o, tray *list) {
     }
 }
 
-static brio_status divide(ordering *o, const brio_cells_options *options, brio_tiles_cells_stats *stats) {
-    const brio_tile_cells_sink sink = {put_cells, o};
+static brio_status open_trays(ordering *o) {
     BRIO_FORWARD(BRIO_ALLOC_ZERO(o->t->ctx, o->cells_of, o->num_parts));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(o->t->ctx, o->faces_of, o->num_parts));
     for (size_t i = 0; i < o->num_parts; i++) o->cells_of[i].file.file = o->faces_of[i].file.file = -1;
@@ -126,7 +148,10 @@ static brio_status divide(ordering *o, const brio_cells_options *options, brio_t
         BRIO_FORWARD(open_tray(o, "cells", i, &o->cells_of[i]));
         if (o->faces) BRIO_FORWARD(open_tray(o, "faces", i, &o->faces_of[i]));
     }
-    BRIO_FORWARD(brio_tiles_run_cells(o->t, options, &sink, stats));
+    return BRIO_OK;
+}
+
+static brio_status flush_trays(ordering *o) {
     for (size_t i = 0; i < o->num_parts; i++) {
         BRIO_FORWARD(flush(&o->cells_of[i]));
         if (o->faces) BRIO_FORWARD(flush(&o->faces_of[i]));
@@ -266,6 +291,16 @@ static brio_status hand_on_part(ordering *o, size_t part, const brio_tile_cells_
     return status;
 }
 
+brio_status brio_ordered_cells_hand_on(brio_ordered_cells *o, const brio_tile_cells_sink *sink) {
+    BRIO_FORWARD(flush_trays(o));
+    close_trays(o, o->cells_of);
+    close_trays(o, o->faces_of);
+    for (size_t i = 0; i < o->num_parts; i++) BRIO_FORWARD(hand_on_part(o, i, sink));
+    return BRIO_OK;
+}
+
+/* --- life --- */
+
 static void remove_files(ordering *o) {
     char name[32];
     for (size_t i = 0; i < o->num_parts; i++) {
@@ -276,26 +311,62 @@ static void remove_files(ordering *o) {
     }
 }
 
+brio_status brio_ordered_cells_new(brio_tiles *t, const brio_cells_options *options, bool with_faces,
+                                   const uint64_t *end, brio_ordered_cells **out) {
+    ordering *o = NULL;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(t->ctx, o, 1));
+    *out = o;
+    *o = (ordering){.t = t,
+                    .areas = !options->no_areas,
+                    .centroids = !options->no_centroids,
+                    .counts = !options->no_faces,
+                    .faces = with_faces && !options->no_faces,
+                    .sizes = !options->no_face_sizes,
+                    .num_parts = (size_t)BRIO_ORDERED_PARTS * t->num_tiles};
+    BRIO_FORWARD(BRIO_ALLOC(t->ctx, o->end, o->num_parts));
+    memcpy(o->end, end, (o->num_parts - 1) * sizeof *o->end);
+    return open_trays(o);
+}
+
+void brio_ordered_cells_free(brio_ordered_cells *o) {
+    if (!o) return;
+    brio_context *ctx = o->t->ctx;
+    close_trays(o, o->cells_of);
+    close_trays(o, o->faces_of);
+    remove_files(o);
+    brio_release(ctx, o->cells_of);
+    brio_release(ctx, o->faces_of);
+    brio_release(ctx, o->end);
+    brio_release(ctx, o->packed);
+    brio_release(ctx, o);
+}
+
+/* --- one process --- */
+
+static brio_status put_cells(void *user, brio_cells *cells, const uint64_t *site) {
+    brio_ordered_cells *o = user;
+    const void *bytes;
+    size_t size;
+    for (size_t c = 0; c < cells->num_cells; c++) {
+        BRIO_FORWARD(brio_ordered_cells_pack(o, cells, c, site[c], &bytes, &size));
+        BRIO_FORWARD(brio_ordered_cells_put(o, bytes, &size));
+    }
+    return BRIO_OK;
+}
+
 brio_status brio_tiles_run_ordered_cells(brio_tiles *t, const brio_cells_options *options, bool with_faces,
                                          const brio_tile_cells_sink *sink, brio_tiles_cells_stats *stats) {
-    ordering o = {.t = t,
-                  .areas = !options->no_areas,
-                  .centroids = !options->no_centroids,
-                  .counts = !options->no_faces,
-                  .faces = with_faces && !options->no_faces,
-                  .sizes = !options->no_face_sizes,
-                  .num_parts = (size_t)PARTS * t->num_tiles};
+    brio_ordered_cells *o = NULL;
     brio_status status = BRIO_OK;
-    o.share = t->stats.points / o.num_parts + 1;
-    BRIO_TRY(divide(&o, options, stats));
-    close_trays(&o, o.cells_of);
-    close_trays(&o, o.faces_of);
-    for (size_t i = 0; i < o.num_parts; i++) BRIO_TRY(hand_on_part(&o, i, sink));
+    size_t num_parts = (size_t)BRIO_ORDERED_PARTS * t->num_tiles;
+    uint64_t *end = NULL, share = t->stats.points / num_parts + 1;
+    BRIO_TRY(BRIO_ALLOC(t->ctx, end, num_parts));
+    for (size_t i = 0; i < num_parts; i++) end[i] = (i + 1) * share;
+    BRIO_TRY(brio_ordered_cells_new(t, options, with_faces, end, &o));
+    BRIO_TRY(brio_tiles_run_cells(t, options, &(brio_tile_cells_sink){put_cells, o}, stats));
+    status = brio_ordered_cells_hand_on(o, sink);
 done:
-    close_trays(&o, o.cells_of);
-    close_trays(&o, o.faces_of);
-    remove_files(&o);
-    brio_release(t->ctx, o.cells_of);
-    brio_release(t->ctx, o.faces_of);
+    brio_ordered_cells_free(o);
+    brio_release(t->ctx, end);
     return status;
 }

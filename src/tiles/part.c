@@ -29,7 +29,7 @@ static brio_status read_halo(void *user, const uint64_t *halo, size_t n, brio_se
     BRIO_TRY(BRIO_ALLOC(t->ctx, sorted, n + 1));
     for (uint32_t i = 0; i < n; i++) order[i] = i;
     BRIO_TRY(brio_sort_many_indices(t->ctx, order, n, compare_places, halo));
-    for (size_t i = 0; i < n; i++) place[i] = halo[order[i]];
+    for (size_t i = 0; i < n; i++) place[i] = halo[order[i]] - t->first_place;
     BRIO_TRY(brio_tile_rows(&f, place, n, sizeof *sorted, sorted));
     for (size_t i = 0; i < n; i++) points[order[i]] = sorted[i];
 done:

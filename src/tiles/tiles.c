@@ -286,11 +286,9 @@ brio_status brio_tiles_require_memory(brio_tiles *t, int at_once) {
         t->num_tiles, most, need / 1e6, limit / 1e6, fmin(tiles, MOST_TILES));
 }
 
-/* Refuses points for which the disk has no room: before the work, not hours after. */
-static brio_status require_disk(brio_tiles *t) {
+brio_status brio_tiles_require_disk(brio_tiles *t, double n) {
     uint64_t room;
     double each = t->sorts_faces ? DISK_WITH_FACES : t->sorts_cells ? DISK_WITH_CELLS : DISK_A_POINT;
-    double n = (double)t->stats.points;
     double need = n * (each - sizeof(brio_set_point));
     if (!brio_free_bytes(t->folder.path, &room)) return BRIO_OK;
     BRIO_EXPECT(t->ctx, need <= (double)room, BRIO_ERR_WRITE,
@@ -302,6 +300,7 @@ static brio_status require_disk(brio_tiles *t) {
 void brio_tiles_add_facts(brio_tiles *t) {
     brio_tiles_stats *s = &t->stats;
     uint64_t positions = 0;
+    s->vertices = s->tetrahedra = s->hull_facets = s->asked = s->found = s->sampled = s->read = s->triangulated = 0;
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         const brio_tile *f = &t->tile[i];
         positions += f->points;
@@ -345,7 +344,7 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     BRIO_REQUIRE(ctx, !t->has_result, BRIO_ERR_ARGUMENT, "the tiles are triangulated already");
     BRIO_REQUIRE(ctx, !t->torn, BRIO_ERR_ARGUMENT, "an earlier run ended while it divided the points: add them anew");
     if (!t->has_points) {
-        BRIO_TRY(require_disk(t));
+        BRIO_TRY(brio_tiles_require_disk(t, (double)t->stats.points));
         t->torn = true;
         brio_progress_part(ctx, bar, 0, 0.05);
         BRIO_TRY(brio_tiles_divide(t));

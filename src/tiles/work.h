@@ -87,7 +87,10 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 
 /** Refuses tiles that do not fit in the memory that the context may have.   at_once  tiles in memory together. */
 brio_status brio_tiles_require_memory(brio_tiles *t, int at_once);
-/** Sums the tiles' facts. */
+/** Refuses points for which the disk has no room, beyond what they take as they were added: before the work, not hours
+ *  after.   n  points of the tiles here. */
+brio_status brio_tiles_require_disk(brio_tiles *t, double n);
+/** Makes the facts the sums of the tiles' facts. */
 void brio_tiles_add_facts(brio_tiles *t);
 /** Empties tiles whose points a run before left. */
 void brio_tiles_forget(brio_tiles *t);
@@ -220,7 +223,7 @@ typedef struct {
     brio_halo_fn read;
     void *user;
 } brio_halo_reader;
-/** Returns the reader of tiles whose points are all of this process. */
+/** Returns the reader of points that are all of this process. */
 brio_halo_reader brio_tile_own_halo(brio_tiles *t);
 /** Makes the part of a tile, as brio_tiles_part. */
 brio_status brio_tile_part_make(brio_tiles *t, uint32_t tile, const brio_halo_reader *halo, brio_tile_part *p);
@@ -232,5 +235,43 @@ brio_status brio_tiles_sum(brio_tiles *t, uint64_t *checksum);
 brio_status brio_tile_points(brio_tiles *t, uint64_t place, size_t count, brio_set_point *points);
 /** Reads rows of `size` bytes of a file that has one for each place.   places  in ascending order. */
 brio_status brio_tile_rows(const brio_store_file *f, const uint64_t *places, size_t count, size_t size, void *rows);
+
+/** --- neighbours across tiles: the steps that one process and ranks have in common (neighbours.c) --- */
+
+/** A facet without a neighbour in the part that has it. Tiles are numbered through all processes. */
+typedef struct {
+    uint64_t index[3]; /* of the vertices, ascending */
+    uint32_t tile, facet;
+} brio_lone_facet;
+
+/** Says to a facet of a tile what its neighbour is. */
+typedef struct {
+    uint32_t tile, facet;
+    brio_tile_neighbour neighbour;
+} brio_facet_answer;
+
+/** Returns a number by which both sides of a facet meet. */
+uint64_t brio_lone_facet_hash(const brio_lone_facet *l);
+
+/** Names the neighbours that are in the same part. The others become those that a facet of the hull has. */
+brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
+                                   brio_tile_neighbour (*neighbours)[4]);
+
+/** Hands on the facets of a part that have no neighbour in it. They come into files of rows, as many as tiles: `lone-I`
+ *  by their hash. Answers come into `joined-I` by their tile (store/row_files.h). */
+typedef brio_status (*brio_lone_facet_fn)(void *user, const brio_lone_facet *l);
+brio_status brio_tile_lone_facets(brio_context *ctx, uint32_t tile, const brio_tile_part *p, brio_lone_facet_fn take,
+                                  void *user);
+
+/** Finds the pairs of facets of file `lone-I`, removes it, and hands on an answer to each side.
+ *  *alone  grows by the facets that have no other side. */
+typedef brio_status (*brio_facet_answer_fn)(void *user, const brio_facet_answer *a);
+brio_status brio_facet_pairs(brio_tiles *t, uint32_t file, brio_facet_answer_fn take, void *user, uint64_t *alone);
+
+/** Names the neighbours of a part by the answers of file `joined-I`.   all_tiles  of all processes. */
+brio_status brio_facet_answers_take(brio_tiles *t, uint32_t file, uint64_t all_tiles, const brio_tile_part *p,
+                                    brio_tile_neighbour (*neighbours)[4]);
+/** Removes the files of lone facets and of answers that are there, after a failure. */
+void brio_facet_files_remove(brio_tiles *t);
 
 #endif

@@ -1,71 +1,21 @@
 """test_mpi.py BUILD: brio-mpi against brio, oversubscribed on this machine: equal reports for every number of ranks, output,
-failures of one rank, a rank that is killed, a run that goes on, and hosts that are network namespaces.
+and hosts that are network namespaces. test_mpi_faults.py has failures.
 
-BRIO_LONG=1 adds the larger inputs; BRIO_MPI_HOSTS=0 leaves out the namespaces, which need root."""
+BRIO_LONG=1 adds the larger inputs, and every set for every number of ranks; BRIO_MPI_HOSTS=0 leaves out the namespaces, which
+need root."""
 
 import json
 import os
-import pathlib
 import random
 import shutil
-import signal
 import subprocess
 import sys
-import tempfile
-import time
 import unittest
 
-BUILD = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else "build-mpi").resolve()
-BRIO, MPI = str(BUILD / "brio"), str(BUILD / "brio-mpi")
-SHARED = pathlib.Path(os.environ.get("BRIO_SHARED", pathlib.Path(__file__).resolve().parents[2] / "../shared")).resolve()
-SAME = "points vertices duplicates hidden dimension tetrahedra hull_facets checksum weighted".split()
-LONG = os.environ.get("BRIO_LONG") == "1"
-MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "--bind-to", "none"]
+from mpi_case import BRIO, LONG, SAME, SHARED, MpiCase, facts_of
 
 
-def facts_of(result):
-    return json.loads(result.stdout[result.stdout.index("{"):result.stdout.rindex("}") + 1])
-
-
-class Mpi(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="brio-mpi-test-"))
-        self.scratch = self.folder / "scratch"
-        self.scratch.mkdir()
-
-    def tearDown(self):
-        shutil.rmtree(self.folder, ignore_errors=True)
-
-    def mpi(self, ranks, *arguments, launch=(), check=True, command="delaunay"):
-        line = [*MPIRUN, *launch, "-n", str(ranks), MPI, command, *map(str, arguments), "--scratch", str(self.scratch),
-                "--json"]
-        result = subprocess.run(line, capture_output=True, text=True, timeout=300, check=False)
-        if check:
-            self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertEqual(os.listdir(self.scratch), [])
-            return facts_of(result)
-        return result
-
-    def one(self, *arguments, command="delaunay"):
-        line = [BRIO, command, *map(str, arguments), "--json"]
-        return json.loads(subprocess.run(line, capture_output=True, text=True, check=True).stdout)
-
-    def same(self, ranks, *arguments, tiles=2, launch=()):
-        plain = self.one(*arguments)
-        many = self.mpi(ranks, *arguments, "--tiles-per-rank", tiles, launch=launch)
-        self.assertEqual({k: plain[k] for k in SAME}, {k: many[k] for k in SAME}, (ranks, arguments))
-        return many
-
-    def generate(self, kind, points, name="a.ply"):
-        path = self.folder / name
-        subprocess.run([BRIO, "generate", kind, "--points", str(points), "-o", str(path), "--quiet"], check=True)
-        return path
-
-    def rows(self, name, rows):
-        path = self.folder / name
-        path.write_text("\n".join(" ".join(map(str, row)) for row in rows) + "\n", encoding="ascii")
-        return path
-
+class Mpi(MpiCase):
     # --- equal results ---
 
     def test_ranks_of_every_number(self):
@@ -103,11 +53,68 @@ class Mpi(unittest.TestCase):
             self.assertEqual(len(sums), 1, "the sum is exact")
             self.assertAlmostEqual(sums.pop() / plain["volume"], 1, delta=1e-14)
 
+    def written(self, *arguments, ranks, tiles=2, box=()):
+        """Compares the tables of cells that ranks write with those of one process, byte for byte."""
+        for end in ("npy", "csv"):
+            one, many = self.folder / ("one." + end), self.folder / ("many." + end)
+            one_faces, many_faces = self.folder / "one-faces.csv", self.folder / "many-faces.csv"
+            self.one(arguments[0], *arguments[1:], *box, "-o", one, "--faces", one_faces, command="voronoi")
+            for faces in ((), ("--faces", many_faces)):
+                self.mpi(ranks, *arguments, *box, "--tiles-per-rank", tiles, "-o", many, *faces, command="voronoi")
+                self.assertEqual(one.read_bytes(), many.read_bytes(), (ranks, arguments))
+            self.assertEqual(one_faces.read_bytes(), many_faces.read_bytes(), (ranks, arguments))
+        self.assertEqual(self.names("many"), ["many-faces.csv", "many.csv", "many.npy"])
+
+    def test_cells_are_written_as_by_one_process(self):
+        self.written(self.generate("cube", 20000), ranks=3, box=["--box=0,0,0,1,1,1"])  # several blocks of the file a rank
+        self.written(self.generate("clusters", 3000), "--weights-mod=-10", ranks=5, tiles=1)
+        self.written(self.generate("grid", 700), ranks=8)  # all ranks in one block
+        self.written(self.rows("few.xyz", [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), ranks=5)
+
+    def test_cells_of_many_files_are_numbered_as_one_input(self):
+        rng = random.Random(9)
+        rows = [[round(rng.gauss(0, 1), 2) for _ in range(3)] for _ in range(2000)]
+        parts = [self.rows("%d.xyz" % i, rows[i * 500:i * 500 + 500]) for i in range(4)]
+        for ranks in (3, 5):
+            for end in ("npy", "csv"):
+                self.one(self.rows("whole.xyz", rows), "-o", self.folder / ("a." + end), "--faces", self.folder / "f.csv",
+                         command="voronoi")
+                self.mpi(ranks, *parts, "-o", self.folder / ("b." + end), "--faces", self.folder / "g.csv", command="voronoi")
+                for a, b in (("a." + end, "b." + end), ("f.csv", "g.csv")):
+                    self.assertEqual((self.folder / a).read_bytes(), (self.folder / b).read_bytes(), (ranks, a))
+
+    def test_an_older_table_is_whole_until_the_new_one_is(self):
+        path, real, link = self.generate("cube", 900), self.folder / "real.npy", self.folder / "out.npy"
+        link.symlink_to("real.npy")
+        real.write_bytes(b"older")
+        real.chmod(0o640)
+        part = self.folder / "real.npy.part"
+        part.write_text("no folder", encoding="ascii")
+        self.fails(6, "real.npy.part: is in the way", path, "-o", link, command="voronoi")
+        self.assertEqual(real.read_bytes(), b"older")
+        part.unlink()
+        part.mkdir()
+        (part / "mine").write_text("", encoding="ascii")
+        self.fails(6, "real.npy.part: is in the way", path, "-o", link, command="voronoi")
+        (part / "mine").unlink()
+        for name in (".brio-part", "0.rows"):  # what a killed job leaves
+            (part / name).write_text("", encoding="ascii")
+        self.one(path, "-o", self.folder / "one.npy", command="voronoi")
+        self.mpi(3, path, "-o", link, command="voronoi")
+        self.assertEqual(real.read_bytes(), (self.folder / "one.npy").read_bytes())
+        self.assertEqual(real.stat().st_mode & 0o777, 0o640)
+        self.assertTrue(link.is_symlink())
+        self.assertEqual(self.names("real"), ["real.npy"])
+
     def test_wrong_calls_for_cells(self):
         path = self.generate("cube", 300)
         plane = self.rows("plane.xyz", [[x, y, 4] for x in range(9) for y in range(9)])
-        for code, text, *arguments in ((1, "not x0,y0,z0", path, "--box=1"), (1, "not written", path, "-o", "x.npy"),
-                                       (3, "in a plane", plane)):
+        for code, text, *arguments in ((1, "not x0,y0,z0", path, "--box=1"), (1, "write cells to .npy", path, "-o", "x.vtu"),
+                                       (1, "write cells to .npy", path, "-o", "-"), (1, "side by side", path, "-o", "/dev/null",
+                                        "--format=csv"),
+                                       (1, "ranks show nothing", path, "--view", "x.html"),
+                                       (1, "--compress", path, "-o", "x.npy", "--compress"),
+                                       (1, "name the same file", path, "-o", "x.csv", "--faces", "x.csv"), (3, "in a plane", plane)):
             result = self.mpi(2, *arguments, check=False, command="voronoi")
             self.assertIn(text, result.stderr)
             self.assertEqual(facts_of(result)["exit"], code, result.stderr)
@@ -120,6 +127,32 @@ class Mpi(unittest.TestCase):
             self.skipTest("no ../shared/data")
         for ranks, path in zip((3, 5, 2, 8), there):
             self.same(ranks, path)
+
+    def thinned(self, name, every):
+        """Every so many points of a file of ../shared/data, as text; None if it is not there."""
+        path = SHARED / "data" / name
+        if not path.exists():
+            return None
+        whole, out = self.folder / "whole.xyz", self.folder / (path.stem + ".xyz")
+        subprocess.run([BRIO, "convert", str(path), str(whole), "--quiet"], check=True)
+        lines = [line for line in whole.read_text(encoding="ascii").splitlines() if line[:1] in "-0123456789"]
+        out.write_text("\n".join(lines[::every]) + "\n", encoding="ascii")
+        return out
+
+    @unittest.skipUnless(LONG, "BRIO_LONG=1")
+    def test_every_set_for_every_number_of_ranks(self):
+        rng = random.Random(12)
+        sets = [(self.generate("cube", 100000, "cube.ply"),), (self.generate("clusters", 50000, "clusters.ply"),),
+                (self.generate("scan", 50000, "scan.ply"),), (self.generate("grid", 30000, "grid.ply"),),
+                (self.generate("sphere", 3000, "sphere.ply"),), (self.generate("cube", 50000, "w.ply"), "--weights-mod=-12"),
+                (self.rows("ties.xyz", [[rng.randrange(9) for _ in range(3)] for _ in range(20000)]),),
+                (self.rows("same.xyz", [[1, 2, 3]] * 20000),)]
+        sets += [(path,) for path in (self.thinned("lidar/csite4.ply", 10), self.thinned("scan/bunny_raw.ply", 8)) if path]
+        for arguments in sets:
+            for ranks in (1, 2, 3, 5, 8):
+                self.same(ranks, *arguments)
+            if arguments[0].name not in ("same.xyz", "sphere.ply"):
+                self.written(*arguments, ranks=3)
 
     def test_many_files_are_one_input(self):
         rng = random.Random(8)
@@ -159,48 +192,6 @@ class Mpi(unittest.TestCase):
         self.assertIn("Source=\"out-1/11.vtu\"", out.read_text(encoding="utf-8"))
         self.assertEqual(sorted(path.name for path in self.folder.glob("out*")), ["out-1", "out.pvtu"])
         self.fails(1, "--tiles writes .pvtu", small, "-o", self.folder / "out.ply")
-
-    # --- failures ---
-
-    def fails(self, code, words, *arguments, ranks=3):
-        result = self.mpi(ranks, *arguments, check=False)
-        self.assertEqual(result.returncode, code, result.stderr)
-        self.assertIn(words, result.stderr)
-        self.assertEqual(facts_of(result)["exit"], code)
-        return result
-
-    def test_a_bad_point_names_its_rank(self):
-        rows = [[i, i * i % 7, i % 5] for i in range(1000)]
-        good = self.rows("good.xyz", rows)
-        bad = self.rows("bad.xyz", rows[:500] + [["nan", 0, 0]])
-        result = self.fails(2, "rank 1 on ", good, bad, ranks=2)
-        self.assertIn("bad.xyz", result.stderr)
-        self.assertEqual(os.listdir(self.scratch), [])
-
-    def test_too_little_memory_and_no_folder(self):
-        path = self.generate("cube", 30000)
-        out = self.folder / "out.pvtu"
-        self.fails(4, "rank ", path, "--max-memory", "6M", "-o", out)
-        self.assertFalse(out.exists() or (self.folder / "out").exists() or (self.folder / "out.part").exists())
-        shutil.rmtree(self.scratch)
-        self.scratch.mkdir()
-        self.assertEqual(self.same(3, path)["resumed"], 0)
-
-    def test_a_rank_is_killed_and_the_next_run_goes_on(self):
-        path = self.generate("cube", 150000)
-        line = [*MPIRUN, "-n", "3", MPI, "delaunay", str(path), "--scratch", str(self.scratch), "--tiles-per-rank", "6",
-                "--json"]
-        job = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        end = time.monotonic() + 120
-        while time.monotonic() < end and not list(self.scratch.glob("*/tile-1")):
-            time.sleep(0.02)
-        ranks = subprocess.run(["ps", "--ppid", str(job.pid), "-o", "pid="], capture_output=True, text=True, check=True)
-        os.kill(int(ranks.stdout.split()[1]), signal.SIGKILL)
-        _, errors = job.communicate(timeout=120)
-        self.assertNotEqual(job.returncode, 0)
-        self.assertIn("exited on signal 9", errors)
-        facts = self.same(3, path, tiles=6)
-        self.assertGreater(facts["resumed"], 0)
 
     # --- hosts ---
 

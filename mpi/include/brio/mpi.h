@@ -28,6 +28,9 @@ brio_transport brio_mpi_transport(brio_mpi *m);
 /** While the transport waits, stop(user) is asked now and then: another result than 0 makes the exchange fail. */
 void brio_mpi_set_stop(brio_mpi *m, int (*stop)(void *user), void *user);
 
+/** Returns 1 if an exchange failed on this rank, or 0. Other ranks may wait for it then: MPI_Abort ends them. */
+int brio_mpi_has_failed(const brio_mpi *m);
+
 /** Frees everything; NULL is accepted. Collective, unless an exchange failed. */
 void brio_mpi_free(brio_mpi *m);
 
