@@ -58,7 +58,6 @@ brio_status cli_check_point_tiles(run *r, uint64_t tiles) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: an index of .vtp files; --format %s goes with .vpc", output,
                         r->common.format);
     snprintf(extension, sizeof extension, ".%s", cli_point_tile_format(r));
-    FORWARD(cli_check_target(r, output));
     return cli_new_folder_check(r, output, extension);
 }
 
@@ -269,15 +268,15 @@ static brio_status write_pieces(FILE *f, const written *w, const char *folder) {
 
 /* --- the run --- */
 
-static brio_status write_index(run *r, const written *w, const char *folder) {
+static brio_status write_index(run *r, const written *w, const new_folder *folder) {
     new_file f = {.target.folder = -1};
     brio_status status = BRIO_OK;
-    TRY(cli_new_file_open(r, r->common.output, &f));
+    TRY(cli_new_file_open(r, folder->index, &f));
     if (is_of_vtk(r))
-        TRY(write_pieces(f.file, w, folder));
+        TRY(write_pieces(f.file, w, folder->path));
     else
-        write_cloud(f.file, w, folder);
-    status = cli_new_file_publish(r, r->common.output, &f);
+        write_cloud(f.file, w, folder->path);
+    status = cli_new_file_publish(r, folder->index, &f);
 done:
     cli_new_file_close(&f);
     return status;
@@ -304,7 +303,7 @@ brio_status cli_point_tiles(run *r, uint64_t tiles, brio_convert_options *o, bri
     TRY(brio_convert(r->ctx, r->operands[0], pattern, o, stats));
     TRY(cli_check_interrupt(r));
     TRY(cli_new_folder_name(r, &folder));
-    status = write_index(r, &w, folder.path);
+    status = write_index(r, &w, &folder);
 done:
     cli_new_folder_close(&folder, status == BRIO_OK);
     free(w.properties);

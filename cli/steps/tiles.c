@@ -265,11 +265,11 @@ static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighte
 }
 
 /* Writes an index.   type  of the data set in VTK.   extension  of the files.   weight  whether they have weights. */
-static brio_status write_index(run *r, const char *folder, uint32_t files, const char *type, const char *extension,
-                               bool weighted) {
+static brio_status write_index(run *r, const new_folder *folder, uint32_t files, const char *type,
+                               const char *extension, bool weighted) {
     new_file f = {.target.folder = -1};
     brio_status status = BRIO_OK;
-    TRY(cli_new_file_open(r, r->common.output, &f));
+    TRY(cli_new_file_open(r, folder->index, &f));
     fprintf(f.file,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
             "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<%s GhostLevel=\"0\">\n"
@@ -280,21 +280,21 @@ static brio_status write_index(run *r, const char *folder, uint32_t files, const
     fprintf(f.file, "</PPointData>\n");
     for (uint32_t i = 0; i < files; i++) {
         fprintf(f.file, "<Piece Source=\"");
-        cli_write_attribute(f.file, folder + brio_folder_length(folder));
+        cli_write_attribute(f.file, folder->path + brio_folder_length(folder->path));
         fprintf(f.file, "/%u%s\"/>\n", i, extension);
     }
     fprintf(f.file, "</%s>\n</VTKFile>\n", type);
-    status = cli_new_file_publish(r, r->common.output, &f);
+    status = cli_new_file_publish(r, folder->index, &f);
 done:
     cli_new_file_close(&f);
     return status;
 }
 
-brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
+brio_status cli_write_tiles_index(run *r, const new_folder *folder, uint32_t tiles, bool weighted) {
     return write_index(r, folder, tiles, "PUnstructuredGrid", OF_TILES, weighted);
 }
 
-brio_status cli_write_faces_index(run *r, const char *folder, uint32_t files) {
+brio_status cli_write_faces_index(run *r, const new_folder *folder, uint32_t files) {
     return write_index(r, folder, files, "PPolyData", ".vtp", false);
 }
 
@@ -311,7 +311,7 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
         TRY(write_tile(r, t, i, weighted, path));
     }
     TRY(cli_new_folder_name(r, &folder));
-    status = cli_write_tiles_index(r, folder.path, tiles, weighted);
+    status = cli_write_tiles_index(r, &folder, tiles, weighted);
 done:
     cli_new_folder_close(&folder, status == BRIO_OK);
     cli_lap(r, "write");
