@@ -47,6 +47,10 @@ typedef struct {
 /** The extension of an index that is JSON: a virtual point cloud. */
 #define CLI_JSON_INDEX ".vpc"
 
+/** How an index of brio begins: JSON, and XML behind the type of its data. By that brio knows those that it wrote. */
+#define CLI_JSON_HEAD "{\"type\": \"FeatureCollection\", \"features\": [\n"
+#define CLI_XML_HEAD  "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<"
+
 /** Refuses an index that cannot be written or whose folder could not be made: before the work.
  *  index  path of the index, or of a link to it.   extension  of the files: 0.EXT, 1.EXT and so on. */
 brio_status cli_new_folder_check(run *r, const char *index, const char *extension);

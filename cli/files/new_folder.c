@@ -27,10 +27,13 @@ static void name_of(const new_folder *f, int number, char path[BRIO_PATH_MOST]) 
 /* Stores how an index has a character of a name.   json  whether it is JSON, else it is XML. */
 static void quote(char c, bool json, char quoted[8]) {
     const char *escape = c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : NULL;
+    bool space = c == '\t' || c == '\n' || c == '\r'; /* readers of attributes make blanks of them */
     if (json && (unsigned char)c < ' ')
         snprintf(quoted, 8, "\\u%04x", (unsigned char)c);
     else if (json && (c == '"' || c == '\\'))
         snprintf(quoted, 8, "\\%c", c);
+    else if (space)
+        snprintf(quoted, 8, "&#%d;", c);
     else
         snprintf(quoted, 8, "%s", !json && escape ? escape : (char[2]){c, 0});
 }
@@ -100,10 +103,16 @@ static bool take_extension(new_folder *f, const char *rest) {
     return size == strlen(f->old_extension) && !strncmp(rest, f->old_extension, size);
 }
 
+/* Returns whether brio wrote an index. The files that another program's index names are the user's. */
+static bool is_of_brio(const char *text, bool json) {
+    return json ? !strncmp(text, CLI_JSON_HEAD, strlen(CLI_JSON_HEAD)) : strstr(text, CLI_XML_HEAD) != NULL;
+}
+
 /* Finds the folder of the index that is there now, and how many files of it the index names. */
 static void find_old(new_folder *f) {
     char *text = brio_is_link(f->index) ? NULL : read_index(f->index);
-    for (int i = 0; text && i < MOST_NAMES && !*f->old; i++) {
+    bool ours = text && is_of_brio(text, f->json);
+    for (int i = 0; ours && i < MOST_NAMES && !*f->old; i++) {
         name_of(f, i, f->old);
         const char *rest = text;
         while (f->num_old < MOST_FILES && (rest = after_name(rest, f, f->num_old)) != NULL && take_extension(f, rest))

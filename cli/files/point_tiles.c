@@ -46,7 +46,11 @@ brio_status cli_check_point_tiles(run *r, uint64_t tiles) {
     const char *output = r->common.output;
     brio_format format;
     char extension[16];
+    int from_standard_input = 0;
     if (!output) return cli_fail_output(r, "no output: -o FILE is missing");
+    for (int i = 0; i < r->num_operands; i++) from_standard_input += !strcmp(r->operands[i], "-");
+    if (from_standard_input > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "-: standard input is named twice, and has its points once");
     if (!cli_is_point_index(output))
         return cli_fail_output(r,
                                "%s: --tiles writes an index, .vpc (of .laz files, or those of --format) or .pvtp (of "
@@ -212,7 +216,7 @@ static void write_feature(FILE *f, const written *w, const char *folder, uint32_
 }
 
 static void write_cloud(FILE *f, const written *w, const char *folder) {
-    fprintf(f, "{\"type\": \"FeatureCollection\", \"features\": [\n");
+    fprintf(f, CLI_JSON_HEAD);
     for (uint32_t i = 0; i < w->files; i++) {
         if (i) fprintf(f, ",\n");
         write_feature(f, w, folder, i);
@@ -252,8 +256,7 @@ static brio_status write_pieces(FILE *f, const written *w, const char *folder) {
     snprintf(path, sizeof path, "%s/0.%s", folder, cli_point_tile_format(w->r));
     FILE *first = brio_open_stream(path, "rb");
     if (!first) return cli_fail(w->r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
-    fprintf(f, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-               "header_type=\"UInt64\">\n<PPolyData GhostLevel=\"0\">\n");
+    fprintf(f, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData" CLI_XML_HEAD "PPolyData GhostLevel=\"0\">\n");
     bool copied = copy_arrays(first, f);
     fclose(first);
     if (!copied) return cli_fail(w->r, BRIO_ERR_WRITE, "%s: cannot read it again", path);

@@ -12,12 +12,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static const char EXTENSION[] = ".pvtu", OF_TILES[] = ".vtu";
 
 static bool ends_with(const char *text, const char *end) {
     size_t n = strlen(text), m = strlen(end);
-    return n > m && !strcmp(text + n - m, end);
+    return n > m + brio_folder_length(text) && !strcasecmp(text + n - m, end);
 }
 
 brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t tiles) {
@@ -28,14 +29,22 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     return BRIO_OK;
 }
 
-/* Refuses an output that is no index.   extension  of the index: .pvtu has files .vtu. */
+/* Refuses an output that is no index, and options that its files have no place for.
+ * extension  of the index: .pvtu has files .vtu. */
 static brio_status check_index(run *r, const char *extension, const char *formats) {
-    const char *output = r->common.output;
+    const common_options *c = &r->common;
+    const char *output = c->output;
     char of_tiles[8];
-    if (output && (!ends_with(output, extension) || !strcmp(output + brio_folder_length(output), extension)))
-        return cli_fail_output(r, "%s: --tiles writes %s with a file for each tile beside it", output, formats);
+    if (!output) return BRIO_OK;
     snprintf(of_tiles, sizeof of_tiles, ".%s", extension + 2);
-    return output ? cli_new_folder_check(r, output, of_tiles) : BRIO_OK;
+    if (c->format && brio_format_of(c->format) != brio_format_of(of_tiles))
+        return cli_fail_output(r, "--format %s: --tiles writes %s with a file for each tile beside it", c->format,
+                               formats);
+    if (!ends_with(output, extension))
+        return cli_fail_output(r, "%s: --tiles writes %s with a file for each tile beside it", output, formats);
+    if (c->float32)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: --float32: the files of tiles have double precision", output);
+    return cli_new_folder_check(r, output, of_tiles);
 }
 
 brio_status cli_check_tile_files(run *r, const char *formats) {
@@ -271,8 +280,7 @@ static brio_status write_index(run *r, const new_folder *folder, uint32_t files,
     brio_status status = BRIO_OK;
     TRY(cli_new_file_open(r, folder->index, &f));
     fprintf(f.file,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
-            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<%s GhostLevel=\"0\">\n"
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s" CLI_XML_HEAD "%s GhostLevel=\"0\">\n"
             "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n"
             "<PPointData>\n<PDataArray type=\"Float64\" Name=\"point\"/>\n",
             type, type);

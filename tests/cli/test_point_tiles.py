@@ -396,6 +396,28 @@ class PointTiles(CliTest):
             os.remove(self.path("link.vpc"))
         self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "scratch"])
 
+    def test_files_that_the_index_of_another_program_names_were_removed(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        for name, rewrite in (("out.vpc", lambda text: json.dumps(json.loads(text), indent=2).encode()), ("out.pvtp", lambda text: text.replace(b"\n<P", b"\n  <P"))):
+            self.tiles(2, points, "-o", self.path(name))
+            self.file(name, rewrite(self.bytes_of(name)))
+            before = [self.bytes_of(path) for path in self.files(name)]
+            self.tiles(2, points, "-o", self.path(name))
+            self.assertEqual([self.bytes_of("out/%d.%s" % (i, "laz" if name == "out.vpc" else "vtp")) for i in range(2)], before)
+            shutil.rmtree(self.path("out"))
+            shutil.rmtree(self.path("out-1"))
+
+    @posix_alone
+    def test_line_ends_in_a_name_were_blanks_in_the_index_of_vtk(self):
+        points, name = self.random_ply("in.ply", 60, random.Random(1)), "a\tb\nc\rd.pvtp"
+        for _ in range(2):  # the second run finds the files of the first one by its index
+            self.tiles(2, points, "-o", self.path(name))
+            self.assertTrue(all(os.path.exists(path) for path in self.files(name)))
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted([name[:-5] + "-1", name, "in.ply", "scratch"]))
+
+    def test_standard_input_named_twice_was_empty_the_second_time(self):
+        self.usage("standard input is named twice", "convert", "-", "-", "-o", self.path("x.vpc"), "--tiles", "2", "--scratch", self.scratch())
+
     def test_what_cannot_be_is_refused(self):
         points, out, how = self.random_ply("in.ply", 20, random.Random(1)), self.path("x.vpc"), ["--tiles", "2", "--scratch", self.scratch()]
         for words, arguments in (("writes an index, .vpc", [self.path("x.laz"), *how]), ("writes an index, .vpc", ["-o", "-", "--format", "laz", *how]),
