@@ -343,6 +343,14 @@ class PointTiles(CliTest):
         self.tiles(2, *self.files("out.vpc"), "-o", self.path("again.vpc"))
 
     @posix_alone
+    def test_an_input_by_a_link_was_removed_with_the_older_output(self):
+        self.tiles(2, self.random_ply("in.ply", 60, random.Random(1)), self.path("out.vpc"))
+        os.symlink("out/0.laz", self.path("link.laz"))
+        self.usage("link.laz: a file of the older output that -o replaces", "convert", self.path("link.laz"), "-o", self.path("out.vpc"), "--tiles", "2",
+                   "--scratch", self.scratch())
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.laz", "1.laz"])
+
+    @posix_alone
     def test_files_of_the_user_beside_a_link_were_removed(self):
         points, mine, there = self.random_ply("in.ply", 60, random.Random(1)), self.path("mine"), self.path("there")
         commands = (("convert", "out.vpc", "laz"), ("convert", "out.pvtp", "vtp"), ("delaunay", "out.pvtu", "vtu"), ("alpha", "out.pvtp", "vtp"))
