@@ -50,7 +50,7 @@ static brio_status publish(job *j, new_folder *folder) {
                             "%s: another rank wrote it, and it is not there: all ranks must see one folder", path);
     }
     FORWARD(cli_new_folder_name(j->r, folder));
-    return cli_write_tiles_index(j->r, folder->path, (uint32_t)all, brio_ranks_facts(j->ranks)->weighted);
+    return cli_write_tiles_index(j->r, folder, (uint32_t)all, brio_ranks_facts(j->ranks)->weighted);
 }
 
 /* Removes what this rank wrote into the folder, and the folder if it was the last in it. */

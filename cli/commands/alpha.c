@@ -350,7 +350,7 @@ static brio_status shape_tiles(shape_in_tiles *s, double given, uint32_t tiles, 
     report_tiles(r, s->tiles, given, stats, &counted);
     TRY(cli_report_certificate(r, &certificate, 0));
     if (has_index) TRY(cli_new_folder_name(r, &s->folder));
-    if (has_index) status = cli_write_faces_index(r, s->folder.path, s->files);
+    if (has_index) status = cli_write_faces_index(r, &s->folder, s->files);
     published = status == BRIO_OK;
 done:
     if (has_index) cli_new_folder_close(&s->folder, published);

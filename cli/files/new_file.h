@@ -31,6 +31,7 @@ void cli_new_file_close(new_file *f);
  *  without that file is the user's, and nothing in it is touched; one whose file nobody has locked is what a killed run
  *  left. */
 typedef struct {
+    char index[BRIO_PATH_MOST];     /* where the links of the output lead; all other names follow from it */
     char stem[BRIO_PATH_MOST - 64]; /* of the index, without its extension */
     char path[BRIO_PATH_MOST];      /* where the folder is now; "" if there is none */
     int lock;                       /* of its file; -1: none */
@@ -46,8 +47,12 @@ typedef struct {
 /** The extension of an index that is JSON: a virtual point cloud. */
 #define CLI_JSON_INDEX ".vpc"
 
-/** Refuses an index whose folder could not be made: before the work.
- *  index  path of the index.   extension  of the files: 0.EXT, 1.EXT and so on. */
+/** How an index of brio begins: JSON, and XML behind the type of its data. By that brio knows those that it wrote. */
+#define CLI_JSON_HEAD "{\"type\": \"FeatureCollection\", \"features\": [\n"
+#define CLI_XML_HEAD  "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<"
+
+/** Refuses an index that cannot be written or whose folder could not be made: before the work.
+ *  index  path of the index, or of a link to it.   extension  of the files: 0.EXT, 1.EXT and so on. */
 brio_status cli_new_folder_check(run *r, const char *index, const char *extension);
 
 /** Makes the folder STEM.part. Removes what killed runs left. Call cli_new_folder_close even if this fails. */

@@ -1,7 +1,9 @@
 /* Folders that get their names when they are complete: see new_file.h.
  *
  * The older folder is the one that the older index names for its first file. Of it, the files that the index names are
- * removed, and the folder if it is then empty. */
+ * removed, and the folder if it is then empty. A link that has the name of a folder was laid by the user: nothing is
+ * removed through it. */
+#include "cli/files/files.h"
 #include "cli/files/new_file.h"
 #include "platform/disk.h"
 #include "platform/folder.h"
@@ -25,10 +27,13 @@ static void name_of(const new_folder *f, int number, char path[BRIO_PATH_MOST]) 
 /* Stores how an index has a character of a name.   json  whether it is JSON, else it is XML. */
 static void quote(char c, bool json, char quoted[8]) {
     const char *escape = c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '"' ? "&quot;" : NULL;
+    bool space = c == '\t' || c == '\n' || c == '\r'; /* readers of attributes make blanks of them */
     if (json && (unsigned char)c < ' ')
         snprintf(quoted, 8, "\\u%04x", (unsigned char)c);
     else if (json && (c == '"' || c == '\\'))
         snprintf(quoted, 8, "\\%c", c);
+    else if (space)
+        snprintf(quoted, 8, "&#%d;", c);
     else
         snprintf(quoted, 8, "%s", !json && escape ? escape : (char[2]){c, 0});
 }
@@ -98,15 +103,21 @@ static bool take_extension(new_folder *f, const char *rest) {
     return size == strlen(f->old_extension) && !strncmp(rest, f->old_extension, size);
 }
 
+/* Returns whether brio wrote an index. The files that another program's index names are the user's. */
+static bool is_of_brio(const char *text, bool json) {
+    return json ? !strncmp(text, CLI_JSON_HEAD, strlen(CLI_JSON_HEAD)) : strstr(text, CLI_XML_HEAD) != NULL;
+}
+
 /* Finds the folder of the index that is there now, and how many files of it the index names. */
-static void find_old(const char *index, new_folder *f) {
-    char *text = read_index(index);
-    for (int i = 0; text && i < MOST_NAMES && !*f->old; i++) {
+static void find_old(new_folder *f) {
+    char *text = brio_is_link(f->index) ? NULL : read_index(f->index);
+    bool ours = text && is_of_brio(text, f->json);
+    for (int i = 0; ours && i < MOST_NAMES && !*f->old; i++) {
         name_of(f, i, f->old);
         const char *rest = text;
         while (f->num_old < MOST_FILES && (rest = after_name(rest, f, f->num_old)) != NULL && take_extension(f, rest))
             f->num_old++;
-        if (!f->num_old) *f->old = 0;
+        if (!f->num_old || brio_is_link(f->old)) *f->old = 0;
     }
     free(text);
 }
@@ -143,7 +154,7 @@ static void remove_left(const char *folder, const new_folder *f) {
     char mark[BRIO_PATH_MOST + 64], text[48] = "", of_run[16] = "";
     uint32_t files = 0;
     mark_of(folder, mark);
-    int lock = brio_is_there(mark) ? brio_lock_file(mark) : -1;
+    int lock = brio_is_there(mark) && !brio_is_link(folder) ? brio_lock_file(mark) : -1;
     if (lock < 0) return;
     (void)brio_read_bytes_at(lock, text, sizeof text - 1, 0);
     bool known = sscanf(text, "%" SCNu32 " %15s", &files, of_run) == 2 && *of_run == '.' && !strchr(of_run, '/');
@@ -174,14 +185,24 @@ static brio_status fail_folder(run *r, const char *path) {
     return cli_fail(r, BRIO_ERR_WRITE, "%s: cannot make the folder: %s", path, strerror(errno));
 }
 
+/* Returns the extension of a path's name with its dot, or the end of the path. */
+static const char *extension_of(const char *path) {
+    const char *name = path + brio_folder_length(path), *dot = strrchr(name, '.');
+    return dot && dot > name ? dot : name + strlen(name);
+}
+
 static brio_status begin(run *r, const char *index, const char *extension, new_folder *f) {
-    const char *dot = strrchr(index, '.');
-    size_t stem = dot ? (size_t)(dot - index) : strlen(index);
+    const char *given = extension_of(index);
     *f = (new_folder){
-        .extension = extension, .most_files = MOST_FILES, .lock = -1, .json = dot && !strcasecmp(dot, CLI_JSON_INDEX)};
+        .extension = extension, .most_files = MOST_FILES, .lock = -1, .json = !strcasecmp(given, CLI_JSON_INDEX)};
+    if (!brio_target_path(index, f->index)) return cli_fail(r, BRIO_ERR_WRITE, "%s: %s", index, strerror(errno));
+    const char *end = extension_of(f->index);
+    size_t stem = (size_t)(end - f->index);
+    if (strcasecmp(given, end) != 0)
+        return cli_fail_output(r, "%s: a link to %s, which is no name of a %s file", index, f->index, given);
     if (stem >= sizeof f->stem) return cli_fail_output(r, "%s: the name is too long", index);
-    memcpy(f->stem, index, stem);
-    find_old(index, f);
+    memcpy(f->stem, f->index, stem);
+    find_old(f);
     remove_all_left(f);
     return BRIO_OK;
 }
@@ -190,7 +211,7 @@ static brio_status begin(run *r, const char *index, const char *extension, new_f
 static brio_status find_name(run *r, const new_folder *f, char path[BRIO_PATH_MOST]) {
     for (int i = 0; i < MOST_NAMES; i++) {
         name_of(f, i, path);
-        if (!brio_is_there(path)) return BRIO_OK;
+        if (!brio_is_there(path) && !brio_is_link(path)) return BRIO_OK;
     }
     return cli_fail(r, BRIO_ERR_WRITE, "%s, and folders of that name from -1 to -%d: they are there: remove some",
                     f->stem, MOST_NAMES - 1);
@@ -198,12 +219,13 @@ static brio_status find_name(run *r, const new_folder *f, char path[BRIO_PATH_MO
 
 /* Refuses inputs that are in the folder of the older output, which goes when the new one is complete. */
 static brio_status refuse_old_inputs(run *r, const new_folder *f) {
-    char folder[BRIO_PATH_MOST];
+    char input[BRIO_PATH_MOST], folder[BRIO_PATH_MOST];
     brio_place_facts old, of_input;
     if (!*f->old || !brio_find_facts(f->old, &old)) return BRIO_OK;
     for (int i = r->command->first_input; i < r->num_operands; i++) {
-        size_t length = brio_folder_length(r->operands[i]);
-        snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, length ? r->operands[i] : ".");
+        if (!brio_target_path(r->operands[i], input)) continue; /* the reader finds out */
+        size_t length = brio_folder_length(input);
+        snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1, length ? input : ".");
         if (brio_find_facts(folder, &of_input) && brio_is_same_file(&old, &of_input))
             return cli_fail(r, BRIO_ERR_ARGUMENT,
                             "%s: a file of the older output that -o replaces; take another name for the new one",
@@ -216,13 +238,15 @@ static brio_status refuse_old_inputs(run *r, const new_folder *f) {
 static brio_status check_part(run *r, const new_folder *f) {
     char path[BRIO_PATH_MOST];
     part_of(f, path);
+    if (!brio_is_there(path) && !brio_is_link(path)) return BRIO_OK;
     errno = EEXIST;
-    return brio_is_there(path) ? fail_folder(r, path) : BRIO_OK;
+    return fail_folder(r, path);
 }
 
 brio_status cli_new_folder_check(run *r, const char *index, const char *extension) {
     new_folder f;
     char path[BRIO_PATH_MOST];
+    FORWARD(cli_check_target(r, index));
     FORWARD(begin(r, index, extension, &f));
     FORWARD(refuse_old_inputs(r, &f));
     FORWARD(find_name(r, &f, path));

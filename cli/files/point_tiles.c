@@ -46,7 +46,11 @@ brio_status cli_check_point_tiles(run *r, uint64_t tiles) {
     const char *output = r->common.output;
     brio_format format;
     char extension[16];
+    int from_standard_input = 0;
     if (!output) return cli_fail_output(r, "no output: -o FILE is missing");
+    for (int i = 0; i < r->num_operands; i++) from_standard_input += !strcmp(r->operands[i], "-");
+    if (from_standard_input > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "-: standard input is named twice, and has its points once");
     if (!cli_is_point_index(output))
         return cli_fail_output(r,
                                "%s: --tiles writes an index, .vpc (of .laz files, or those of --format) or .pvtp (of "
@@ -58,7 +62,6 @@ brio_status cli_check_point_tiles(run *r, uint64_t tiles) {
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: an index of .vtp files; --format %s goes with .vpc", output,
                         r->common.format);
     snprintf(extension, sizeof extension, ".%s", cli_point_tile_format(r));
-    FORWARD(cli_check_target(r, output));
     return cli_new_folder_check(r, output, extension);
 }
 
@@ -213,7 +216,7 @@ static void write_feature(FILE *f, const written *w, const char *folder, uint32_
 }
 
 static void write_cloud(FILE *f, const written *w, const char *folder) {
-    fprintf(f, "{\"type\": \"FeatureCollection\", \"features\": [\n");
+    fprintf(f, CLI_JSON_HEAD);
     for (uint32_t i = 0; i < w->files; i++) {
         if (i) fprintf(f, ",\n");
         write_feature(f, w, folder, i);
@@ -253,8 +256,7 @@ static brio_status write_pieces(FILE *f, const written *w, const char *folder) {
     snprintf(path, sizeof path, "%s/0.%s", folder, cli_point_tile_format(w->r));
     FILE *first = brio_open_stream(path, "rb");
     if (!first) return cli_fail(w->r, BRIO_ERR_WRITE, "%s: %s", path, strerror(errno));
-    fprintf(f, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-               "header_type=\"UInt64\">\n<PPolyData GhostLevel=\"0\">\n");
+    fprintf(f, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData" CLI_XML_HEAD "PPolyData GhostLevel=\"0\">\n");
     bool copied = copy_arrays(first, f);
     fclose(first);
     if (!copied) return cli_fail(w->r, BRIO_ERR_WRITE, "%s: cannot read it again", path);
@@ -269,15 +271,15 @@ static brio_status write_pieces(FILE *f, const written *w, const char *folder) {
 
 /* --- the run --- */
 
-static brio_status write_index(run *r, const written *w, const char *folder) {
+static brio_status write_index(run *r, const written *w, const new_folder *folder) {
     new_file f = {.target.folder = -1};
     brio_status status = BRIO_OK;
-    TRY(cli_new_file_open(r, r->common.output, &f));
+    TRY(cli_new_file_open(r, folder->index, &f));
     if (is_of_vtk(r))
-        TRY(write_pieces(f.file, w, folder));
+        TRY(write_pieces(f.file, w, folder->path));
     else
-        write_cloud(f.file, w, folder);
-    status = cli_new_file_publish(r, r->common.output, &f);
+        write_cloud(f.file, w, folder->path);
+    status = cli_new_file_publish(r, folder->index, &f);
 done:
     cli_new_file_close(&f);
     return status;
@@ -304,7 +306,7 @@ brio_status cli_point_tiles(run *r, uint64_t tiles, brio_convert_options *o, bri
     TRY(brio_convert(r->ctx, r->operands[0], pattern, o, stats));
     TRY(cli_check_interrupt(r));
     TRY(cli_new_folder_name(r, &folder));
-    status = write_index(r, &w, folder.path);
+    status = write_index(r, &w, &folder);
 done:
     cli_new_folder_close(&folder, status == BRIO_OK);
     free(w.properties);

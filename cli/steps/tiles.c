@@ -12,12 +12,13 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static const char EXTENSION[] = ".pvtu", OF_TILES[] = ".vtu";
 
 static bool ends_with(const char *text, const char *end) {
     size_t n = strlen(text), m = strlen(end);
-    return n > m && !strcmp(text + n - m, end);
+    return n > m + brio_folder_length(text) && !strcasecmp(text + n - m, end);
 }
 
 brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t tiles) {
@@ -28,14 +29,22 @@ brio_status cli_check_tiles(run *r, const weights_options *weights, uint64_t til
     return BRIO_OK;
 }
 
-/* Refuses an output that is no index.   extension  of the index: .pvtu has files .vtu. */
+/* Refuses an output that is no index, and options that its files have no place for.
+ * extension  of the index: .pvtu has files .vtu. */
 static brio_status check_index(run *r, const char *extension, const char *formats) {
-    const char *output = r->common.output;
+    const common_options *c = &r->common;
+    const char *output = c->output;
     char of_tiles[8];
-    if (output && (!ends_with(output, extension) || !strcmp(output + brio_folder_length(output), extension)))
-        return cli_fail_output(r, "%s: --tiles writes %s with a file for each tile beside it", output, formats);
+    if (!output) return BRIO_OK;
     snprintf(of_tiles, sizeof of_tiles, ".%s", extension + 2);
-    return output ? cli_new_folder_check(r, output, of_tiles) : BRIO_OK;
+    if (c->format && brio_format_of(c->format) != brio_format_of(of_tiles))
+        return cli_fail_output(r, "--format %s: --tiles writes %s with a file for each tile beside it", c->format,
+                               formats);
+    if (!ends_with(output, extension))
+        return cli_fail_output(r, "%s: --tiles writes %s with a file for each tile beside it", output, formats);
+    if (c->float32)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: --float32: the files of tiles have double precision", output);
+    return cli_new_folder_check(r, output, of_tiles);
 }
 
 brio_status cli_check_tile_files(run *r, const char *formats) {
@@ -265,14 +274,13 @@ static brio_status write_tile(run *r, brio_tiles *t, uint32_t tile, bool weighte
 }
 
 /* Writes an index.   type  of the data set in VTK.   extension  of the files.   weight  whether they have weights. */
-static brio_status write_index(run *r, const char *folder, uint32_t files, const char *type, const char *extension,
-                               bool weighted) {
+static brio_status write_index(run *r, const new_folder *folder, uint32_t files, const char *type,
+                               const char *extension, bool weighted) {
     new_file f = {.target.folder = -1};
     brio_status status = BRIO_OK;
-    TRY(cli_new_file_open(r, r->common.output, &f));
+    TRY(cli_new_file_open(r, folder->index, &f));
     fprintf(f.file,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s\" version=\"1.0\" "
-            "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<%s GhostLevel=\"0\">\n"
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"%s" CLI_XML_HEAD "%s GhostLevel=\"0\">\n"
             "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n"
             "<PPointData>\n<PDataArray type=\"Float64\" Name=\"point\"/>\n",
             type, type);
@@ -280,21 +288,21 @@ static brio_status write_index(run *r, const char *folder, uint32_t files, const
     fprintf(f.file, "</PPointData>\n");
     for (uint32_t i = 0; i < files; i++) {
         fprintf(f.file, "<Piece Source=\"");
-        cli_write_attribute(f.file, folder + brio_folder_length(folder));
+        cli_write_attribute(f.file, folder->path + brio_folder_length(folder->path));
         fprintf(f.file, "/%u%s\"/>\n", i, extension);
     }
     fprintf(f.file, "</%s>\n</VTKFile>\n", type);
-    status = cli_new_file_publish(r, r->common.output, &f);
+    status = cli_new_file_publish(r, folder->index, &f);
 done:
     cli_new_file_close(&f);
     return status;
 }
 
-brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted) {
+brio_status cli_write_tiles_index(run *r, const new_folder *folder, uint32_t tiles, bool weighted) {
     return write_index(r, folder, tiles, "PUnstructuredGrid", OF_TILES, weighted);
 }
 
-brio_status cli_write_faces_index(run *r, const char *folder, uint32_t files) {
+brio_status cli_write_faces_index(run *r, const new_folder *folder, uint32_t files) {
     return write_index(r, folder, files, "PPolyData", ".vtp", false);
 }
 
@@ -311,7 +319,7 @@ static brio_status write_tiles(run *r, brio_tiles *t, uint32_t tiles, bool weigh
         TRY(write_tile(r, t, i, weighted, path));
     }
     TRY(cli_new_folder_name(r, &folder));
-    status = cli_write_tiles_index(r, folder.path, tiles, weighted);
+    status = cli_write_tiles_index(r, &folder, tiles, weighted);
 done:
     cli_new_folder_close(&folder, status == BRIO_OK);
     cli_lap(r, "write");

@@ -2,6 +2,7 @@
 #ifndef BRIO_CLI_TILES_H
 #define BRIO_CLI_TILES_H
 
+#include "cli/files/new_file.h"
 #include "cli/steps/weights.h"
 
 /** Rows of a command's option table whose struct has a uint64_t `field`. */
@@ -84,9 +85,9 @@ void cli_report_tile_cells(run *r, const brio_tiles_stats *s, const brio_tiles_c
 /** Writes the tetrahedra of a tile. Its vertices have the property `point`, the index in the input, and `weight` if
  *  points have weights: all files have the same properties, which the index names. */
 brio_status cli_write_part(run *r, const brio_tile_part *part, bool weighted, const char *path);
-/** Writes -o, the index of files 0.vtu and so on in a folder beside it. */
-brio_status cli_write_tiles_index(run *r, const char *folder, uint32_t tiles, bool weighted);
-/** Writes -o, the index of files 0.vtp and so on, which have the property `point`. */
-brio_status cli_write_faces_index(run *r, const char *folder, uint32_t files);
+/** Writes the index of a folder of files 0.vtu and so on. */
+brio_status cli_write_tiles_index(run *r, const new_folder *folder, uint32_t tiles, bool weighted);
+/** Writes the index of a folder of files 0.vtp and so on, which have the property `point`. */
+brio_status cli_write_faces_index(run *r, const new_folder *folder, uint32_t files);
 
 #endif

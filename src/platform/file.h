@@ -48,6 +48,9 @@ bool brio_is_there(const char *path);
 bool brio_may_write(const char *path);
 bool brio_may_make_files(const char *folder);
 
+/** Returns whether a name is that of a symbolic link, whether or not it leads to something. */
+bool brio_is_link(const char *path);
+
 /** Returns the bytes of a path's folder, with what separates it from the name; 0 for a name without a folder. */
 size_t brio_folder_length(const char *path);
 

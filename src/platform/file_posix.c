@@ -58,6 +58,11 @@ bool brio_may_make_files(const char *folder) {
     return access(folder, W_OK | X_OK) == 0;
 }
 
+bool brio_is_link(const char *path) {
+    struct stat s;
+    return lstat(path, &s) == 0 && S_ISLNK(s.st_mode);
+}
+
 size_t brio_folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;

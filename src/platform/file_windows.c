@@ -86,6 +86,11 @@ bool brio_may_make_files(const char *folder) {
     return attributes & FILE_ATTRIBUTE_DIRECTORY;
 }
 
+bool brio_is_link(const char *path) {
+    DWORD attributes = attributes_of(path);
+    return attributes != INVALID_FILE_ATTRIBUTES && attributes & FILE_ATTRIBUTE_REPARSE_POINT;
+}
+
 size_t brio_folder_length(const char *path) {
     size_t length = 0;
     for (size_t i = 0; path[i]; i++)

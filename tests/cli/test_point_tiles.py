@@ -5,6 +5,7 @@ import json
 import os
 import random
 import resource
+import shutil
 import signal
 import struct
 import subprocess
@@ -340,6 +341,90 @@ class PointTiles(CliTest):
                    "--scratch", self.scratch())
         self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.laz", "1.laz"])
         self.tiles(2, *self.files("out.vpc"), "-o", self.path("again.vpc"))
+
+    @posix_alone
+    def test_an_input_by_a_link_was_removed_with_the_older_output(self):
+        self.tiles(2, self.random_ply("in.ply", 60, random.Random(1)), self.path("out.vpc"))
+        os.symlink("out/0.laz", self.path("link.laz"))
+        self.usage("link.laz: a file of the older output that -o replaces", "convert", self.path("link.laz"), "-o", self.path("out.vpc"), "--tiles", "2",
+                   "--scratch", self.scratch())
+        self.assertEqual(sorted(os.listdir(self.path("out"))), ["0.laz", "1.laz"])
+
+    @posix_alone
+    def test_files_of_the_user_beside_a_link_were_removed(self):
+        points, mine, there = self.random_ply("in.ply", 60, random.Random(1)), self.path("mine"), self.path("there")
+        commands = (("convert", "out.vpc", "laz"), ("convert", "out.pvtp", "vtp"), ("delaunay", "out.pvtu", "vtu"), ("alpha", "out.pvtp", "vtp"))
+        for command, name, extension in commands:
+            more = ("--alpha", "1e9") if command == "alpha" else ()
+            for folder in mine, there:
+                os.mkdir(folder)
+            os.symlink("../there/next-" + name, os.path.join(mine, name))  # a link to a link, which leads to nothing yet
+            os.symlink(name, os.path.join(there, "next-" + name))
+            os.mkdir(os.path.join(mine, "out"))
+            for i in range(2):
+                self.file("mine/out/%d.%s" % (i, extension), "mine")
+            for folder in "out", "out-1", "out":
+                self.facts(command, points, *more, "-o", os.path.join(mine, name), "--tiles", "2", "--scratch", self.scratch())
+                self.assertEqual(sorted(os.listdir(there)), sorted([folder, name, "next-" + name]), command)
+                self.assertEqual(sorted(os.listdir(os.path.join(there, folder))), ["0." + extension, "1." + extension])
+                self.assertIn(b"%s/1.%s" % (folder.encode(), extension.encode()), self.bytes_of("there/" + name))
+                self.assertEqual([self.bytes_of("mine/out/%d.%s" % (i, extension)) for i in range(2)], [b"mine"] * 2)
+                self.assertEqual(sorted(os.listdir(mine)), ["out", name])
+            shutil.rmtree(mine)
+            shutil.rmtree(there)
+
+    @posix_alone
+    def test_files_behind_a_link_in_place_of_the_older_folder_were_removed(self):
+        points, out = self.random_ply("in.ply", 60, random.Random(1)), self.path("out.vpc")
+        self.tiles(2, points, "-o", out)
+        os.rename(self.path("out"), self.path("mine"))
+        os.symlink("mine", self.path("out"))
+        self.tiles(2, points, "-o", out)
+        self.assertEqual(sorted(os.listdir(self.path("mine"))), ["0.laz", "1.laz"])
+        self.assertIn(b"./out-1/0.laz", self.bytes_of("out.vpc"))
+
+    @posix_alone
+    def test_a_link_to_nothing_had_the_name_of_the_folder(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        os.symlink("nowhere", self.path("out"))
+        self.tiles(2, points, "-o", self.path("out.vpc"))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "out", "out-1", "out.vpc", "scratch"])
+        os.symlink("nowhere", self.path("out.part"))
+        run = self.expect(6, "convert", self.path("none.ply"), "-o", self.path("out.vpc"), "--tiles", "2", "--scratch", self.scratch())
+        self.assertIn("out.part: is in the way", run.err)  # said before the input is opened
+
+    @posix_alone
+    def test_a_link_of_the_output_led_to_another_kind_of_name(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        for end, code, sentence in (("out", 1, "no name of a .vpc file"), (".vpc", 1, "no name of a .vpc file"),
+                                    ("out.pvtp", 1, "no name of a .vpc file"), ("none/out.vpc", 6, "cannot write into the folder .*none")):
+            os.symlink(end, self.path("link.vpc"))
+            run = self.expect(code, "convert", points, "-o", self.path("link.vpc"), "--tiles", "2", "--scratch", self.scratch())
+            self.assertRegex(run.err, sentence)
+            os.remove(self.path("link.vpc"))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "scratch"])
+
+    def test_files_that_the_index_of_another_program_names_were_removed(self):
+        points = self.random_ply("in.ply", 60, random.Random(1))
+        for name, rewrite in (("out.vpc", lambda text: json.dumps(json.loads(text), indent=2).encode()), ("out.pvtp", lambda text: text.replace(b"\n<P", b"\n  <P"))):
+            self.tiles(2, points, "-o", self.path(name))
+            self.file(name, rewrite(self.bytes_of(name)))
+            before = [self.bytes_of(path) for path in self.files(name)]
+            self.tiles(2, points, "-o", self.path(name))
+            self.assertEqual([self.bytes_of("out/%d.%s" % (i, "laz" if name == "out.vpc" else "vtp")) for i in range(2)], before)
+            shutil.rmtree(self.path("out"))
+            shutil.rmtree(self.path("out-1"))
+
+    @posix_alone
+    def test_line_ends_in_a_name_were_blanks_in_the_index_of_vtk(self):
+        points, name = self.random_ply("in.ply", 60, random.Random(1)), "a\tb\nc\rd.pvtp"
+        for _ in range(2):  # the second run finds the files of the first one by its index
+            self.tiles(2, points, "-o", self.path(name))
+            self.assertTrue(all(os.path.exists(path) for path in self.files(name)))
+        self.assertEqual(sorted(os.listdir(self.folder)), sorted([name[:-5] + "-1", name, "in.ply", "scratch"]))
+
+    def test_standard_input_named_twice_was_empty_the_second_time(self):
+        self.usage("standard input is named twice", "convert", "-", "-", "-o", self.path("x.vpc"), "--tiles", "2", "--scratch", self.scratch())
 
     def test_what_cannot_be_is_refused(self):
         points, out, how = self.random_ply("in.ply", 20, random.Random(1)), self.path("x.vpc"), ["--tiles", "2", "--scratch", self.scratch()]

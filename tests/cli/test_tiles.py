@@ -413,6 +413,19 @@ class Tiles(CliTest):
         self.assertIn("that of a run that goes on", run.err)
         self.assertEqual(os.listdir(self.path("out.part")), [".brio-part"])
 
+    def test_options_of_the_files_of_tiles_were_ignored(self):
+        cloud, tiled = self.rows("a.csv", 300), ("--tiles", "2", "--scratch", self.scratch(), "-o")
+        for command, index, extension in (("delaunay",), ".pvtu", "vtu"), (("alpha", "--alpha", "1e9"), ".pvtp", "vtp"):
+            for name, option, sentence in (("x" + index, "--float32", index + ": --float32: the files of tiles have double precision"),
+                                           ("x" + index, "--format=obj", "--format obj: --tiles writes .ply, and " + index),
+                                           ("x.ply", "--format=stl", "--format stl: --tiles writes .ply, and " + index)):
+                self.assertIn(sentence, self.expect(1, *command, cloud, *tiled, self.path(name), option).err)
+            self.facts(*command, cloud, *tiled, self.path("X" + index.upper()), "--format", extension)
+            self.assertEqual(sorted(os.listdir(self.path("X"))), ["0." + extension, "1." + extension])
+            for name in os.listdir(self.path("X")):
+                os.remove(self.path("X/" + name))
+            os.rmdir(self.path("X"))
+
     def test_more_tiles_than_points_made_a_wrong_triangulation(self):
         rng = random.Random(6)  # a part that could not be cut had a home without a border
         with open(self.path("wide.csv"), "w", encoding="ascii") as f:
