@@ -216,6 +216,17 @@ class PointTiles(CliTest):
             self.facts("convert", self.path("dark.csv"), self.path("whole." + form))
             self.same("whole." + form, "out.vpc")
 
+    def test_a_tile_had_other_colours_where_those_of_all_are_no_colours(self):
+        with open(self.path("a.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z,red,green,blue\n")
+            f.writelines("%d,0,0,%s,%d,%d\n" % (i, i / 4 if i < 20 else i, 70000 if i == 25 else i, -1 if i == 5 else 1) for i in range(40))
+        for form in "vtp", "vtu", "vtk", "obj", "glb", "ply", "laz":
+            with self.subTest(form):
+                whole = self.facts("convert", self.path("a.csv"), self.path("whole." + form))
+                facts = self.tiles(8, self.path("a.csv"), self.path("out.vpc"), "--format", form)
+                self.same("whole." + form, "out.vpc")
+                self.assertEqual([facts.get(key) for key in ("lost", "renamed", "moved")], [whole.get(key) for key in ("lost", "renamed", "moved")])
+
     def test_faces_are_left_out(self):
         self.file("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n")
         facts = self.tiles(2, self.path("a.off"), self.path("out.pvtp"))

@@ -253,16 +253,12 @@ done:
 
 brio_status brio_conversion_write(void *user, const brio_mesh *mesh) {
     brio_conversion *c = user;
-    brio_status status = BRIO_OK;
-    brio_mesh shown;
+    brio_mesh shown = *mesh;
     double moved = 0;
     brio_write_options o = c->write;
     o.format = c->format;
     o.moved = &moved;
-    BRIO_TRY(brio_colour_show(c->ctx, &c->colours, mesh, &shown));
-    c->dulled = brio_colour_lost(&c->colours);
-    o.colours_rounded = NULL;
-    BRIO_TRY(write_crs(c, mesh));
+    BRIO_FORWARD(write_crs(c, mesh));
     name_losses(c, mesh);
     find_rounding(c, mesh);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
@@ -272,12 +268,10 @@ brio_status brio_conversion_write(void *user, const brio_mesh *mesh) {
     c->stats.faces = shown.num_faces;
     c->stats.tetrahedra = shown.num_tetrahedra;
     c->stats.edges = shown.num_edges;
-    BRIO_TRY(brio_write(c->ctx, c->to, &shown, &o));
+    BRIO_FORWARD(brio_write_with_colours(c->ctx, c->to, &shown, &o, &c->colours));
     c->moved = fmax(c->moved, moved);
     name_rest(c);
-done:
-    brio_colour_free(c->ctx, mesh, &shown);
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the whole --- */
