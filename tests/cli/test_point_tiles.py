@@ -358,6 +358,7 @@ class PointTiles(CliTest):
                                  ("writes an index, .vpc", [self.path(".vpc"), *how]), ("--tiles needs --scratch", [out, "--tiles", "2"]),
                                  ("--merge: not with --tiles", [out, *how, "--merge"]), ("70000 are more than 65536", [out, "--tiles", "70000", *how[2:]]),
                                  ("an index of .vtp files", [self.path("x.pvtp"), "--format", "laz", *how]), ("cannot be compressed", [out, "--compress", *how]),
+                                 ("have points alone, and an STL file has triangles alone", [out, "--format", "stl", *how]),
                                  ("an index of tiles", [out]), ("--format zzz", [out, "--format", "zzz", *how]),
                                  ("expected A B, got one file", how)):
             with self.subTest(words):
