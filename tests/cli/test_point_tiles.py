@@ -227,6 +227,22 @@ class PointTiles(CliTest):
                 self.same("whole." + form, "out.vpc")
                 self.assertEqual([facts.get(key) for key in ("lost", "renamed", "moved")], [whole.get(key) for key in ("lost", "renamed", "moved")])
 
+    def test_scans_of_tiles_had_other_numbers(self):
+        with open(self.path("a.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z,scan,x_origin,y_origin,z_origin\n")
+            f.writelines("%d,0,0,%d,%d,0,0\n" % (i, i // 10, i // 10 * 5) for i in range(40))
+        for tiles in 1, 3, 4:
+            facts = self.tiles(tiles, self.path("a.csv"), self.path("out.vpc"), "--format", "e57")
+            self.assertEqual((facts["lost"], facts.get("renamed")), ([], None))
+            for path in self.files("out.vpc"):
+                head, rows = self.rows(path)
+                columns = head.strip().split(",")
+                for row in rows:
+                    point = dict(zip(columns, map(float, row.split(","))))
+                    self.assertEqual(point["scan"], point["x"] // 10)
+        facts = self.tiles(3, self.path("a.csv"), self.path("out.vpc"), "--format", "ptx")  # the last tile begins with no 0
+        self.assertIn("scan", facts["lost"])
+
     def test_faces_are_left_out(self):
         self.file("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n")
         facts = self.tiles(2, self.path("a.off"), self.path("out.pvtp"))

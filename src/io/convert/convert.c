@@ -64,16 +64,19 @@ static bool asks_writer(const brio_conversion *c) {
     return c->writer.format && c->writer.format->lacks;
 }
 
-/* Names the properties that have no place in the file, or another name there. */
-static void name_properties(brio_conversion *c, const brio_mesh *m) {
-    if (c->renamed) return;
-    c->renamed = true;
+/* Names the properties that have no place in the file, or another name there, each once for the files of all tiles. */
+static brio_status name_properties(brio_conversion *c, const brio_mesh *m) {
+    enum { LOST = 1, RENAMED = 2 };
+    if (!c->named) BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->named, m->num_properties + 1));
     for (size_t i = 0; i < m->num_properties; i++) {
-        if (asks_writer(c) && c->writer.format->lacks(c->writer.state, i))
-            brio_conversion_lose(c, m->properties[i].name);
-        if (c->options->renamed && brio_row_writer_renames(&c->writer, m, i))
+        bool lost = asks_writer(c) && c->writer.format->lacks(c->writer.state, i);
+        bool renamed = brio_row_writer_renames(&c->writer, m, i);
+        if (lost && !(c->named[i] & LOST)) brio_conversion_lose(c, m->properties[i].name);
+        if (c->options->renamed && renamed && !(c->named[i] & RENAMED))
             c->options->renamed(m->properties[i].name, c->options->renamed_user);
+        c->named[i] |= (uint8_t)((lost ? LOST : 0) | (renamed ? RENAMED : 0));
     }
+    return BRIO_OK;
 }
 
 /* Names the parts of a mesh that the format cannot hold. */
@@ -168,7 +171,7 @@ static brio_status write_block(void *user, const brio_mesh *block) {
     }
     bool first = !c->writer.begun;
     BRIO_FORWARD(brio_row_writer_write(&c->writer, c->to, &shown));
-    if (first) name_properties(c, &shown);
+    if (first) BRIO_FORWARD(name_properties(c, &shown));
     c->stats.points += block->num_vertices;
     if (c->source.job.mesh) {
         c->stats.faces = shown.num_faces;
@@ -397,6 +400,7 @@ done:
     brio_row_writer_free(&c.writer);
     brio_row_writer_free(&c.all);
     brio_rows_free(&c.rows);
+    brio_release(ctx, c.named);
     brio_source_free(&c.source);
     return status;
 }
