@@ -18,9 +18,6 @@
 #include "base/versioned.h"
 #include "mesh/edge_rings.h"
 #include "mesh/extent.h"
-#include "platform/thread.h"
-#include <inttypes.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { BUCKETS = 64, MOST_BUCKETS = 1 << 16, FACES_A_THREAD = 1 << 14 };
@@ -46,7 +43,6 @@ brio_status brio_parts_certificate_new(brio_context *ctx, const brio_parts_optio
     brio_parts_options o = {0};
     brio_parts_certificate *c = NULL;
     brio_status status = BRIO_OK;
-    char name[64];
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_parts_options, options, &o));
     BRIO_REQUIRE(ctx, o.scratch, BRIO_ERR_ARGUMENT, "a certificate of parts needs a scratch folder");
@@ -57,9 +53,7 @@ brio_status brio_parts_certificate_new(brio_context *ctx, const brio_parts_optio
     c->buckets = o.buckets ? o.buckets : BUCKETS;
     c->sheets = o.sheets != 0;
     BRIO_TRY(take_box(c, &o));
-    snprintf(name, sizeof name, "brio-faces-%ld-%" PRIxPTR, brio_process_number(), (uintptr_t)c);
-    BRIO_TRY(brio_store_begin(ctx, o.scratch, name, &c->folder));
-    brio_store_clear(&c->folder);
+    BRIO_TRY(brio_store_begin_free(ctx, o.scratch, "brio-faces", &c->folder));
     BRIO_TRY(brio_row_files_open(&c->folder, "faces", c->buckets, &c->faces));
     BRIO_TRY(brio_row_files_open(&c->folder, "pinched", c->buckets, &c->pinched));
     BRIO_TRY(

@@ -11,10 +11,11 @@
 typedef struct brio_write_job {
     const brio_mesh *mesh;
     const brio_write_options *options;
-    char (*names)[64];      /* PLY, XYZ and NPY: the names of the properties, each as one word */
-    char (*face_names)[64]; /* PLY: likewise of those of the faces */
-    uint64_t points;        /* formats of rows: the number of points of all blocks, as row_format.h says */
-    uint64_t expected;      /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
+    char (*names)[64];         /* PLY, XYZ and NPY: the names of the properties, each as one word */
+    char (*face_names)[64];    /* PLY: likewise of those of the faces */
+    uint64_t points;           /* formats of rows: the number of points of all blocks, as row_format.h says */
+    uint64_t expected;         /* an estimate of all bytes, for progress, or BRIO_NO_PROGRESS */
+    brio_colour_plan *colours; /* of a format that is written as a whole */
 } brio_write_job;
 
 /** What a format does with files. One object in the format's own file, which the table in format_table.c names. */
@@ -80,6 +81,11 @@ brio_format brio_format_with(const char *path, bool (*has)(const char *path, con
 
 /** Lists the extensions of formats whose columns can be named, as brio_format_list does. */
 void brio_format_list_columns(char *text, size_t size);
+
+/** Writes a mesh as brio_write does, in a format that is not written row by row.
+ *  colours  how its colours become those of the format: for one of several files whose colours go together. */
+brio_status brio_write_with_colours(brio_context *ctx, const char *path, const brio_mesh *mesh,
+                                    const brio_write_options *options, brio_colour_plan *colours);
 
 /** Returns whether the format holds coordinates in single precision, by itself or by the options. */
 bool brio_is_single(brio_format format, const brio_write_options *options);

@@ -53,6 +53,7 @@ static void note_cell(brio_scan *scan, double column, double row) {
 static brio_status see(brio_context *ctx, brio_scans *s, const brio_mesh *block) {
     const sources from = sources_of(block);
     if (!s->points) s->split = s->numbered = true;
+    s->has_number = from.number != NULL;
     for (size_t v = 0; v < block->num_vertices; v++, s->points++) {
         double place[3] = {0, 0, 0}, number = from.number ? brio_property_value(from.number, v) : 0;
         for (int k = 0; k < 3 && from.place[0]; k++) place[k] = brio_property_value(from.place[k], v);
@@ -77,6 +78,14 @@ brio_status brio_scans_survey(brio_context *ctx, const brio_write_job *job, void
     return see(ctx, state, job->mesh);
 }
 
+/* Makes a file one of several. A reader numbers the scans of each from 0 on, and those of a tile may be the third and
+ * the fifth of all: then its points are one scan, and keep their places and numbers as properties. */
+brio_status brio_scans_share(brio_context *ctx, void *state, const void *from, size_t columns) {
+    (void)ctx, (void)from, (void)columns;
+    ((brio_scans *)state)->is_part = true;
+    return BRIO_OK;
+}
+
 uint64_t brio_scans_points(const void *state) {
     return ((const brio_scans *)state)->points;
 }
@@ -91,6 +100,7 @@ double brio_scans_moved(const void *state, const brio_mesh *block) {
 }
 
 brio_status brio_scans_settle(brio_context *ctx, brio_scans *s) {
+    if (s->is_part && s->has_number && s->count > 1) s->split &= s->numbered;
     if (!s->points || !s->split) {
         s->count = 0;
         BRIO_FORWARD(add_scan(ctx, s, (const double[]){0, 0, 0}));

@@ -21,6 +21,8 @@ typedef struct brio_scans {
     size_t count, capacity;
     uint64_t points; /* of all scans */
     bool split;      /* whether scans and places are those of the points; otherwise there is one scan without a place */
+    bool is_part;    /* whether the file is one of several: they are one scan if a reader gave them other numbers */
+    bool has_number; /* whether the points have the property scan */
     bool numbered;   /* whether the property scan is the number of the scan, so that nobody has to store it */
     double number;   /* the property scan of the last point */
     double last[3];  /* the place of the last point */
@@ -33,12 +35,13 @@ typedef struct brio_scans {
 /** Do the work of a format (row_format.h) whose state begins with a brio_scans, as far as all such formats share
  *  them. */
 brio_status brio_scans_survey(brio_context *ctx, const brio_write_job *job, void *state);
+brio_status brio_scans_share(brio_context *ctx, void *state, const void *from, size_t columns);
 uint64_t brio_scans_points(const void *state);
 bool brio_scans_round(const void *state);
 double brio_scans_moved(const void *state, const brio_mesh *block);
 #define BRIO_SCANS_ROWS                                                                                                \
-    .survey = brio_scans_survey, .surveyed_points = brio_scans_points, .rounds = brio_scans_round,                     \
-    .moved = brio_scans_moved
+    .survey = brio_scans_survey, .surveyed_points = brio_scans_points, .share = brio_scans_share,                      \
+    .rounds = brio_scans_round, .moved = brio_scans_moved
 
 /** Ends the pass over all blocks. */
 brio_status brio_scans_settle(brio_context *ctx, brio_scans *s);

@@ -79,15 +79,14 @@ static uint64_t expected_bytes(const brio_mesh *m, brio_format format, bool asci
 static brio_status write_one(brio_context *ctx, const char *path, const brio_write_job *job, brio_format format) {
     brio_status status = BRIO_OK;
     const brio_format_row *row = brio_format_row_of(format);
-    brio_colour_plan colours = brio_format_colours(format);
     brio_write_job of_shown = *job;
     brio_output out = {.ctx = ctx, .target.folder = -1, .file = -1};
     brio_mesh shown;
-    BRIO_TRY(brio_colour_show(ctx, &colours, job->mesh, &shown));
+    BRIO_TRY(brio_colour_show(ctx, job->colours, job->mesh, &shown));
     of_shown.mesh = &shown;
     BRIO_TRY(brio_output_open(&out, ctx, path, job->expected));
     BRIO_TRY(row->codec->write(&out, &of_shown));
-    if (job->options->colours_rounded) *job->options->colours_rounded = brio_colour_lost(&colours);
+    if (job->options->colours_rounded) *job->options->colours_rounded = brio_colour_lost(job->colours);
     BRIO_TRY(brio_output_finish(&out));
     BRIO_TRY(brio_output_publish(&out));
 done:
@@ -126,13 +125,11 @@ static brio_status check_mesh(brio_context *ctx, const char *path, const brio_me
     return BRIO_OK;
 }
 
-brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
-    BRIO_DOOR;
-    brio_write_options o = {0};
-    brio_write_job job = {.mesh = mesh, .options = &o};
-    BRIO_FORWARD(BRIO_TAKE(ctx, brio_write_options, options, &o));
-    brio_format format = o.format;
-    if (format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) format = brio_format_of(path);
+brio_status brio_write_with_colours(brio_context *ctx, const char *path, const brio_mesh *mesh,
+                                    const brio_write_options *options, brio_colour_plan *colours) {
+    brio_write_options o = *options;
+    brio_write_job job = {.mesh = mesh, .options = &o, .colours = colours};
+    const brio_format format = o.format;
     if (o.moved) *o.moved = 0;
     if (o.colours_rounded) *o.colours_rounded = 0;
     BRIO_FORWARD(check_mesh(ctx, path, mesh));
@@ -147,4 +144,14 @@ brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mes
     else
         BRIO_FORWARD(write_one(ctx, path, &job, format));
     return BRIO_OK;
+}
+
+brio_status brio_write(brio_context *ctx, const char *path, const brio_mesh *mesh, const brio_write_options *options) {
+    BRIO_DOOR;
+    brio_write_options o = {0};
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_write_options, options, &o));
+    if (o.format == BRIO_FORMAT_AUTO && strcmp(path, "-") != 0) o.format = brio_format_of(path);
+    BRIO_FORWARD(brio_check_written(ctx, path, o.format));
+    brio_colour_plan colours = brio_format_colours(o.format);
+    return brio_write_with_colours(ctx, path, mesh, &o, &colours);
 }

@@ -194,8 +194,10 @@ static brio_status run(brio_ranks *r) {
     BRIO_FORWARD(brio_ranks_join(r));
     r->facts.divide_seconds = brio_seconds() - start;
     start = brio_seconds();
-    BRIO_EXPECT(r->ctx, !r->t->weighted || r->facts.dimension == 3 || r->facts.points < 2, BRIO_ERR_NO_ANSWER,
-                "all points are in a plane, and have weights: their hidden points are found without tiles only");
+    BRIO_EXPECT(
+        r->ctx, !r->t->weighted || r->facts.dimension == 3 || r->facts.points < 2, BRIO_ERR_NO_ANSWER,
+        "all points are in a plane, and have weights: there are no tetrahedra, and which points are hidden is found "
+        "without tiles only");
     if (r->facts.dimension == 3) {
         BRIO_FORWARD(brio_tiles_require_memory(r->t, r->t->num_tiles > 1 ? RANK_SLOTS : 1));
         BRIO_FORWARD(brio_ranks_complete(r));

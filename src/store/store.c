@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Bytes: in one call of the system, that are worth a thread to read, and to hash. Chosen. */
-enum { AT_ONCE = 1 << 22, READ_A_THREAD = 1 << 22, HASHED_A_THREAD = 1 << 18, FOLDER_TRIES = 100 };
+enum { AT_ONCE = 1 << 22, READ_A_THREAD = 1 << 22, HASHED_A_THREAD = 1 << 18, FOLDER_TRIES = 100, MOST_AT_ONCE = 4096 };
 
 static const char LOCK[] = "lock";
 
@@ -47,6 +47,19 @@ brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *
 /* Removes all files but the lock. */
 void brio_store_clear(brio_store_folder *f) {
     if (f->path) brio_empty_folder(f->path, LOCK);
+}
+
+brio_status brio_store_begin_free(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out) {
+    char numbered[64], path[BRIO_PATH_MOST];
+    for (unsigned number = 1;; number++) {
+        snprintf(numbered, sizeof numbered, "%s-%u", name, number);
+        brio_status status = brio_store_begin(ctx, parent, numbered, out);
+        if (status == BRIO_OK) break;
+        snprintf(path, sizeof path, "%s/%s", parent, numbered);
+        if (status != BRIO_ERR_OPEN || number == MOST_AT_ONCE || !brio_is_there(path)) return status;
+    }
+    brio_store_clear(out);
+    return BRIO_OK;
 }
 
 void brio_store_end(brio_store_folder *f) {

@@ -356,8 +356,10 @@ brio_status brio_tiles_run(brio_context *ctx, brio_tiles *t) {
     }
     t->stats.divide_seconds = brio_seconds() - start;
     start = brio_seconds();
-    BRIO_REQUIRE(ctx, !t->weighted || t->stats.dimension == 3 || t->stats.points < 2, BRIO_ERR_NO_ANSWER,
-                 "all points are in a plane, and have weights: their hidden points are found without tiles only");
+    BRIO_REQUIRE(
+        ctx, !t->weighted || t->stats.dimension == 3 || t->stats.points < 2, BRIO_ERR_NO_ANSWER,
+        "all points are in a plane, and have weights: there are no tetrahedra, and which points are hidden is found "
+        "without tiles only");
     if (t->stats.dimension == 3) {
         BRIO_TRY(brio_tiles_require_memory(t, 1));
         BRIO_TRY(triangulate(t, bar));

@@ -217,6 +217,33 @@ class PointTiles(CliTest):
             self.facts("convert", self.path("dark.csv"), self.path("whole." + form))
             self.same("whole." + form, "out.vpc")
 
+    def test_a_tile_had_other_colours_where_those_of_all_are_no_colours(self):
+        with open(self.path("a.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z,red,green,blue\n")
+            f.writelines("%d,0,0,%s,%d,%d\n" % (i, i / 4 if i < 20 else i, 70000 if i == 25 else i, -1 if i == 5 else 1) for i in range(40))
+        for form in "vtp", "vtu", "vtk", "obj", "glb", "ply", "laz":
+            with self.subTest(form):
+                whole = self.facts("convert", self.path("a.csv"), self.path("whole." + form))
+                facts = self.tiles(8, self.path("a.csv"), self.path("out.vpc"), "--format", form)
+                self.same("whole." + form, "out.vpc")
+                self.assertEqual([facts.get(key) for key in ("lost", "renamed", "moved")], [whole.get(key) for key in ("lost", "renamed", "moved")])
+
+    def test_scans_of_tiles_had_other_numbers(self):
+        with open(self.path("a.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z,scan,x_origin,y_origin,z_origin\n")
+            f.writelines("%d,0,0,%d,%d,0,0\n" % (i, i // 10, i // 10 * 5) for i in range(40))
+        for tiles in 1, 3, 4:
+            facts = self.tiles(tiles, self.path("a.csv"), self.path("out.vpc"), "--format", "e57")
+            self.assertEqual((facts["lost"], facts.get("renamed")), ([], None))
+            for path in self.files("out.vpc"):
+                head, rows = self.rows(path)
+                columns = head.strip().split(",")
+                for row in rows:
+                    point = dict(zip(columns, map(float, row.split(","))))
+                    self.assertEqual(point["scan"], point["x"] // 10)
+        facts = self.tiles(3, self.path("a.csv"), self.path("out.vpc"), "--format", "ptx")  # the last tile begins with no 0
+        self.assertIn("scan", facts["lost"])
+
     def test_faces_are_left_out(self):
         self.file("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n")
         facts = self.tiles(2, self.path("a.off"), self.path("out.pvtp"))
@@ -432,6 +459,7 @@ class PointTiles(CliTest):
                                  ("writes an index, .vpc", [self.path(".vpc"), *how]), ("--tiles needs --scratch", [out, "--tiles", "2"]),
                                  ("--merge: not with --tiles", [out, *how, "--merge"]), ("70000 are more than 65536", [out, "--tiles", "70000", *how[2:]]),
                                  ("an index of .vtp files", [self.path("x.pvtp"), "--format", "laz", *how]), ("cannot be compressed", [out, "--compress", *how]),
+                                 ("have points alone, and an STL file has triangles alone", [out, "--format", "stl", *how]),
                                  ("an index of tiles", [out]), ("--format zzz", [out, "--format", "zzz", *how]),
                                  ("expected A B, got one file", how)):
             with self.subTest(words):

@@ -389,6 +389,29 @@ static void a_full_disk_is_a_status(void) {
     brio_context_free(ctx);
 }
 
+/* What a killed process left had a name that no later process took. */
+static void the_files_of_a_killed_process_stayed(void) {
+    brio_context *ctx = new_context();
+    brio_parts_options o = {.size = sizeof o, .scratch = folder};
+    brio_parts_certificate *c, *second;
+    char left[128];
+    for (int killed = 1; killed <= 2; killed++) {
+        snprintf(left, sizeof left, "%s/brio-faces-%d", folder, killed);
+        EXPECT(mkdir(left, 0700) == 0);
+        strcat(left, "/faces-77");
+        FILE *f = fopen(left, "w");
+        EXPECT(f && fputs("half a face", f) >= 0 && fclose(f) == 0);
+    }
+    EXPECT(brio_parts_certificate_new(ctx, &o, &c) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_parts_certificate_new(ctx, &o, &second) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(files_left() == 2, "%zu folders of two certificates", files_left());
+    EXPECT(access(left, F_OK) != 0);
+    brio_parts_certificate_free(c);
+    brio_parts_certificate_free(second);
+    EXPECT(files_left() == 0 && brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
 static void wrong_calls_are_refused(void) {
     brio_context *ctx = new_context(), *other = new_context();
     brio_parts_options o = {.size = sizeof o};
@@ -440,6 +463,7 @@ SUITE(test_parts_certificate) {
     RUN(no_memory_is_a_status);
     RUN(cancelled_certificates_leave_nothing);
     RUN(a_full_disk_is_a_status);
+    RUN(the_files_of_a_killed_process_stayed);
     RUN(wrong_calls_are_refused);
     rmdir(folder);
     return harness_end();

@@ -24,7 +24,7 @@ typedef struct brio_conversion {
     brio_rows rows;           /* tiles: their points */
     brio_output crs;          /* the coordinate system, if it is asked for; crs.name is NULL until it is written */
     bool told;                /* whether the losses of the parts were named */
-    bool renamed;             /* whether the properties were */
+    uint8_t *named;           /* of each property: bits of what was named of it */
     bool more;                /* whether files of other tiles follow, after which precision is named */
     bool open;                /* whether a pass ended because the depth of colours was not known */
     int dulled;               /* whether colours lost steps */

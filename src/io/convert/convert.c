@@ -64,16 +64,19 @@ static bool asks_writer(const brio_conversion *c) {
     return c->writer.format && c->writer.format->lacks;
 }
 
-/* Names the properties that have no place in the file, or another name there. */
-static void name_properties(brio_conversion *c, const brio_mesh *m) {
-    if (c->renamed) return;
-    c->renamed = true;
+/* Names the properties that have no place in the file, or another name there, each once for the files of all tiles. */
+static brio_status name_properties(brio_conversion *c, const brio_mesh *m) {
+    enum { LOST = 1, RENAMED = 2 };
+    if (!c->named) BRIO_FORWARD(BRIO_ALLOC_ZERO(c->ctx, c->named, m->num_properties + 1));
     for (size_t i = 0; i < m->num_properties; i++) {
-        if (asks_writer(c) && c->writer.format->lacks(c->writer.state, i))
-            brio_conversion_lose(c, m->properties[i].name);
-        if (c->options->renamed && brio_row_writer_renames(&c->writer, m, i))
+        bool lost = asks_writer(c) && c->writer.format->lacks(c->writer.state, i);
+        bool renamed = brio_row_writer_renames(&c->writer, m, i);
+        if (lost && !(c->named[i] & LOST)) brio_conversion_lose(c, m->properties[i].name);
+        if (c->options->renamed && renamed && !(c->named[i] & RENAMED))
             c->options->renamed(m->properties[i].name, c->options->renamed_user);
+        c->named[i] |= (uint8_t)((lost ? LOST : 0) | (renamed ? RENAMED : 0));
     }
+    return BRIO_OK;
 }
 
 /* Names the parts of a mesh that the format cannot hold. */
@@ -168,7 +171,7 @@ static brio_status write_block(void *user, const brio_mesh *block) {
     }
     bool first = !c->writer.begun;
     BRIO_FORWARD(brio_row_writer_write(&c->writer, c->to, &shown));
-    if (first) name_properties(c, &shown);
+    if (first) BRIO_FORWARD(name_properties(c, &shown));
     c->stats.points += block->num_vertices;
     if (c->source.job.mesh) {
         c->stats.faces = shown.num_faces;
@@ -253,16 +256,12 @@ done:
 
 brio_status brio_conversion_write(void *user, const brio_mesh *mesh) {
     brio_conversion *c = user;
-    brio_status status = BRIO_OK;
-    brio_mesh shown;
+    brio_mesh shown = *mesh;
     double moved = 0;
     brio_write_options o = c->write;
     o.format = c->format;
     o.moved = &moved;
-    BRIO_TRY(brio_colour_show(c->ctx, &c->colours, mesh, &shown));
-    c->dulled = brio_colour_lost(&c->colours);
-    o.colours_rounded = NULL;
-    BRIO_TRY(write_crs(c, mesh));
+    BRIO_FORWARD(write_crs(c, mesh));
     name_losses(c, mesh);
     find_rounding(c, mesh);
     if (!holds(c, BRIO_HOLDS_FACES)) shown.num_faces = 0;
@@ -272,12 +271,10 @@ brio_status brio_conversion_write(void *user, const brio_mesh *mesh) {
     c->stats.faces = shown.num_faces;
     c->stats.tetrahedra = shown.num_tetrahedra;
     c->stats.edges = shown.num_edges;
-    BRIO_TRY(brio_write(c->ctx, c->to, &shown, &o));
+    BRIO_FORWARD(brio_write_with_colours(c->ctx, c->to, &shown, &o, &c->colours));
     c->moved = fmax(c->moved, moved);
     name_rest(c);
-done:
-    brio_colour_free(c->ctx, mesh, &shown);
-    return status;
+    return BRIO_OK;
 }
 
 /* --- the whole --- */
@@ -403,6 +400,7 @@ done:
     brio_row_writer_free(&c.writer);
     brio_row_writer_free(&c.all);
     brio_rows_free(&c.rows);
+    brio_release(ctx, c.named);
     brio_source_free(&c.source);
     return status;
 }

@@ -235,6 +235,8 @@ brio_status brio_conversion_tiles(brio_conversion *c) {
     brio_source *s = &c->source;
     const brio_bar bar = brio_progress_bar(c->ctx);
     double now = brio_seconds();
+    BRIO_REQUIRE(c->ctx, c->format != BRIO_FORMAT_STL, BRIO_ERR_ARGUMENT,
+                 "files of tiles have points alone, and an STL file has triangles alone");
     BRIO_TRY(BRIO_ALLOC(c->ctx, tile, c->options->tiles));
     c->rows.folder = c->options->scratch;
     BRIO_TRY(take_inputs(c, bar));
