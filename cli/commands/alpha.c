@@ -304,9 +304,15 @@ static brio_status write_faces(run *r, brio_mesh_parts *parts, void *user) {
     return status;
 }
 
+/* Files of the certificate: a bucket takes about as much memory as a tile, and each of its files some on its own. */
+enum { MOST_BUCKETS = 1024 };
+
 static brio_status begin_certificate(shape_in_tiles *s, uint32_t tiles) {
     const brio_tiles_stats *of = brio_tiles_facts(s->tiles);
-    brio_parts_options o = {.size = sizeof o, .scratch = s->r->common.scratch, .buckets = tiles, .sheets = 1};
+    brio_parts_options o = {.size = sizeof o,
+                            .scratch = s->r->common.scratch,
+                            .buckets = tiles < MOST_BUCKETS ? tiles : MOST_BUCKETS,
+                            .sheets = 1};
     memcpy(o.low, of->low, sizeof o.low);
     memcpy(o.high, of->high, sizeof o.high);
     return brio_parts_certificate_new(s->r->ctx, &o, &s->certificate);

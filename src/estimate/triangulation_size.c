@@ -226,7 +226,9 @@ static void extrapolate(const cloud *c, const tally *far, const tally *near, bri
     double ratio = far->tetrahedra / far->points, growth = ratio - near->tetrahedra / near->points;
     bool goes_on = far->points >= GOES_ON * near->points; /* else nothing is known of larger surroundings */
     double more = log(points * far->balls / far->all) / log(far->points / near->points);
-    double doubling = log(ratio / (ratio - growth)); /* of the ratio, from the near points to the far ones */
+    /* Of the ratio, from the near points to the far ones: at most as the points, since n points have at most n * n
+     * tetrahedra. */
+    double doubling = fmin(log(ratio / (ratio - growth)), log(far->points / near->points));
     if (goes_on && doubling > POWER * log(far->points / near->points))
         ratio *= exp(doubling * more);
     else if (goes_on && growth > GROWS * ratio)
@@ -244,6 +246,7 @@ brio_status brio_estimate_size(brio_context *ctx, const double *points, const do
     if (status == BRIO_ERR_TOO_LARGE) {
         status = count_surroundings(&c, &far, &near);
         if (status == BRIO_OK) extrapolate(&c, &far, &near, size);
+        if (status == BRIO_OK && num_points <= ALL) size->tetrahedra = fmax(size->tetrahedra, MOST_TETRAHEDRA);
     }
     brio_aside_end(ctx, &aside);
     return status;

@@ -281,6 +281,16 @@ class PointTiles(CliTest):
             self.assertRegex(run.err, os.path.basename(other) + ".*" + words)
         self.assertFalse(any(name.startswith("out") for name in os.listdir(self.folder)))
 
+    def test_inputs_of_different_codes_of_coordinate_systems_were_taken(self):
+        """Systems that are told by their codes alone differ if these do, and one without a code is not one with it."""
+        head = "ply\nformat ascii 1.0\n%selement vertex 1\nproperty double x\nproperty double y\nproperty double z\nend_header\n1 2 3\n"
+        first, same, other, none = (self.file(name, head % crs) for name, crs in (
+            ("a.ply", "comment crs EPSG:25832\n"), ("b.ply", "comment crs EPSG:25832\n"), ("c.ply", "comment crs EPSG:25833\n"), ("d.ply", "")))
+        self.assertEqual(self.tiles(2, first, same, "-o", self.path("out.vpc"))["points"], 2)
+        for a, b in ((first, other), (first, none), (none, first)):
+            run = self.expect(2, "convert", a, b, self.path("x.vpc"), "--tiles", "2", "--scratch", self.scratch())
+            self.assertRegex(run.err, os.path.basename(b) + ".*another coordinate system")
+
     def test_standard_input_and_pipes(self):
         points = self.random_ply("in.ply", 500, random.Random(4))
         with open(points, "rb") as f:

@@ -219,7 +219,7 @@ static void each_point_is_in_one_tile(void) {
     EXPECT(convert_tiles(io_ctx) == BRIO_OK, "%s", brio_message(io_ctx));
     EXPECT(num_seen == 3, "%zu", num_seen);
     for (size_t i = 0; i < num_seen; i++) {
-        char name[16];
+        char name[32];
         snprintf(name, sizeof name, "tile%zu.ply", i);
         brio_mesh *m = read_back(name);
         EXPECT(m->num_vertices == seen[i] && seen[i] > 50 && seen[i] < 80, "%zu points", m->num_vertices);

@@ -151,6 +151,18 @@ static void clusters_that_fit_a_ball_are_estimated(void) {
     EXPECT(ratio > 0.8 && ratio < 1.3, "%g", ratio);
 }
 
+/* Small surroundings of points on two lines have points of one line alone, and no tetrahedra: the growth from none was
+ * infinite, and so was the estimate. */
+static void points_on_two_lines_had_an_infinite_estimate(void) {
+    enum { ON_LINES = 1000 };
+    for (size_t i = 0; i < ON_LINES; i++) {
+        double at = (double)i / ON_LINES;
+        points[3 * i] = i % 2 ? at : 0.5, points[3 * i + 1] = i % 2 ? 0.5 : at, points[3 * i + 2] = i % 2 ? 0.2 : 0.7;
+    }
+    double ratio = ratio_of_estimate(ON_LINES, NULL, NULL, 1);
+    EXPECT(ratio > 0.3 && ratio < 30, "%g", ratio);
+}
+
 static int count_balls(const char *stage, double fraction, void *user) {
     (void)fraction;
     *(size_t *)user += !strcmp(stage, "estimate");
@@ -411,6 +423,7 @@ SUITE(test_estimate) {
     RUN(few_points_take_what_was_estimated);
     RUN(gaps_in_space_that_repeats_are_estimated);
     RUN(clusters_that_fit_a_ball_are_estimated);
+    RUN(points_on_two_lines_had_an_infinite_estimate);
     RUN(points_on_a_line_take_few_balls);
     RUN(tetrahedra_on_curves_are_estimated);
     RUN(estimates_are_the_same_at_every_scale);

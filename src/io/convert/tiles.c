@@ -38,8 +38,9 @@ static bool say_same(const brio_mesh *a, const brio_mesh *b, const char *name) {
 }
 
 static bool are_in_one_system(const brio_mesh *a, const brio_mesh *b) {
-    if (brio_mesh_metadata(a, "crs.code") && say_same(a, b, "crs.code")) return true;
-    return say_same(a, b, "crs.wkt") && say_same(a, b, "crs.geokeys");
+    bool same_code = say_same(a, b, "crs.code");
+    if (brio_mesh_metadata(a, "crs.code") && brio_mesh_metadata(b, "crs.code")) return same_code;
+    return same_code && say_same(a, b, "crs.wkt") && say_same(a, b, "crs.geokeys");
 }
 
 /* Refuses points that do not go into files with those of the first block. */
