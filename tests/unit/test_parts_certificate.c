@@ -84,7 +84,7 @@ static size_t random_surface(brio_rng *rng, size_t *num_vertices) {
     for (uint32_t merged = brio_rng_below(rng, 2) * brio_rng_below(rng, 6); merged > 0; merged--) {
         uint32_t from = brio_rng_below(rng, v), to = brio_rng_below(rng, v);
         for (size_t i = 0; i < 3 * n; i++)
-            if ((*faces)[i] == from) (*faces)[i] = to;
+            if (faces[i / 3][i % 3] == from) faces[i / 3][i % 3] = to;
     }
     return n;
 }
@@ -155,8 +155,8 @@ static brio_status certify_parts(brio_context *ctx, const division *d, size_t nu
     for (int k = 0; k < 3; k++) { /* the box of the vertices that faces use, as brio_mesh_certificate takes it */
         o.low[k] = INFINITY, o.high[k] = -INFINITY;
         for (size_t i = 0; i < 3 * n; i++) {
-            o.low[k] = fmin(o.low[k], points[3 * (*faces)[i] + k]);
-            o.high[k] = fmax(o.high[k], points[3 * (*faces)[i] + k]);
+            o.low[k] = fmin(o.low[k], points[3 * faces[i / 3][i % 3] + k]);
+            o.high[k] = fmax(o.high[k], points[3 * faces[i / 3][i % 3] + k]);
         }
     }
     brio_status status = brio_parts_certificate_new(ctx, &o, &c);
@@ -204,7 +204,7 @@ static void random_parts_are_the_whole(void) {
         EXPECT(certify_parts(ctx, &d, num_vertices, n, 0, &parts, &s) == BRIO_OK, "%s", brio_message(ctx));
         compare(&parts, &whole, seed);
         memset(met, 0, sizeof met);
-        for (size_t i = 0; i < 3 * n; i++) met[(*faces)[i]] = 1;
+        for (size_t i = 0; i < 3 * n; i++) met[faces[i / 3][i % 3]] = 1;
         for (size_t v = 0; v < num_vertices; v++) used += met[v];
         EXPECT(s.faces == n && s.vertices == used && s.split == 0, "set %d", (int)seed);
         brio_certificate_free(&whole);
