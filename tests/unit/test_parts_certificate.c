@@ -412,6 +412,19 @@ static void the_files_of_a_killed_process_stayed(void) {
     brio_context_free(ctx);
 }
 
+/* What waits for the files of 256 buckets took 12 MB, whatever the limit was: a shape in tiles ended when its tiles had
+ * been triangulated. */
+static void little_memory_was_taken_by_what_waits(void) {
+    brio_context *ctx = new_context();
+    brio_parts_options o = {.size = sizeof o, .scratch = folder, .buckets = 256};
+    brio_parts_certificate *c;
+    brio_context_set_memory_limit(ctx, 8 << 20);
+    EXPECT(brio_parts_certificate_new(ctx, &o, &c) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_context_memory(ctx) < 2 << 20, "%zu bytes", brio_context_memory(ctx));
+    brio_parts_certificate_free(c);
+    brio_context_free(ctx);
+}
+
 static void wrong_calls_are_refused(void) {
     brio_context *ctx = new_context(), *other = new_context();
     brio_parts_options o = {.size = sizeof o};
@@ -464,6 +477,7 @@ SUITE(test_parts_certificate) {
     RUN(cancelled_certificates_leave_nothing);
     RUN(a_full_disk_is_a_status);
     RUN(the_files_of_a_killed_process_stayed);
+    RUN(little_memory_was_taken_by_what_waits);
     RUN(wrong_calls_are_refused);
     rmdir(folder);
     return harness_end();

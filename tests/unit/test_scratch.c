@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/team.h"
 #include "harness.h"
+#include "platform/disk.h"
 #include "points.h"
 #ifdef __linux__
 #include <sys/resource.h>
@@ -150,6 +151,12 @@ static void a_sweep_waits_for_few_pages(void) {
         EXPECT(with <= PAGES / 8, "%ld of %d", with, PAGES);
         EXPECT(!ctx->scratch_in_runs || without <= PAGES / 8, "%ld of %d", without, PAGES);
     }
+    size_t window = brio_read_around(".");
+    EXPECT(ctx->scratch_in_runs == (window > 0 && window <= 1 << 17), "a window of %zu bytes", window);
+    brio_context_set_memory_limit(ctx, 1 << 20);
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK && ctx->scratch_in_runs == (window > 0 && window <= 1 << 14));
+    brio_context_set_memory_limit(ctx, 0);
+    EXPECT(brio_context_set_scratch(ctx, ".") == BRIO_OK);
     if (!ctx->scratch_in_runs) printf("skipped: pages in runs, since this disk's window is unknown or large\n");
     brio_context_free(ctx);
 }
