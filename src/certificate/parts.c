@@ -2,9 +2,9 @@
  *
  * A part counts what its unshared vertices have, and writes the faces at shared ones to buckets by their indices. When
  * all parts have come, bucket after bucket is read. A bucket has all faces at its vertices, and counts the same. So a
- * vertex has one owner, a part or a bucket. What one owner alone cannot know is left open: whether fans of one vertex that are in two patches are in one
- * component in the end, and which pieces of boundary loops are one. A patch is known to be one component with another
- * when an owner sees a face of each at one edge.
+ * vertex has one owner, a part or a bucket. What one owner alone cannot know is left open: whether fans of one vertex
+ * that are in two patches are in one component in the end, and which pieces of boundary loops are one. A patch is
+ * known to be one component with another when an owner sees a face of each at one edge.
  *
  * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988. */
 #include "certificate/parts.h"

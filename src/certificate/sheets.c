@@ -1,10 +1,10 @@
 /* Sheets of the boundary of a solid that comes in parts: what brio_mesh_split_sheets makes, by counting alone.
  *
- * Faces are paired across inside wedges, and across outside wedges at edges that a fan passes twice at both ends. An
+ * Faces are paired across inside wedges, and across outside wedges at edges that a fan passes twice at both ends. The
  * owner of a vertex (parts.c) sees this there. At an edge whose other end has another owner, it leaves a strand open
- * that has a second strand of the same fan beside it. Of such strands both owners write which fan they are of; those that are
- * of one fan at both ends are paired across outside wedges, the others across inside wedges. A fan with open strands
- * is a chain of pieces, which are joined when that is known. */
+ * that has a second strand of the same fan beside it. Of such strands both owners write which fan they are of; those
+ * that are of one fan at both ends are paired across outside wedges, the others across inside wedges. A fan with open
+ * strands is a chain of pieces, which are joined when that is known. */
 #include "base/sort.h"
 #include "base/team.h"
 #include "certificate/parts.h"
