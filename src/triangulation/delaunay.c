@@ -16,6 +16,7 @@
 #include "triangulation/represent.h"
 #include "triangulation/start.h"
 #include "triangulation/triangulation.h"
+#include "triangulation/triangulator.h"
 #include <assert.h>
 #include <string.h>
 
@@ -293,6 +294,14 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     *out = NULL;
     BRIO_FORWARD(BRIO_TAKE(ctx, brio_delaunay_options, options, &o));
     return triangulate(ctx, &(brio_input){points, weights, num_points}, &o, false, out);
+}
+
+brio_status brio_triangulate(brio_context *ctx, const double *points, size_t num_points, uint64_t seed,
+                             brio_triangulation **out) {
+    const struct brio_triangulator *by = ctx->triangulator;
+    brio_delaunay_options o = {.size = sizeof o, .seed = seed};
+    return by ? by->make(by->user, ctx, points, num_points, out)
+              : brio_delaunay(ctx, points, NULL, num_points, &o, out);
 }
 
 brio_status brio_delaunay_any_order(brio_context *ctx, const double *points, const double *weights, size_t num_points,
