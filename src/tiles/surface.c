@@ -32,7 +32,17 @@ done:
     return status;
 }
 
-/* Triangulates points in tiles, which are in memory one after another. */
+/* Triangulates the tiles in memory, one after another, also where the arrays of the surface are in scratch files: what
+ * the context's limit leaves is for one tile then. */
+static brio_status run_in_memory(brio_tiles *t) {
+    char *scratch = t->ctx->scratch;
+    t->ctx->scratch = NULL;
+    brio_status status = brio_tiles_run(t->ctx, t);
+    t->ctx->scratch = scratch;
+    return status;
+}
+
+/* Triangulates points in tiles. */
 static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points,
                         brio_triangulation **out) {
     brio_status status = BRIO_OK;
@@ -40,7 +50,7 @@ static brio_status make(void *user, brio_context *ctx, const double *points, siz
     *out = NULL;
     BRIO_TRY(brio_tiles_new(ctx, user, &t));
     BRIO_TRY(brio_tiles_add(ctx, t, points, NULL, num_points));
-    BRIO_TRY(brio_tiles_run(ctx, t));
+    BRIO_TRY(run_in_memory(t));
     status = t->stats.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, NULL, out)
                                     : brio_tiles_gather(t, points, num_points, out);
 done:
