@@ -110,13 +110,11 @@ done:
     return status;
 }
 
-/* Returns the slot of the one vertex of `other` that facet `slot` of a tetrahedron does not have. */
-static int slot_across(const brio_tetrahedron *t, int slot, const brio_tetrahedron *other) {
-    for (int j = 0; j < 4; j++) {
-        int at = brio_slot_of_vertex(t->vertex, other->vertex[j]);
-        if (at == 4 || at == slot) return j;
-    }
-    return 4;
+/* Returns the slot of the vertex of a neighbour that a tetrahedron does not have. */
+static int slot_across(const brio_tetrahedron *t, const brio_tetrahedron *neighbour) {
+    int j = 0;
+    while (j < 3 && brio_slot_of_vertex(t->vertex, neighbour->vertex[j]) < 4) j++;
+    return j;
 }
 
 /* Replaces the numbers of neighbours by handles of their facets. Reads nothing that another thread writes. */
@@ -127,7 +125,7 @@ static void find_mates(void *user, size_t begin, size_t end, int thread) {
         brio_tetrahedron *t = &g->tet[i];
         for (int k = 0; k < 4; k++) {
             uint32_t other = t->mate[k];
-            t->mate[k] = brio_facet_of(other, slot_across(t, k, &g->tet[other]));
+            t->mate[k] = brio_facet_of(other, slot_across(t, &g->tet[other]));
         }
     }
 }
