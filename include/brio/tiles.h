@@ -18,7 +18,6 @@
 
 #include "cells.h"
 #include "certificate.h"
-#include "surface.h"
 #include "triangulation.h"
 
 #ifdef __cplusplus
@@ -203,22 +202,6 @@ typedef struct brio_tiles_alpha_stats {
  *  Based on: [Edelsbrunner Muecke 1994], [Edelsbrunner 1995] for weights. */
 BRIO_API brio_status brio_tiles_alpha(brio_context *ctx, brio_tiles *t, double alpha, brio_tile_faces_fn take,
                                       void *user, brio_tiles_alpha_stats *stats);
-
-/* --- surfaces --- */
-
-/** Reconstructs what brio_surface reconstructs, bit for bit, from triangulations that are made in tiles.
- *  tiles    the folder, and how many; neither `stars` nor `key`. The folder is used by one process at a time.
- *  points   #P by 3; may be in a file that is mapped.
- *  options  as of brio_surface; the method is BRIO_SURFACE_LABELED, and without `pieces`.
- *  out, stats  as of brio_surface.
- *  A context with a scratch folder (brio_context_set_scratch) has the arrays of the surface in files there, about
- *  1,200 bytes a point; without one they are in memory, and tiles save nothing but the time's share of triangulating.
- *  Memory of the triangulations: as of brio_tiles_run.   Disk: about 190 bytes a point besides.
- *  Returns what brio_surface and brio_tiles_run return.
- *  Based on: as brio_surface; docs/decisions/044-surfaces-from-tiles.md. */
-BRIO_API brio_status brio_tiles_surface(brio_context *ctx, const brio_tiles_options *tiles, const double *points,
-                                        size_t num_points, const brio_surface_options *options, brio_mesh **out,
-                                        brio_surface_stats *stats);
 
 /** Frees everything, and removes all files; NULL is accepted. */
 BRIO_API void brio_tiles_free(brio_tiles *t);

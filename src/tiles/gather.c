@@ -13,6 +13,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "order/canonical_points.h"
+#include "tiles/work.h"
 #include "triangulation/tetrahedra.h"
 #include <string.h>
 
@@ -167,4 +168,65 @@ brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_poi
 done:
     brio_release(ctx, vertex_of);
     return status;
+}
+
+/* --- the tiles of one process --- */
+
+brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out) {
+    brio_context *ctx = t->ctx;
+    brio_status status = BRIO_OK;
+    uint64_t *first = NULL;
+    brio_gather g = {.ctx = ctx};
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, first, t->num_tiles + 1));
+    for (uint32_t i = 0; i < t->num_tiles; i++) first[i + 1] = first[i] + t->tile[i].tetrahedra;
+    BRIO_TRY(brio_gather_new(ctx, first, t->num_tiles, t->stats.hull_facets, &g));
+    for (uint32_t i = 0; i < t->num_tiles; i++) {
+        brio_tile_part part = {.size = sizeof part};
+        brio_tile_neighbour(*neighbours)[4] = NULL;
+        status = brio_tiles_part(ctx, t, i, &part);
+        if (status == BRIO_OK) status = BRIO_ALLOC(ctx, neighbours, part.num_tetrahedra + 1);
+        if (status == BRIO_OK) status = brio_tiles_neighbours(ctx, t, i, &part, neighbours);
+        if (status == BRIO_OK) brio_gather_part(&g, i, &part, (const brio_tile_neighbour(*)[4])neighbours);
+        brio_tile_part_free(ctx, &part);
+        brio_release(ctx, neighbours);
+        BRIO_TRY(status);
+    }
+    status = brio_gather_end(&g, points, num_points, t->stats.duplicates, out);
+done:
+    brio_gather_free(&g);
+    brio_release(ctx, first);
+    return status;
+}
+
+/* Triangulates the tiles in memory, one after another, also where the arrays of the surface are in scratch files: what
+ * the context's limit leaves is for one tile then. */
+static brio_status run_in_memory(brio_tiles *t) {
+    char *scratch = t->ctx->scratch;
+    t->ctx->scratch = NULL;
+    brio_status status = brio_tiles_run(t->ctx, t);
+    t->ctx->scratch = scratch;
+    return status;
+}
+
+/* Triangulates points in tiles. */
+static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points,
+                        brio_triangulation **out) {
+    brio_status status = BRIO_OK;
+    brio_tiles *t = NULL;
+    *out = NULL;
+    BRIO_TRY(brio_tiles_new(ctx, user, &t));
+    BRIO_TRY(brio_tiles_add(ctx, t, points, NULL, num_points));
+    BRIO_TRY(run_in_memory(t));
+    status = t->stats.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, NULL, out)
+                                    : brio_tiles_gather(t, points, num_points, out);
+done:
+    brio_tiles_free(t);
+    return status;
+}
+
+brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiles_options *options, brio_triangulator *out) {
+    BRIO_EXPECT(ctx, !options->stars && !options->key, BRIO_ERR_ARGUMENT,
+                "tiles of a surface have neither stars nor a key");
+    *out = (brio_triangulator){(void *)options, make};
+    return BRIO_OK;
 }

@@ -37,4 +37,8 @@ brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_poi
  *  points  num_points by 3: those that were added.   Returns what brio_delaunay returns. */
 brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out);
 
+/** Lets a context's triangulations be made in tiles.
+ *  options  kept: neither stars nor a key.   Returns BRIO_OK, BRIO_ERR_ARGUMENT. */
+brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiles_options *options, brio_triangulator *out);
+
 #endif

@@ -16,7 +16,6 @@
 #include "triangulation/represent.h"
 #include "triangulation/start.h"
 #include "triangulation/triangulation.h"
-#include "triangulation/triangulator.h"
 #include <assert.h>
 #include <string.h>
 

@@ -119,7 +119,9 @@ static void compare_surfaces(brio_context *ctx, size_t n, int kind, uint32_t til
     char sentence[512];
     brio_status expected = brio_surface(ctx, points, n, options, &whole, &a);
     snprintf(sentence, sizeof sentence, "%s", brio_message(ctx));
-    brio_status status = brio_tiles_surface(ctx, &o, points, n, options, &tiled, &b);
+    brio_surface_options in_tiles = *options;
+    in_tiles.tiles = &o;
+    brio_status status = brio_surface(ctx, points, n, &in_tiles, &tiled, &b);
     EXPECT(status == expected, "kind %d, %u tiles, %zu points: %s", kind, tiles, n, brio_message(ctx));
     if (status != BRIO_OK) EXPECT(!strcmp(sentence, brio_message(ctx)), "%s / %s", sentence, brio_message(ctx));
     if (status == BRIO_OK && expected == BRIO_OK) {
@@ -167,15 +169,18 @@ static void points_without_a_solid_have_the_same_sentence(void) {
 static void what_tiles_have_not_is_refused(void) {
     brio_context *ctx = new_context();
     brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 2, .stars = 1};
-    brio_surface_options crust = {.size = sizeof crust, .method = BRIO_SURFACE_POWER_CRUST};
+    brio_surface_options options = {.size = sizeof options, .tiles = &o};
     brio_surface_stats stats = {.size = sizeof stats};
     brio_mesh *mesh = NULL;
     uniform_points(5, 200, points);
-    EXPECT(brio_tiles_surface(ctx, &o, points, 200, NULL, &mesh, &stats) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_surface(ctx, points, 200, &options, &mesh, &stats) == BRIO_ERR_ARGUMENT && !mesh);
     o.stars = 0;
-    EXPECT(brio_tiles_surface(ctx, &o, points, 200, &crust, &mesh, &stats) == BRIO_ERR_ARGUMENT && !mesh);
+    options.method = BRIO_SURFACE_POWER_CRUST;
+    EXPECT(brio_surface(ctx, points, 200, &options, &mesh, &stats) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "tiles is an option of BRIO_SURFACE_LABELED"), "%s", brio_message(ctx));
+    options.method = BRIO_SURFACE_LABELED;
     o.scratch = "/nowhere/at/all";
-    EXPECT(brio_tiles_surface(ctx, &o, points, 200, NULL, &mesh, &stats) == BRIO_ERR_OPEN && !mesh);
+    EXPECT(brio_surface(ctx, points, 200, &options, &mesh, &stats) == BRIO_ERR_OPEN && !mesh);
     EXPECT(brio_surface(ctx, points, 200, NULL, &mesh, &stats) == BRIO_OK); /* by one process again */
     brio_mesh_free(mesh);
     brio_context_free(ctx);
@@ -185,10 +190,10 @@ static void what_tiles_have_not_is_refused(void) {
 
 static brio_status make_a_surface(brio_context *ctx, size_t n) {
     brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 3};
-    brio_surface_options options = {.size = sizeof options, .noise = BRIO_NOISE_KEEP};
+    brio_surface_options options = {.size = sizeof options, .noise = BRIO_NOISE_KEEP, .tiles = &o};
     brio_surface_stats stats = {.size = sizeof stats};
     brio_mesh *mesh = NULL;
-    brio_status status = brio_tiles_surface(ctx, &o, points, n, &options, &mesh, &stats);
+    brio_status status = brio_surface(ctx, points, n, &options, &mesh, &stats);
     EXPECT((status == BRIO_OK) == (mesh != NULL));
     brio_mesh_free(mesh);
     return status;

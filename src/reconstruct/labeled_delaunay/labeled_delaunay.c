@@ -36,7 +36,7 @@
 #include "reconstruct/noise/smooth_surface.h"
 #include "mesh/back_off.h"
 #include "mesh/properties.h"
-#include "triangulation/triangulator.h"
+#include "triangulation/triangulation.h"
 #include <math.h>
 #include <string.h>
 

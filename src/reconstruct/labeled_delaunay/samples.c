@@ -9,7 +9,7 @@
 #include "reconstruct/labeled_delaunay/reconstruction.h"
 #include "reconstruct/labeled_delaunay/stray_samples.h"
 #include "reconstruct/noise/sample_noise.h"
-#include "triangulation/triangulator.h"
+#include "triangulation/triangulation.h"
 #include <math.h>
 #include <string.h>
 
