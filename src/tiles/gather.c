@@ -8,7 +8,6 @@
  *
  * Everything goes along the rows, and neighbours are nearly always of the same tile. So what is in scratch files is
  * read and written in sequence. */
-#include "tiles/gather.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"

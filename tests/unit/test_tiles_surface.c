@@ -5,7 +5,7 @@
 #include "failing_allocator.h"
 #include "harness.h"
 #include "points.h"
-#include "tiles/gather.h"
+#include "tiles/work.h"
 #include <dirent.h>
 #include <sys/stat.h>
 #include <unistd.h>

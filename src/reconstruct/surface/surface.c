@@ -7,7 +7,7 @@
 #include "base/versioned.h"
 #include "order/canonical_points.h"
 #include "reconstruct/surface/method.h"
-#include "tiles/gather.h"
+#include "tiles/work.h"
 #include <math.h>
 #include <stdio.h>
 
