@@ -12,6 +12,7 @@
 #include "cli/steps/power_crust.h"
 #include "cli/steps/properties.h"
 #include "cli/steps/selection.h"
+#include "cli/steps/tiles.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,8 +28,8 @@ typedef struct arguments {
     int method;
     power_crust_options crust;
     bool curves, polygons, boundaries, density, vertex_normals, self_intersections, explain;
-    double theta; /* 0: not given */
-    uint64_t pieces;
+    double theta;           /* 0: not given */
+    uint64_t pieces, tiles; /* 0: not given */
     int extraction;
     component_options components;
     evidence_options evidence;
@@ -68,6 +69,8 @@ static const option options[] = {
     SOLID_ROWS(arguments, crust),
     {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay, cocone and tight-cocone", 0},
     EVIDENCE_ROWS(arguments, evidence),
+    {"", 0, OPTION_TITLE, 0, NULL, "options of labeled-delaunay", 0},
+    TILES_ROWS(arguments, tiles),
     {"", 0, OPTION_TITLE, 0, NULL, "options of power-crust (each of them chooses it)", 0},
     POWER_CRUST_ROWS(arguments, crust),
     {"polygons", 0, OPTION_FLAG, FIELD(polygons), NULL, "write its polygons, not cut into triangles", 0},
@@ -344,6 +347,7 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     int method = method_of(a);
     brio_surface_options o = library_options(r, method);
     brio_surface_stats s = {.size = sizeof s};
+    const brio_tiles_options tiles = {.size = sizeof tiles, .scratch = r->common.scratch, .tiles = (uint32_t)a->tiles};
     uint64_t work = 0;
     size_t usual;
     uint32_t *samples = NULL;
@@ -355,6 +359,7 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
         if (!normals) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for %zu normals", points->num_vertices);
     }
     if (a->explain) o.explanation = &r->explanation;
+    if (a->tiles) o.tiles = &tiles;
     TRY(cli_usual_points(r, points, NULL, false, &usual));
     status = brio_estimate_surface(r->ctx, usual, &o, &work);
     TRY(cli_require_work(r, status, points, work));
@@ -374,6 +379,7 @@ static brio_status reconstruct(run *r, brio_mesh *points, brio_mesh **surface, o
     TRY(cli_take_samples(r, *surface, &samples));
     TRY(complete(r, points, is(method, BRIO_METHOD_OWN_VERTICES) ? NULL : samples, s.samples, *surface));
     if (reports[method].counts) reports[method].counts(r, &s);
+    if (a->tiles) cli_fact_count(&r->facts, "tiles", a->tiles);
     found->leaves_many = method == BRIO_SURFACE_LABELED && (double)s.unused > MANY_UNUSED * (double)s.samples;
 done:
     cli_evidence_free(&e);
@@ -426,6 +432,8 @@ static brio_status check_method(run *r, int method) {
         {"self-intersections", a->self_intersections, NULL, false},
         {"left-out", a->left_out != NULL, NULL, false},
         {"explain", a->explain, "explanation", false},
+        {"tiles", a->tiles > 0 && (a->curves || method != CURVES), "tiles",
+         false}, /* points may prove to be in a plane */
         {"normals", a->crust.normals != NULL, "normals", false},
         {"from", a->evidence.from != NULL, "evidence", false},
         {"ignore-normals", a->evidence.ignore_normals, "evidence", false},
@@ -440,12 +448,6 @@ static brio_status check_method(run *r, int method) {
     return BRIO_OK;
 }
 
-/* Refuses gaps that are shorter than what they are held against. */
-static brio_status check_open_of_curves(run *r, double open) {
-    if (isnan(open) || open == 0 || open >= 1) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "--open: %g is under 1; curves end at gaps over that many links", open);
-}
-
 /* Checks the options. A theta that voids the guarantee is worth a word. */
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
@@ -454,10 +456,11 @@ static brio_status check_arguments(run *r) {
     if (a->curves && a->method != NO_METHOD && a->method != CURVES)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--curves and --method %s exclude each other", name_of(a->method));
     double spacings;
+    if (a->tiles) TRY(cli_check_tile_count(r, a->tiles));
     if (a->explain && !r->common.view) return cli_fail(r, BRIO_ERR_ARGUMENT, "--explain has no meaning without --view");
     if (a->explain && a->pieces > 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "--explain and --pieces exclude each other");
     TRY(cli_read_open(r, &a->crust, &spacings));
-    if (method_of(a) == CURVES) TRY(check_open_of_curves(r, spacings));
+    if (method_of(a) == CURVES) TRY(cli_check_curve_gaps(r, spacings));
     if (a->crust.open && isnan(spacings) && method_of(a) == BRIO_SURFACE_POWER_CRUST)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--open auto is for --method labeled-delaunay, and the method is power-crust");
@@ -508,7 +511,7 @@ static brio_status curves(run *r, const brio_mesh *points, brio_mesh **result) {
     brio_status status = check_method(r, CURVES);
     TRY(status);
     TRY(cli_read_open(r, &a->crust, &open));
-    TRY(check_open_of_curves(r, open));
+    TRY(cli_check_curve_gaps(r, open));
     bool closed = open == 0; /* --closed, too */
     status = cli_curve(r, points, isnan(open) || closed ? 0 : open, closed, result);
 done:
@@ -533,15 +536,12 @@ done:
 
 static brio_status finish_surface(run *r, brio_mesh **points, brio_mesh *result, const outcome *found) {
     const arguments *a = r->arguments;
-    brio_status status = BRIO_OK;
-    if (a->left_out || found->leaves_many) TRY(cli_report_left_out(r, result, *points, a->left_out));
+    if (a->left_out || found->leaves_many) FORWARD(cli_report_left_out(r, result, *points, a->left_out));
     brio_mesh_free(*points);
     *points = NULL;
     unsigned how = found->open ? CERTIFY_OPEN : 0u;
     if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
-    status = cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u));
-done:
-    return status;
+    return cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u));
 }
 
 static brio_status surface(run *r) {

@@ -43,9 +43,10 @@ struct brio_context {
     brio_bar bar;      /* the part that the running stage owns */
     const char *stage; /* what the callback was told last, NULL for nothing */
     double share;
-    size_t unlooked;                          /* items of work since the callback was asked last */
-    bool stopped;                             /* the callback asked to stop, in the loop (team.h) that runs */
-    const struct brio_experiment *experiment; /* experiment.h; NULL: none */
+    size_t unlooked;                              /* items of work since the callback was asked last */
+    bool stopped;                                 /* the callback asked to stop, in the loop (team.h) that runs */
+    const struct brio_experiment *experiment;     /* experiment.h; NULL: none */
+    const struct brio_triangulator *triangulator; /* triangulation/triangulation.h; NULL: brio_delaunay */
     char message[512];
     brio_failure failure, next; /* of the message; what is known so far of the failure that is about to come */
     uint64_t failures;          /* that were told in messages */

@@ -24,13 +24,11 @@ static const double DISK_A_POINT = 195, DISK_WITH_FACES = 850, DISK_WITH_CELLS =
 
 /* --- life --- */
 
+/* Makes the folder, or takes one that a killed process left: with a key to go on, without one for its room. */
 static brio_status begin_folder(brio_tiles *t, const char *scratch) {
     char name[64];
-    if (t->key)
-        snprintf(name, sizeof name, "brio-tiles-%016" PRIx64, t->key);
-    else
-        snprintf(name, sizeof name, "brio-tiles-%ld-%" PRIxPTR, brio_process_number(),
-                 (uintptr_t)t); /* no two at a time */
+    if (!t->key) return brio_store_begin_free(t->ctx, scratch, "brio-tiles", &t->folder);
+    snprintf(name, sizeof name, "brio-tiles-%016" PRIx64, t->key);
     return brio_store_begin(t->ctx, scratch, name, &t->folder);
 }
 

@@ -10,6 +10,7 @@
 #include "completion/completion.h"
 #include "store/store.h"
 #include "tiles/cuts.h"
+#include "triangulation/triangulation.h"
 
 enum {
     TILE_BLOCK = 128,    /* points in a block, at most. Chosen: tiles.md */
@@ -273,5 +274,51 @@ brio_status brio_facet_answers_take(brio_tiles *t, uint32_t file, uint64_t all_t
                                     brio_tile_neighbour (*neighbours)[4]);
 /** Removes the files of lone facets and of answers that are there, after a failure. */
 void brio_facet_files_remove(brio_tiles *t);
+
+/* --- a triangulation put together from the parts of its tiles --- */
+
+/** Tetrahedra that come part after part. Facets of the hull have infinite ones, which follow. */
+typedef struct {
+    brio_context *ctx;
+    const uint64_t *first; /* #tiles + 1: of each tile, its first tetrahedron among all */
+    uint32_t num_tiles;
+    size_t num_finite, count; /* count: the infinite ones, too */
+    size_t num_infinite;      /* that are here */
+    brio_tetrahedron *tet;    /* count; until all are here, a mate is a tetrahedron */
+} brio_gather;
+
+/** Makes room.
+ *  first  kept.   hull_facets  of all.   out  freed with brio_gather_free, on failure too.
+ *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE (over 2^30 tetrahedra), BRIO_ERR_NO_MEMORY. */
+brio_status brio_gather_new(brio_context *ctx, const uint64_t *first, uint32_t num_tiles, uint64_t hull_facets,
+                            brio_gather *out);
+void brio_gather_free(brio_gather *g);
+
+/** A tetrahedron of a tile: its vertices by the indices of points, and what is across its facets. */
+typedef struct {
+    uint32_t vertex[4];
+    brio_tile_neighbour neighbour[4];
+} brio_gather_row;
+
+/** Returns row `i` of a part.   neighbours  of its tetrahedra, as brio_tiles_neighbours names them. */
+brio_gather_row brio_gather_row_of(const brio_tile_part *part, const brio_tile_neighbour (*neighbours)[4], size_t i);
+
+/** Takes a row of a tile's part. Rows may come in any order. */
+void brio_gather_take(brio_gather *g, uint32_t tile, uint64_t row, const brio_gather_row *tetrahedron);
+
+/** Makes what brio_delaunay makes of the points, once all parts are here.
+ *  points  num_points by 3, by the indices of the parts.   duplicates  points at the position of another one.
+ *  Cost: sorts the tetrahedra, in files where the context has a scratch folder.
+ *  Returns what brio_delaunay returns. */
+brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_points, uint64_t duplicates,
+                            brio_triangulation **out);
+
+/** Makes what brio_delaunay makes of the points of all tiles of one process, whose dimension is 3.
+ *  points  num_points by 3: those that were added.   Returns what brio_delaunay returns. */
+brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out);
+
+/** Lets a context's triangulations be made in tiles.
+ *  options  kept: neither stars nor a key.   Returns BRIO_OK, BRIO_ERR_ARGUMENT. */
+brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiles_options *options, brio_triangulator *out);
 
 #endif

@@ -295,6 +295,14 @@ brio_status brio_delaunay(brio_context *ctx, const double *points, const double 
     return triangulate(ctx, &(brio_input){points, weights, num_points}, &o, false, out);
 }
 
+brio_status brio_triangulate(brio_context *ctx, const double *points, size_t num_points, uint64_t seed,
+                             brio_triangulation **out) {
+    const struct brio_triangulator *by = ctx->triangulator;
+    brio_delaunay_options o = {.size = sizeof o, .seed = seed};
+    return by ? by->make(by->user, ctx, points, num_points, out)
+              : brio_delaunay(ctx, points, NULL, num_points, &o, out);
+}
+
 brio_status brio_delaunay_any_order(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                     const brio_delaunay_options *options, brio_triangulation **out) {
     *out = NULL;

@@ -49,4 +49,19 @@ typedef struct {
 brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, const brio_adopted *from,
                                 brio_triangulation **out);
 
+/** Who makes the triangulations of a context, where one process in one memory is not to do it. A context has at most
+ *  one, for the time of a call. */
+typedef struct brio_triangulator {
+    void *user;
+    /** Makes what brio_delaunay makes of points without weights. What its statistics say of the way there may differ.
+     *  points  num_points by 3, finite.   Returns what brio_delaunay returns. */
+    brio_status (*make)(void *user, brio_context *ctx, const double *points, size_t num_points,
+                        brio_triangulation **out);
+} brio_triangulator;
+
+/** Triangulates points by the context's triangulator, or by brio_delaunay where it has none.
+ *  seed  of brio_delaunay.   Returns what brio_delaunay returns. */
+brio_status brio_triangulate(brio_context *ctx, const double *points, size_t num_points, uint64_t seed,
+                             brio_triangulation **out);
+
 #endif

@@ -21,7 +21,7 @@ OWN_OPTIONS = {
     "surface": ["--method", "--curves", "--triangulate", "--theta", "--boundaries", "--density", "--pieces", "--simplify",
                 "--labeling", "--noise", "--sampling-density", "--sharp", "--open", "--closed", "--normals",
                 "--vertex-normals", "--self-intersections", "--explain", "--polygons", "--extraction", "--keep-largest",
-                "--min-component", "--from", "--ignore-normals", "--ignore-origins", "--left-out"],
+                "--min-component", "--from", "--ignore-normals", "--ignore-origins", "--left-out", "--tiles"],
     "medial": ["--sides", "--spacing", "--labeling", "--noise", "--simplify", "--scale", "--redundancy", "--crust", "--scale-axis", "--method", "--theta", "--rho",
                "--sampling-density", "--sharp"],
     "offset": ["--distance", "--error", "--triangulate", "--simplify", "--labeling", "--noise", "--sampling-density", "--sharp",

@@ -51,6 +51,7 @@ RUNS = {
     "alpha {p} --alpha 1 -o {o}.ply": ("3333333", r"of dimension -?\d have no tetrahedra, so no alpha complex"),
     "alpha {p} --alpha 1 --tiles 2 --scratch {d} -o {o}.pvtp": ("3333333", r"of dimension -?\d have no tetrahedra, so no alpha complex"),
     "surface {p} -o {o}.ply": ("3333333", SOLID),
+    "surface {p} --tiles 2 --scratch {d} -o {o}.ply": ("3333333", SOLID),
     "surface {p} --curves -o {o}.ply": ("3000003", SOLID),
     "tree {p} -o {o}.ply": ("0000000", None),
     "surface {p} --method power-crust -o {o}.ply": ("3333333", SOLID),

@@ -95,6 +95,68 @@ class Tiles(CliTest):
         self.shapes(self.path("grid.csv"), "--alpha", "0.75")  # exactly the radius of each cube's sphere
         self.shapes(self.path("grid.csv"), "--alpha", "1", "--threads", "3", tiles=7)
 
+    def same_surface(self, *arguments, tiles=3, files=()):
+        """Compares surfaces and what is written beside them byte for byte. Returns the report."""
+        beside = [(option, self.path("whole-" + name), self.path("tiled-" + name)) for option, name in files]
+        plain = self.facts("surface", *arguments, "-o", self.path("whole.ply"), *sum(([o, w] for o, w, _ in beside), []))
+        tiled = self.facts("surface", *arguments, "-o", self.path("tiled.ply"), *sum(([o, t] for o, _, t in beside), []),
+                           "--tiles", str(tiles), "--scratch", self.scratch())
+        self.assertEqual(os.listdir(self.scratch()), [])
+        self.assertEqual(tiled["tiles"], tiles)
+        same = "samples vertices faces certificate bridges holes energy".split()
+        self.assertEqual({key: plain.get(key) for key in same}, {key: tiled.get(key) for key in same})
+        for _, whole, other in [(None, self.path("whole.ply"), self.path("tiled.ply"))] + beside:
+            self.assertEqual(self.bytes_of(whole), self.bytes_of(other))
+        return tiled
+
+    def test_surfaces_are_those_without_tiles(self):
+        self.facts("generate", "scan", "--points", "9000", "-o", self.path("scan.ply"))
+        self.same_surface(self.path("scan.ply"), tiles=1)
+        self.same_surface(self.path("scan.ply"), "--closed", "--threads", "2", tiles=7, files=[("--normals", "normals.ply")])
+        self.same_surface(self.path("scan.ply"), "--open", "4", "--noise", "smooth", "--simplify", tiles=64)
+        rows = self.path("few.csv")  # with twins, a property, and a stray
+        with open(rows, "w", encoding="ascii") as f:
+            rng = random.Random(9)
+            f.write("x,y,z,height\n")
+            for i in range(900):
+                p = [rng.gauss(0, 1) for _ in range(3)]
+                r = sum(c * c for c in p) ** 0.5
+                f.write(("%.3f,%.3f,%.3f,%d\n" % (*[c / r for c in p], i)) * (1 + (i % 50 == 0)))
+            f.write("9,9,9,0\n")
+        self.same_surface(rows, tiles=5)
+
+    def test_points_in_a_plane_need_no_tiles(self):
+        with open(self.path("ring.csv"), "w", encoding="ascii") as f:
+            f.write("x,y,z\n0,0,1\n1,0,1\n1,1,1\n0,1,1\n")
+        self.expect(0, "surface", self.path("ring.csv"), "-o", self.path("a.ply"))
+        self.expect(0, "surface", self.path("ring.csv"), "-o", self.path("b.ply"), "--tiles", "2", "--scratch", self.scratch())
+        self.assertEqual(self.bytes_of("a.ply"), self.bytes_of("b.ply"))
+
+    def test_what_surfaces_do_not_do_in_tiles_is_refused(self):
+        path, scratch, out = self.rows("a.csv", 50), self.scratch(), self.path("o.ply")
+        for more, sentence in ((("--tiles", "2"), "--tiles needs --scratch DIR"),
+                               (("--tiles", "2", "--scratch", scratch, "--method", "cocone"), "--tiles is for --method labeled-delaunay, and the method is cocone"),
+                               (("--tiles", "2", "--scratch", scratch, "--sharp"), "the method is power-crust"),
+                               (("--tiles", "2", "--scratch", scratch, "--curves"), "the method is curves"),
+                               (("--tiles", "70000", "--scratch", scratch), "70000 are more than 65536"),
+                               (("--tiles", "0", "--scratch", scratch), "tiles")):
+            self.assertIn(sentence, self.expect(1, "surface", path, "-o", out, *more).err)
+            self.assertFalse(os.path.exists(out))
+
+    @posix_alone
+    def test_a_killed_surface_in_tiles_leaves_no_output(self):
+        self.facts("generate", "scan", "--points", "9000", "-o", self.path("scan.ply"))
+        arguments = [BRIO, "surface", self.path("scan.ply"), "-o", self.path("o.ply"), "--tiles", "4", "--scratch", self.scratch()]
+        for wait in (0.05, 0.2, 0.4):
+            child = subprocess.Popen(arguments, stderr=subprocess.DEVNULL)
+            time.sleep(wait)
+            child.kill()
+            if child.wait() == 0:
+                os.remove(self.path("o.ply"))
+            self.assertFalse(os.path.exists(self.path("o.ply")))
+        self.facts("surface", self.path("scan.ply"), "-o", self.path("o.ply"), "--tiles", "4", "--scratch", self.scratch())
+        self.assertEqual(os.listdir(self.scratch()), [])  # what the killed ones left, too
+
     def test_alpha_shapes_go_to_a_file_for_each_tile(self):
         scratch, index = self.scratch(), self.path("shape.pvtp")
         facts = self.facts("alpha", self.rows("a.csv", 3000), "--alpha", "0.05", "--tiles", "4", "--scratch", scratch, "-o", index)

@@ -179,7 +179,7 @@ ENDS_WITH(brio_dynamic_periodic_stats, snapshots);
 ENDS_WITH(brio_dynamic_stats, exact_calls);
 ENDS_WITH(brio_pole_options, reserved);
 ENDS_WITH(brio_pole_stats, reserved);
-ENDS_WITH(brio_surface_options, explained);
+ENDS_WITH(brio_surface_options, tiles);
 ENDS_WITH(brio_surface_stats, rounding);
 ENDS_WITH(brio_power_shape_options, scale_axis);
 ENDS_WITH(brio_power_shape_stats, shape_seconds);

@@ -36,6 +36,7 @@
 #include "reconstruct/noise/smooth_surface.h"
 #include "mesh/back_off.h"
 #include "mesh/properties.h"
+#include "triangulation/triangulation.h"
 #include <math.h>
 #include <string.h>
 
@@ -417,7 +418,7 @@ static brio_status ask_few(brio_reconstruction *r, bool *maybe) {
     *maybe = true;
     if (r->num_points < MANY) goto done;
     BRIO_TRY(take_few(r, &few));
-    BRIO_TRY(brio_delaunay(r->ctx, few.points, NULL, few.num_points, NULL, &few.delaunay));
+    BRIO_TRY(brio_triangulate(r->ctx, few.points, few.num_points, 0, &few.delaunay));
     if (brio_triangulation_stats(few.delaunay)->dimension < 3) goto done;
     BRIO_TRY(brio_measure_spacing(&few, NULL));
     BRIO_TRY(brio_orient_axes(&few));

@@ -9,6 +9,7 @@
 #include "reconstruct/labeled_delaunay/reconstruction.h"
 #include "reconstruct/labeled_delaunay/stray_samples.h"
 #include "reconstruct/noise/sample_noise.h"
+#include "triangulation/triangulation.h"
 #include <math.h>
 #include <string.h>
 
@@ -33,9 +34,7 @@ done:
 
 brio_status brio_triangulate_samples(brio_reconstruction *r) {
     brio_status status = BRIO_OK;
-    brio_delaunay_options o = {0};
-    o.seed = r->options->seed;
-    BRIO_TRY(brio_delaunay(r->ctx, r->points, NULL, r->num_points, &o, &r->delaunay));
+    BRIO_TRY(brio_triangulate(r->ctx, r->points, r->num_points, r->options->seed, &r->delaunay));
     const brio_delaunay_stats *s = brio_triangulation_stats(r->delaunay);
     r->stats.samples = s->vertices;
     BRIO_REQUIRE(r->ctx, s->dimension == 3, BRIO_ERR_NO_ANSWER, "%zu distinct points of dimension %d bound no solid",

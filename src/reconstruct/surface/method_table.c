@@ -49,7 +49,7 @@ static const brio_method_row table[] = {
     [BRIO_SURFACE_LABELED] =
         {{METHOD(LABELED), "labeled-delaunay",
           "also from noisy points; open where they end (--closed: closed); the one that is right most often",
-          "noise evidence normals open holes simplify confidence explanation", BRIO_METHOD_MAY_END},
+          "noise evidence normals open holes simplify confidence explanation tiles", BRIO_METHOD_MAY_END},
          "BRIO_SURFACE_LABELED",
          brio_labeled_delaunay,
          .bytes_a_point = LABELED_BYTES},

@@ -7,6 +7,7 @@
 #include "base/versioned.h"
 #include "order/canonical_points.h"
 #include "reconstruct/surface/method.h"
+#include "tiles/work.h"
 #include <math.h>
 #include <stdio.h>
 
@@ -46,7 +47,8 @@ static brio_status check_uses(brio_context *ctx, const brio_surface_options *o) 
                 {"boundaries", o->boundaries != 0},
                 {"density", o->density != 0},
                 {"pieces", o->pieces > 1},
-                {"explanation", o->explanation != NULL}};
+                {"explanation", o->explanation != NULL},
+                {"tiles", o->tiles != NULL}};
     for (size_t i = 0; i < sizeof uses / sizeof *uses; i++) {
         char names[160];
         if (!uses[i].set || brio_surface_method_has(o->method, uses[i].name)) continue;
@@ -122,6 +124,19 @@ static brio_status require_disk(brio_context *ctx, const double *points, size_t 
     return BRIO_OK;
 }
 
+/* Makes the surface by its method, from triangulations that are made in tiles if options say so. */
+static brio_status make(brio_context *ctx, const double *points, size_t num_points, const brio_surface_options *o,
+                        brio_mesh *mesh, brio_surface_stats *stats) {
+    brio_triangulator in_tiles;
+    const brio_method_row *method = brio_method_row_of(o->method);
+    if (!o->tiles) return method->make(ctx, points, num_points, o, mesh, stats);
+    BRIO_FORWARD(brio_triangulate_in_tiles(ctx, o->tiles, &in_tiles));
+    ctx->triangulator = &in_tiles;
+    brio_status status = method->make(ctx, points, num_points, o, mesh, stats);
+    ctx->triangulator = NULL;
+    return status;
+}
+
 brio_status brio_surface(brio_context *ctx, const double *points, size_t num_points,
                          const brio_surface_options *options, brio_mesh **out, brio_surface_stats *stats) {
     BRIO_DOOR;
@@ -135,7 +150,7 @@ brio_status brio_surface(brio_context *ctx, const double *points, size_t num_poi
     BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
     BRIO_TRY(require_disk(ctx, points, num_points, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
-    BRIO_TRY(brio_method_row_of(o.method)->make(ctx, points, num_points, &o, mesh, &s));
+    BRIO_TRY(make(ctx, points, num_points, &o, mesh, &s));
     *out = mesh;
     mesh = NULL;
 done:

@@ -1,0 +1,254 @@
+/* Surfaces from tiles: the triangulation that parts make, and the surface, have the bits of one process, whatever the
+ * points and the number of tiles. */
+#include "base/context.h"
+#include "brio/tiles.h"
+#include "failing_allocator.h"
+#include "harness.h"
+#include "points.h"
+#include "tiles/work.h"
+#include <dirent.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST = 6000, KINDS = 8 };
+
+static double points[3 * MOST];
+static char folder[64];
+
+static size_t files_left(void) {
+    DIR *d = opendir(folder);
+    size_t n = 0;
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;) n += e->d_name[0] != '.';
+    if (d) closedir(d);
+    return n;
+}
+
+/* Fills points of a kind: uniform, clusters, a sphere, few places (duplicates), a grid, a scan, a noisy shell, a plane
+ * with some above. Returns their number, at most n. */
+static size_t make_points(uint64_t seed, size_t n, int kind) {
+    brio_rng rng = brio_rng_new(seed);
+    size_t side = (size_t)cbrt((double)n);
+    switch (kind) {
+    case 0:
+        uniform_points(seed, n, points);
+        return n;
+    case 1:
+        clustered_points(seed, n, points);
+        return n;
+    case 2:
+        sphere_points(seed, n, points);
+        return n;
+    case 3:
+        integer_points(seed, n, 12, points);
+        return n;
+    case 4:
+        n = side * side * side;
+        for (size_t i = 0; i < n; i++)
+            for (size_t k = 0, at = i; k < 3; k++, at /= side) points[3 * i + k] = (double)(at % side);
+        return n;
+    case 5:
+        side = (size_t)sqrt((double)n);
+        depth_points(seed, side, points);
+        return side * side;
+    case 6:
+        sphere_points(seed, n, points);
+        for (size_t i = 0; i < 3 * n; i++) points[i] *= 1 + 0.02 * brio_rng_double(&rng);
+        return n;
+    default:
+        integer_points(seed, n, 40, points);
+        for (size_t i = 0; i < n; i++)
+            if (i % 31) points[3 * i + 2] = 3;
+        return n;
+    }
+}
+
+/* --- the triangulation --- */
+
+static void compare_triangulations(const brio_triangulation *a, const brio_triangulation *b, size_t n, int kind,
+                                   uint32_t tiles) {
+    const brio_delaunay_stats *x = brio_triangulation_stats(a), *y = brio_triangulation_stats(b);
+    size_t all = x->tetrahedra + x->hull_facets;
+    EXPECT(x->points == y->points && x->vertices == y->vertices && x->duplicates == y->duplicates &&
+           x->dimension == y->dimension && x->hull_facets == y->hull_facets);
+    EXPECT(x->tetrahedra == y->tetrahedra, "kind %d, %u tiles: %zu, not %zu", kind, tiles, y->tetrahedra,
+           x->tetrahedra);
+    if (x->tetrahedra != y->tetrahedra || x->hull_facets != y->hull_facets) return;
+    EXPECT(!memcmp(brio_triangulation_tetrahedra(a), brio_triangulation_tetrahedra(b), all * sizeof(brio_tetrahedron)),
+           "kind %d, %u tiles, %zu points", kind, tiles, n);
+    EXPECT(!memcmp(brio_triangulation_representatives(a), brio_triangulation_representatives(b), n * sizeof(uint32_t)),
+           "kind %d, %u tiles, %zu points", kind, tiles, n);
+}
+
+static void gather_and_compare(brio_context *ctx, const brio_triangulation *whole, size_t n, int kind, uint32_t tiles) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = tiles};
+    brio_tiles *t = NULL;
+    brio_triangulation *gathered = NULL;
+    EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_tiles_add(ctx, t, points, NULL, n) == BRIO_OK && brio_tiles_run(ctx, t) == BRIO_OK);
+    brio_status status = brio_tiles_gather(t, points, n, &gathered);
+    EXPECT(status == BRIO_OK, "kind %d, %u tiles, %zu points: %s", kind, tiles, n, brio_message(ctx));
+    if (status == BRIO_OK) compare_triangulations(whole, gathered, n, kind, tiles);
+    brio_triangulation_free(gathered);
+    brio_tiles_free(t);
+}
+
+static void parts_make_the_triangulation_of_all_points(void) {
+    brio_context *ctx = new_context();
+    for (uint64_t trial = 0; trial < (uint64_t)(SHORT_TESTS ? 24 : 1000); trial++) {
+        brio_rng rng = brio_rng_new(trial);
+        int kind = (int)(trial % KINDS);
+        size_t most = trial % 4 == 3 ? 6 : trial % 5 ? 500 : 4000;
+        size_t n = make_points(trial, 4 + brio_rng_below(&rng, (uint32_t)most), kind);
+        uint32_t tiles = trial % 7 ? 1 + brio_rng_below(&rng, 12) : 64;
+        brio_triangulation *whole = NULL;
+        EXPECT(brio_delaunay(ctx, points, NULL, n, NULL, &whole) == BRIO_OK);
+        if (brio_triangulation_stats(whole)->dimension == 3) gather_and_compare(ctx, whole, n, kind, tiles);
+        brio_triangulation_free(whole);
+    }
+    EXPECT(files_left() == 0);
+    brio_context_free(ctx);
+}
+
+/* --- the surface --- */
+
+static void compare_surfaces(brio_context *ctx, size_t n, int kind, uint32_t tiles,
+                             const brio_surface_options *options) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = tiles};
+    brio_mesh *whole = NULL, *tiled = NULL;
+    brio_surface_stats a = {.size = sizeof a}, b = {.size = sizeof b};
+    char sentence[512];
+    brio_status expected = brio_surface(ctx, points, n, options, &whole, &a);
+    snprintf(sentence, sizeof sentence, "%s", brio_message(ctx));
+    brio_surface_options in_tiles = *options;
+    in_tiles.tiles = &o;
+    brio_status status = brio_surface(ctx, points, n, &in_tiles, &tiled, &b);
+    EXPECT(status == expected, "kind %d, %u tiles, %zu points: %s", kind, tiles, n, brio_message(ctx));
+    if (status != BRIO_OK) EXPECT(!strcmp(sentence, brio_message(ctx)), "%s / %s", sentence, brio_message(ctx));
+    if (status == BRIO_OK && expected == BRIO_OK) {
+        EXPECT(whole->num_vertices == tiled->num_vertices && whole->num_faces == tiled->num_faces,
+               "kind %d, %u tiles, %zu points", kind, tiles, n);
+        if (whole->num_vertices == tiled->num_vertices && whole->num_faces == tiled->num_faces) {
+            EXPECT(!memcmp(whole->vertices, tiled->vertices, 24 * whole->num_vertices));
+            EXPECT(!memcmp(whole->face_vertices, tiled->face_vertices, 12 * whole->num_faces));
+        }
+        EXPECT(a.samples == b.samples && a.holes == b.holes && a.energy == b.energy && a.handles == b.handles);
+    }
+    brio_mesh_free(whole);
+    brio_mesh_free(tiled);
+}
+
+static void surfaces_have_the_bits_of_one_process(void) {
+    brio_context *ctx = new_context();
+    static const int of_surfaces[] = {2, 5, 6, 3, 0, 7, 4};
+    for (uint64_t trial = 0; trial < (uint64_t)(SHORT_TESTS ? 14 : 500); trial++) {
+        brio_rng rng = brio_rng_new(trial + 77);
+        int kind = of_surfaces[trial % 7];
+        size_t n = make_points(trial, 10 + brio_rng_below(&rng, trial % 3 ? 700 : 3000), kind);
+        brio_surface_options options = {.size = sizeof options,
+                                        .holes = trial % 4 == 3 ? BRIO_HOLES_CLOSED : BRIO_HOLES_AUTO};
+        EXPECT(brio_context_set_scratch(ctx, trial % 2 ? folder : NULL) == BRIO_OK);
+        compare_surfaces(ctx, n, kind, 1 + brio_rng_below(&rng, 12), &options);
+        EXPECT((ctx->scratch != NULL) == (trial % 2 == 1)); /* tiles do without it, and leave it as it was */
+    }
+    EXPECT(files_left() == 0);
+    brio_context_free(ctx);
+}
+
+/* What cannot be triangulated in tiles, or bounds no solid, ends as without tiles. */
+static void points_without_a_solid_have_the_same_sentence(void) {
+    brio_context *ctx = new_context();
+    brio_surface_options options = {.size = sizeof options};
+    uniform_points(5, 200, points);
+    for (size_t i = 0; i < 200; i++) points[3 * i + 2] = 1;
+    for (size_t n = 0; n <= 200; n += n < 6 ? 1 : 97) compare_surfaces(ctx, n, -1, 3, &options);
+    points[7] = NAN;
+    compare_surfaces(ctx, 50, -2, 3, &options);
+    brio_context_free(ctx);
+}
+
+static void what_tiles_have_not_is_refused(void) {
+    brio_context *ctx = new_context();
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 2, .stars = 1};
+    brio_surface_options options = {.size = sizeof options, .tiles = &o};
+    brio_surface_stats stats = {.size = sizeof stats};
+    brio_mesh *mesh = NULL;
+    uniform_points(5, 200, points);
+    EXPECT(brio_surface(ctx, points, 200, &options, &mesh, &stats) == BRIO_ERR_ARGUMENT && !mesh);
+    o.stars = 0;
+    options.method = BRIO_SURFACE_POWER_CRUST;
+    EXPECT(brio_surface(ctx, points, 200, &options, &mesh, &stats) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "tiles is an option of BRIO_SURFACE_LABELED"), "%s", brio_message(ctx));
+    options.method = BRIO_SURFACE_LABELED;
+    o.scratch = "/nowhere/at/all";
+    EXPECT(brio_surface(ctx, points, 200, &options, &mesh, &stats) == BRIO_ERR_OPEN && !mesh);
+    EXPECT(brio_surface(ctx, points, 200, NULL, &mesh, &stats) == BRIO_OK); /* by one process again */
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
+/* --- failures --- */
+
+static brio_status make_a_surface(brio_context *ctx, size_t n) {
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 3};
+    brio_surface_options options = {.size = sizeof options, .noise = BRIO_NOISE_KEEP, .tiles = &o};
+    brio_surface_stats stats = {.size = sizeof stats};
+    brio_mesh *mesh = NULL;
+    brio_status status = brio_surface(ctx, points, n, &options, &mesh, &stats);
+    EXPECT((status == BRIO_OK) == (mesh != NULL));
+    brio_mesh_free(mesh);
+    return status;
+}
+
+static void no_memory_is_a_status(void) {
+    failing_memory memory = {0, 0};
+    brio_allocator allocator = {failing_alloc, failing_realloc, failing_free, &memory};
+    brio_context *ctx;
+    brio_status status = BRIO_ERR_NO_MEMORY;
+    EXPECT(brio_context_new(&allocator, &ctx) == BRIO_OK);
+    brio_context_set_threads(ctx, 1);
+    size_t bytes = brio_context_memory(ctx), n = make_points(3, 150, 2);
+    memcpy(points + 3 * (n - 1), points, 3 * sizeof *points);
+    for (size_t k = 1; k < 4000 && status != BRIO_OK; k += 1 + k / 40) {
+        memory.left = k;
+        status = make_a_surface(ctx, n);
+        EXPECT(status == BRIO_OK || status == BRIO_ERR_NO_MEMORY, "request %zu: %s", k, brio_message(ctx));
+        EXPECT(brio_context_memory(ctx) == bytes && files_left() == 0, "request %zu", k);
+    }
+    memory.left = 0;
+    EXPECT(status == BRIO_OK && make_a_surface(ctx, n) == BRIO_OK);
+    brio_context_free(ctx);
+}
+
+static int stop_late(const char *stage, double fraction, void *user) {
+    int *left = user;
+    (void)stage, (void)fraction;
+    return (*left)-- <= 0;
+}
+
+static void cancelled_surfaces_leave_nothing(void) {
+    brio_context *ctx = new_context();
+    brio_status status = BRIO_ERR_CANCELLED;
+    size_t bytes = brio_context_memory(ctx), n = make_points(3, 1500, 2);
+    for (int calls = 0; calls < 4000 && status != BRIO_OK; calls += 1 + calls / 4) {
+        int left = calls;
+        brio_context_set_progress(ctx, stop_late, &left);
+        status = make_a_surface(ctx, n);
+        EXPECT(status == BRIO_ERR_CANCELLED || status == BRIO_OK, "%s", brio_message(ctx));
+        EXPECT(brio_context_memory(ctx) == bytes && files_left() == 0);
+    }
+    EXPECT(status == BRIO_OK);
+    brio_context_free(ctx);
+}
+
+SUITE(test_tiles_surface) {
+    snprintf(folder, sizeof folder, "/tmp/brio-test-tiles-surface-%ld", (long)getpid());
+    EXPECT(mkdir(folder, 0700) == 0);
+    RUN(parts_make_the_triangulation_of_all_points);
+    RUN(surfaces_have_the_bits_of_one_process);
+    RUN(points_without_a_solid_have_the_same_sentence);
+    RUN(what_tiles_have_not_is_refused);
+    RUN(no_memory_is_a_status);
+    RUN(cancelled_surfaces_leave_nothing);
+    rmdir(folder);
+    return harness_end();
+}
