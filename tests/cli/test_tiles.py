@@ -132,9 +132,6 @@ class Tiles(CliTest):
         sentence = self.expect(4, *large, "2").err
         self.assertRegex(sentence, r"each of 2 tiles has about \d+ points, and needs about \d MB of the 5 MB that are allowed: take about \d tiles")
         self.assertEqual(os.listdir(self.scratch()), [])
-        with open(self.path("twins.csv"), "w", encoding="ascii") as f:  # 60,000 points at 60 places
-            f.write("x,y,z\n" + "".join("%d,%d,%d\n" % (i % 3, i // 3 % 4, i // 12 % 5) for i in range(60000)))
-        self.assertNotEqual(self.run_brio(large[0], self.path("twins.csv"), *large[2:], "2").code, 4)
 
     def test_points_in_a_plane_need_no_tiles(self):
         with open(self.path("ring.csv"), "w", encoding="ascii") as f:
