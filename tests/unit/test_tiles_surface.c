@@ -194,13 +194,13 @@ static void shares_of_tiles_that_are_too_large_are_refused_before_the_work(void)
     brio_surface_stats stats = {.size = sizeof stats};
     brio_mesh *mesh = NULL;
     uniform_points(5, 3000, points);
-    brio_context_set_memory_limit(ctx, 700000);
+    brio_context_set_memory_limit(ctx, 500000);
     EXPECT(brio_surface(ctx, points, 3000, &options, &mesh, &stats) == BRIO_ERR_NO_MEMORY && !mesh);
-    EXPECT(strstr(brio_message(ctx), "each of 2 tiles has about 1"), "%s", brio_message(ctx));
-    EXPECT(strstr(brio_message(ctx), "take about 3 tiles") && files_left() == 0, "%s", brio_message(ctx));
+    EXPECT(strstr(brio_message(ctx), "each tile needs about 0.8 MB"), "%s", brio_message(ctx));
+    EXPECT(strstr(brio_message(ctx), "take about 2 times as many tiles") && files_left() == 0, "%s", brio_message(ctx));
     for (size_t i = 300; i < 3000; i++) memcpy(points + 3 * i, points + 3 * (i % 300), 3 * sizeof *points);
     (void)brio_surface(ctx, points, 3000, &options, &mesh, &stats);
-    EXPECT(!strstr(brio_message(ctx), "each of 2 tiles"), "%s", brio_message(ctx));
+    EXPECT(!strstr(brio_message(ctx), "each tile needs"), "%s", brio_message(ctx));
     brio_mesh_free(mesh);
     brio_context_free(ctx);
 }

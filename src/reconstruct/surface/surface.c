@@ -136,19 +136,9 @@ static brio_status require_room(brio_context *ctx, const double *points, size_t 
                 "%s: %zu points need about %.0f MB of scratch files, and this disk has room for %.0f MB", ctx->scratch,
                 num_points, need.disk / 1e6, there.disk / 1e6);
     BRIO_EXPECT(ctx, fits(need, there), BRIO_ERR_NO_MEMORY,
-                "a tile of the %zu points needs about %.1f MB, and %.1f MB are allowed: take more tiles", num_points,
-                need.tile / 1e6, there.tile / 1e6);
+                "each tile needs about %.1f MB of the %.1f MB that are allowed: take about %.0f times as many tiles",
+                need.tile / 1e6, there.tile / 1e6, ceil(1.2 * need.tile / there.tile));
     return BRIO_OK;
-}
-
-/* Refuses tiles that do not fit in memory, before the work. Points that are given twice count once. */
-static brio_status require_memory_of_tiles(brio_context *ctx, const double *points, size_t num_points,
-                                           const brio_tiles_options *o) {
-    uint64_t *seen;
-    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, seen, ROOM));
-    double positions = count_positions(points, num_points, seen);
-    brio_release(ctx, seen);
-    return brio_tiles_require_share(ctx, o, positions);
 }
 
 /* Makes the surface by its method, from triangulations that are made in tiles if options say so. */
@@ -158,7 +148,6 @@ static brio_status make(brio_context *ctx, const double *points, size_t num_poin
     const brio_method_row *method = brio_method_row_of(o->method);
     if (!o->tiles) return method->make(ctx, points, num_points, o, mesh, stats);
     BRIO_FORWARD(brio_triangulate_in_tiles(ctx, o->tiles, &in_tiles));
-    BRIO_FORWARD(require_memory_of_tiles(ctx, points, num_points, o->tiles));
     ctx->triangulator = &in_tiles;
     brio_status status = method->make(ctx, points, num_points, o, mesh, stats);
     ctx->triangulator = NULL;
