@@ -21,7 +21,7 @@ enum { FEW = 100, NODES_A_THREAD = 512, NODES_A_SUM = 2048 };
 
 /* What is worked on together takes one in SHARE bytes of the memory (chosen). NODE_BYTES: of a node of a graph of votes
  * with its edges. */
-enum { SHARE = 4, NODE_BYTES = 128 };
+enum { SHARE = 32, NODE_BYTES = 128 };
 
 typedef struct {
     const brio_signed_graph *g;
