@@ -1,6 +1,7 @@
 /* Flips of labels against the energy of the whole graph; mending of random labels; handles that are made by hand. */
 #include "base/memory.h"
 #include "base/rng.h"
+#include "base/vector.h"
 #include "dual/spacing.h"
 #include "failing_allocator.h"
 #include "harness.h"
@@ -8,6 +9,7 @@
 #include "reconstruct/labeled_delaunay/simple_flips.h"
 #include "reconstruct/labeled_delaunay/small_regions.h"
 #include "reconstruct/labeled_delaunay/vote_cut.h"
+#include "reconstruct/labeled_delaunay/vote_region.h"
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include <math.h>
 #include <string.h>
@@ -521,9 +523,56 @@ static void a_cut_of_some_tetrahedra_is_that_of_all(void) {
     free_scene(s);
 }
 
+/* Returns the mean distance in space from a node of a region to the next one. */
+static double mean_step(const brio_vote_region *r, const uint8_t *fixed) {
+    double sum = 0;
+    size_t count = 0;
+    for (size_t i = 0, before = SIZE_MAX; i < r->num_nodes; i++) {
+        if (fixed[r->node[i]]) continue;
+        if (before != SIZE_MAX)
+            sum += sqrt(brio_square_distance(r->position + 3 * before, r->position + 3 * i)), count++;
+        before = i;
+    }
+    return sum / (double)count;
+}
+
+/* A region in scratch files goes along a curve, and has the nodes and edges of the region in memory. */
+static void regions_in_scratch_files_go_along_a_curve(void) {
+    scene *s = scene_of(uniform_points);
+    size_t num_tets = s->dual.t.count, nodes = num_tets + SAMPLES, wrong = 0;
+    uint8_t *fixed = calloc(nodes, 1);
+    size_t *place = calloc(nodes, sizeof *place);
+    brio_vote_region r, along;
+    for (size_t t = 0; t < num_tets; t++) fixed[t] = t >= s->dual.num_finite || t % 5 == 0;
+    EXPECT(brio_vote_region_new(&s->graph, fixed, s->label, &r) == BRIO_OK);
+    EXPECT(brio_context_set_scratch(s->ctx, ".") == BRIO_OK);
+    EXPECT(brio_vote_region_new(&s->graph, fixed, s->label, &along) == BRIO_OK);
+    EXPECT(r.count == along.count && r.num_nodes == along.num_nodes);
+    for (size_t i = 0; i < along.num_nodes; i++) place[along.node[i]] = i;
+    for (size_t i = 0; i < r.num_nodes; i++) {
+        size_t k = place[r.node[i]], count = r.first[i + 1] - r.first[i];
+        wrong += along.node[k] != r.node[i] || along.fixed[k] != r.fixed[i] || along.label[k] != r.label[i];
+        wrong += along.first[k + 1] - along.first[k] != count;
+        for (size_t e = 0; e < count && !wrong; e++) {
+            const brio_signed_edge *a = &r.edge[r.first[i] + e], *b = &along.edge[along.first[k] + e];
+            wrong += r.node[a->node] != along.node[b->node] || a->weight != b->weight;
+        }
+    }
+    EXPECT(wrong == 0, "%zu nodes", wrong);
+    EXPECT(mean_step(&along, fixed) < 0.5 * mean_step(&r, fixed), "%g and %g", mean_step(&along, fixed),
+           mean_step(&r, fixed));
+    brio_vote_region_free(&r);
+    brio_vote_region_free(&along);
+    EXPECT(brio_context_set_scratch(s->ctx, NULL) == BRIO_OK);
+    free_scene(s);
+    free(fixed);
+    free(place);
+}
+
 SUITE(test_label_flips) {
     RUN(a_cut_of_some_tetrahedra_is_that_of_all);
     RUN(the_hull_is_outside_where_no_sample_tells);
+    RUN(regions_in_scratch_files_go_along_a_curve);
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
     RUN(small_regions_are_those_of_a_walk);

@@ -5,8 +5,9 @@
 #include "reconstruct/labeled_delaunay/vote_graph.h"
 #include "reconstruct/labels/signed_graph.h"
 
-/** The free nodes and, fixed, those that edges join to them, in the order of the graph of votes. Fixed nodes have no
- *  edges here. */
+/** The free nodes and, fixed, those that edges join to them. Fixed nodes have no edges here. In memory they are in the
+ *  order of the graph of votes. In scratch files they are along a curve, so that what is near in space is on few
+ *  pages. */
 typedef struct {
     brio_context *ctx;
     size_t count, num_nodes; /* the last node, if there is one more, is the evidence: outer for good */

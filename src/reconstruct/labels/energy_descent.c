@@ -11,6 +11,7 @@
  * Differs from the paper: the nodes that are free are blocks of nodes near each other in space. Threads work on many
  *                         blocks at a time. */
 #include "base/memory.h"
+#include "base/read_ahead.h"
 #include "base/rng.h"
 #include "base/team.h"
 #include "reconstruct/labels/roof_duality.h"
@@ -21,7 +22,7 @@ enum { FEW = 100, NODES_A_THREAD = 512, NODES_A_SUM = 2048 };
 
 /* What is worked on together takes one in SHARE bytes of the memory (chosen). NODE_BYTES: of a node of a graph of votes
  * with its edges. */
-enum { SHARE = 4, NODE_BYTES = 128 };
+enum { SHARE = 32, NODE_BYTES = 128 };
 
 typedef struct {
     const brio_signed_graph *g;
@@ -30,6 +31,7 @@ typedef struct {
     brio_energy_descent *descent;
     int threads;
     brio_roof *roof;           /* one for each thread */
+    brio_read_ahead *ahead;    /* one for each thread */
     size_t undecided, toggled; /* in the last pass */
 } problem;
 
@@ -39,20 +41,32 @@ typedef struct {
     const problem *pr;
     const brio_node_blocks *b;
     const uint32_t *block; /* the blocks of the round */
+    size_t blocks;
     brio_status status;
 } round_of_blocks;
+
+/* Announces the edges of a block that a thread settles soon. */
+static void expect_block(const round_of_blocks *r, size_t i, brio_read_ahead *ahead) {
+    const brio_signed_graph *g = r->pr->g;
+    if (!ahead->active || i >= r->blocks) return;
+    ahead->now++;
+    for (size_t n = r->b->begin[r->block[i]]; n < r->b->end[r->block[i]]; n++)
+        brio_expect(ahead, g->edge + g->first[r->b->node[n]]);
+}
 
 /* Settles blocks of one colour. By I1 of brio_node_blocks no thread reads a label that another thread writes. */
 static void settle_part(void *user, size_t begin, size_t end, int thread) {
     round_of_blocks *r = user;
     const problem *pr = r->pr;
-    for (size_t i = begin; i < end; i++)
+    for (size_t i = begin; i < end; i++) {
+        expect_block(r, i + (size_t)pr->threads, &pr->ahead[thread]);
         brio_report(&r->status, brio_roof_settle(&pr->roof[thread], pr->g, r->b, r->block[i], pr->label));
+    }
 }
 
 static brio_status settle_round(const problem *pr, const brio_node_blocks *b, size_t round) {
-    round_of_blocks r = {pr, b, b->block + b->first_round[round], BRIO_OK};
     size_t blocks = b->first_round[round + 1] - b->first_round[round];
+    round_of_blocks r = {pr, b, b->block + b->first_round[round], blocks, BRIO_OK};
     int threads = blocks < (size_t)pr->threads ? (int)blocks : pr->threads;
     brio_report(&r.status, brio_for_chunks(pr->g->ctx, threads, blocks, 1, settle_part, &r));
     return r.status;
@@ -96,6 +110,8 @@ static brio_status improve(problem *pr) {
     brio_context *ctx = pr->g->ctx;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, pr->roof, (size_t)pr->threads));
     for (int t = 0; t < pr->threads; t++) pr->roof[t].flow = brio_flow_new(ctx);
+    BRIO_TRY(BRIO_ALLOC(ctx, pr->ahead, (size_t)pr->threads));
+    for (int t = 0; t < pr->threads; t++) brio_read_ahead_start(&pr->ahead[t], ctx);
     size_t toggled = 0; /* in all passes */
     for (int pass = 0; pass < pr->descent->passes; pass++) {
         BRIO_TRY(settle_blocks(pr, pass));
@@ -105,6 +121,7 @@ static brio_status improve(problem *pr) {
 done:
     for (int t = 0; pr->roof && t < pr->threads; t++) brio_roof_free(&pr->roof[t]);
     brio_release(ctx, pr->roof);
+    brio_release(ctx, pr->ahead);
     return status;
 }
 

@@ -11,7 +11,7 @@
  *
  * In memory a colour is a round. Where the graph is in scratch files, each round of all blocks would read all of it: so
  * the rounds of a window of the curve, as large as fits in a part of the memory, come before those of the next one. A
- * window takes in what its blocks wait for. Whatever the windows are, each block comes after the blocks beside it of
+ * window takes in what its blocks wait for, each block after those. Whatever the windows are, each block comes after the blocks beside it of
  * less colours and before the others, so the labels are the same.
  *
  * Based on: Morton. A computer oriented geodetic data base and a new technique in file sequencing. IBM 1966 (the order
@@ -25,6 +25,7 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "predicates/predicates.h"
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -353,15 +354,22 @@ static void colour_blocks(const finder *f, uint32_t *colour, uint32_t *taken) {
     }
 }
 
+/* A block that waits, and where the next one that it waits for stands in `earlier`. */
+typedef struct {
+    uint32_t block;
+    size_t next;
+} waiting_block;
+
 /* What is known when blocks are put into rounds. Block b waits for the blocks earlier[first[b]] to earlier[first[b + 1]
  * - 1]: those joined to it whose colours are less. */
 typedef struct {
     uint32_t *colour; /* #blocks */
     size_t *first;    /* #blocks + 1 */
     uint32_t *earlier;
-    uint8_t *listed; /* #blocks */
+    uint8_t *listed;     /* #blocks */
+    waiting_block *path; /* #colours: a block, one that it waits for, and so on */
     const size_t *begin;
-    size_t num_listed, room; /* blocks that have a round; room for rounds */
+    size_t num_listed, num_listed_nodes, room; /* blocks that have a round, and their nodes; room for rounds */
 } schedule;
 
 /* Returns the block of a pair that waits for the other one. */
@@ -389,18 +397,26 @@ done:
     return status;
 }
 
-/* Lists a block, those that it waits for, those that these wait for, and so on, as far as they are not listed. */
+/* Lists a block after those that it waits for, each of these after those that it waits for, and so on, as far as they
+ * are not listed. Colours fall along a path, so a path is not longer than there are colours. */
 static void list_block(schedule *s, brio_node_blocks *b, uint32_t block) {
-    size_t at = s->num_listed;
+    size_t depth = 0;
     if (s->listed[block]) return;
     s->listed[block] = 1;
-    b->block[s->num_listed++] = block;
-    for (; at < s->num_listed; at++)
-        for (size_t i = s->first[b->block[at]]; i < s->first[b->block[at] + 1]; i++) {
-            uint32_t other = s->earlier[i];
-            if (!s->listed[other]) b->block[s->num_listed++] = other;
+    s->path[depth++] = (waiting_block){block, s->first[block]};
+    while (depth > 0) {
+        waiting_block *top = &s->path[depth - 1];
+        if (top->next < s->first[top->block + 1]) {
+            uint32_t other = s->earlier[top->next++];
+            assert(s->colour[other] < s->colour[top->block]);
+            if (!s->listed[other]) s->path[depth++] = (waiting_block){other, s->first[other]};
             s->listed[other] = 1;
+        } else {
+            s->num_listed_nodes += b->end[top->block] - b->begin[top->block];
+            b->block[s->num_listed++] = top->block;
+            depth--;
         }
+    }
 }
 
 /* Compares colours, then places along the curve of the cells: blocks of a colour do not touch, so their order does not
@@ -426,17 +442,19 @@ static brio_status add_rounds(schedule *s, brio_node_blocks *b, size_t from) {
 static brio_status list_rounds(const finder *f, schedule *s) {
     brio_status status = BRIO_OK;
     brio_node_blocks *b = f->out;
-    size_t from = 0, nodes = 0;
+    size_t from = 0, nodes = 0, colours = 0;
     s->begin = b->begin;
+    for (size_t i = 0; i < b->num_blocks; i++)
+        if (f->trouble[i] && s->colour[i] >= colours) colours = s->colour[i] + (size_t)1;
+    BRIO_TRY(BRIO_ALLOC(b->ctx, s->path, colours));
     BRIO_TRY(BRIO_ALLOC_ZERO(b->ctx, s->listed, b->num_blocks));
     BRIO_TRY(BRIO_ALLOC(b->ctx, b->block, b->num_blocks));
     BRIO_TRY(BRIO_RESERVE(b->ctx, b->first_round, s->room, 1));
     for (size_t i = 0; i < b->count; i = b->end[b->of[i]]) {
         if (f->trouble[b->of[i]]) list_block(s, b, b->of[i]);
-        nodes += b->end[b->of[i]] - i;
-        if (nodes < f->together && b->end[b->of[i]] < b->count) continue;
+        if (s->num_listed_nodes - nodes < f->together && b->end[b->of[i]] < b->count) continue;
         BRIO_TRY(add_rounds(s, b, from));
-        from = s->num_listed, nodes = 0;
+        from = s->num_listed, nodes = s->num_listed_nodes;
     }
     b->first_round[b->num_rounds] = s->num_listed;
 done:
@@ -460,6 +478,7 @@ done:
     brio_release(ctx, s.first);
     brio_release(ctx, s.earlier);
     brio_release(ctx, s.listed);
+    brio_release(ctx, s.path);
     brio_release(ctx, taken);
     return status;
 }
