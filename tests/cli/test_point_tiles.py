@@ -483,11 +483,11 @@ class PointTiles(CliTest):
 
     def test_too_little_memory_is_said_before_the_work(self):
         points, how = self.cloud("a.npy", 300000), ["--format", "vtp", "--scratch", self.scratch(), "--max-memory"]
-        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "1", *how, "60M")
+        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "1", *how, "38M")
         self.assertRegex(run.err, r"the largest of 1 tiles has 300000 points.*take about 2 tiles")
-        self.facts("convert", points, self.path("out.vpc"), "--tiles", "2", *how, "60M")
-        self.facts("convert", points, self.path("out.vpc"), "--tiles", "1", "--format", "laz", *how[2:], "60M")
-        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "3", *how, "20M")
+        self.facts("convert", points, self.path("out.vpc"), "--tiles", "2", *how, "38M")
+        self.facts("convert", points, self.path("out.vpc"), "--tiles", "1", "--format", "laz", *how[2:], "38M")
+        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "3", *how, "12M")
         self.assertIn("points in tiles need about", run.err)
         self.assertEqual(os.listdir(self.scratch()), [])
 
