@@ -585,6 +585,16 @@ class Tiles(CliTest):
         self.assertIn("500 tiles need about", run.err)
         self.assertEqual(os.listdir(self.scratch()), [])
 
+    def test_what_a_page_shows_was_outside_of_the_memory(self):
+        cloud, limits = self.cloud("many.npy", 32000), ["--tiles", "8", "--scratch", self.scratch(), "--max-memory", "40M"]
+        for shown in (["--view", self.path("v.html")], ["--picture", self.path("v.png")]):
+            facts = self.facts("delaunay", cloud, *limits, *shown)
+            self.assertTrue(any("an even choice of 26214 of" in words for words in facts["warnings"]))
+            self.assertLess(facts["peak_bytes"], 40 << 20)
+            facts = self.facts("voronoi", cloud, *limits, *shown)
+            self.assertTrue(any("cells" in words for words in facts["warnings"]), facts["warnings"])
+            self.assertLess(facts["peak_bytes"], 40 << 20)
+
     def test_the_certificate_of_an_alpha_shape_is_counted_before_the_work(self):
         cloud, limits = self.rows("a.csv", 40000), ["--tiles", "2", "--scratch", self.scratch(), "--max-memory", "70M"]
         self.facts("voronoi", cloud, *limits)
