@@ -217,6 +217,21 @@ class PointTiles(CliTest):
             self.facts("convert", self.path("dark.csv"), self.path("whole." + form))
             self.same("whole." + form, "out.vpc")
 
+    def test_origins_of_glb_are_numbers_of_single_precision(self):
+        """Programs keep the places of nodes in single precision, and would move tiles against each other."""
+        draw = random.Random(3)
+        cloud = self.file("map.csv", "x,y,z\n" + "".join("%r,%r,%r\n" % (638982.55 + 90 * draw.random(), 4912345.75 + 90 * draw.random(), 3 * draw.random())
+                                                        for _ in range(2000)))
+        self.tiles(4, cloud, self.path("map.vpc"), "--format", "glb")
+        origins = set()
+        for path in self.files("map.vpc"):
+            with open(path, "rb") as f:
+                head = struct.unpack("<5I", f.read(20))
+                node, = json.loads(f.read(head[3]))["nodes"]
+            origins.add(tuple(node["translation"]))
+            self.assertEqual(struct.unpack("3f", struct.pack("3f", *node["translation"])), tuple(node["translation"]))
+        self.assertEqual(len(origins), 4)
+
     def test_a_tile_had_other_colours_where_those_of_all_are_no_colours(self):
         with open(self.path("a.csv"), "w", encoding="ascii") as f:
             f.write("x,y,z,red,green,blue\n")
