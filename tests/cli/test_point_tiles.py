@@ -161,6 +161,26 @@ class PointTiles(CliTest):
         names = {schema["name"] for schema in self.features("out.vpc")[0]["properties"]["pc:schemas"]}
         self.assertLessEqual({"X", "Intensity", "Classification", "GpsTime", "Red", "deviation"}, names)
 
+    def test_schemas_were_those_of_the_input(self):
+        """A format lacks some properties, and has others by other types."""
+        cloud = self.file("a.ply", "ply\nformat ascii 1.0\nelement vertex 9\nproperty double x\nproperty double y\nproperty double z\n"
+                          "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float nx\nproperty float ny\nproperty float nz\n"
+                          "property int count\nend_header\n" + "".join("%d %d %d 1 2 3 0 0 1 -7\n" % (i, i * i, i % 3) for i in range(9)))
+        sizes = {"int8": (1, "signed"), "uint8": (1, "unsigned"), "int16": (2, "signed"), "uint16": (2, "unsigned"), "int32": (4, "signed"),
+                 "uint32": (4, "unsigned"), "float32": (4, "floating"), "float64": (8, "floating")}
+        names = {"red": "Red", "green": "Green", "blue": "Blue", "nx": "NormalX", "ny": "NormalY", "nz": "NormalZ"}
+        for form in "laz", "las", "ply", "e57", "xyzrgb", "npy", "csv", "obj":
+            with self.subTest(form):
+                self.tiles(2, cloud, self.path("out.vpc"), "--format", form)
+                schemas = [(s["name"], s["size"], s["type"]) for s in self.features("out.vpc")[0]["properties"]["pc:schemas"]]
+                held = self.facts("info", self.files("out.vpc")[0]).get("properties", {})
+                held = {names.get(name, name): sizes[kind] for name, kind in held.items()}
+                self.assertEqual(schemas[:3], [(axis, 8, "floating") for axis in "XYZ"])
+                written = {name: (size, kind) for name, size, kind in schemas[3:]}
+                self.assertEqual({name: written.get(name) for name in names.values() if name in held or name in written},
+                                 {name: held.get(name) for name in names.values() if name in held or name in written})
+                self.assertEqual(len(written), len(held))
+
     def test_one_grid_fits_all_tiles(self):
         # each tile would fit a grid of less decimals, and each file had another one
         with open(self.path("a.csv"), "w", encoding="ascii") as f:
