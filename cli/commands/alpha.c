@@ -373,7 +373,7 @@ static brio_status alpha_in_tiles(run *r, double alpha) {
     tile_merging m;
     brio_status status = BRIO_OK;
     cli_merging_begin(&m, r, &a->weights);
-    TRY(cli_triangulate_merging(r, merges ? &m : NULL, &a->weights, a->tiles, 2, &s.tiles));
+    TRY(cli_triangulate_merging(r, merges ? &m : NULL, &a->weights, a->tiles, 4, &s.tiles));
     memcpy(box, brio_tiles_facts(s.tiles)->low, 3 * sizeof *box);
     memcpy(box + 3, brio_tiles_facts(s.tiles)->high, 3 * sizeof *box);
     s.alpha = up_to(alpha, &(brio_mesh){.num_vertices = 2, .vertices = box});

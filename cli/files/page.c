@@ -121,6 +121,12 @@ brio_status cli_write_picture(run *r, const brio_page_layer *const *layers, size
 
 /* --- what a command shows --- */
 
+uint64_t cli_most_shown(const run *r, uint64_t all, double most, double bytes) {
+    static const double SHARE = 0.25; /* of --max-memory; chosen */
+    if (r->common.max_memory) most = fmin(most, fmax(1, SHARE * (double)r->common.max_memory / bytes));
+    return (double)all < most ? all : (uint64_t)most;
+}
+
 /* Writes the report so far. */
 static void write_report(FILE *stream, void *object) {
     run *r = object;

@@ -77,29 +77,38 @@ typedef struct {
     run *r;
     tile_facts *tile;
     uint32_t files;
-    brio_property *properties; /* of all points: names and types */
+    brio_property *properties; /* of the points of each file: names and types */
     size_t num_properties;
     char date[32]; /* of a LAS file: year and day of the year; "" elsewhere */
 } written;
 
-static brio_status keep_kind(written *w, const brio_mesh *kind) {
-    const brio_metadata *date = brio_mesh_metadata(kind, "las.date");
-    w->properties = calloc(kind->num_properties + 1, sizeof *w->properties);
-    if (!w->properties) return cli_fail(w->r, BRIO_ERR_NO_MEMORY, "out of memory");
-    for (; w->num_properties < kind->num_properties; w->num_properties++)
-        w->properties[w->num_properties] = kind->properties[w->num_properties];
-    snprintf(w->date, sizeof w->date, "%s", date ? date->bytes : "");
-    return BRIO_OK;
-}
-
 static int keep_tile(const brio_convert_tile *t, void *user) {
     written *w = user;
-    if (!w->properties && keep_kind(w, t->kind) != BRIO_OK) return 1;
+    const brio_metadata *date = brio_mesh_metadata(t->kind, "las.date");
+    snprintf(w->date, sizeof w->date, "%s", date ? date->bytes : "");
     tile_facts *tile = &w->tile[w->files++];
     tile->points = t->points;
     memcpy(tile->low, t->low, sizeof tile->low);
     memcpy(tile->high, t->high, sizeof tile->high);
     return cli_interrupted();
+}
+
+static int keep_properties(const brio_mesh *block, void *user) {
+    written *w = user;
+    w->properties = calloc(block->num_properties + 1, sizeof *w->properties);
+    for (; w->properties && w->num_properties < block->num_properties; w->num_properties++)
+        w->properties[w->num_properties] = block->properties[w->num_properties];
+    return 1;
+}
+
+/* Finds the properties as the first file has them: a format lacks some, and has others by other names and types. */
+static brio_status find_properties(written *w, const char *folder) {
+    char path[BRIO_PATH_MOST + 32];
+    snprintf(path, sizeof path, "%s/0.%s", folder, cli_point_tile_format(w->r));
+    brio_status status = brio_read_blocks(w->r->ctx, path, NULL, keep_properties, w, NULL);
+    if (w->properties) return BRIO_OK; /* BRIO_ERR_CANCELLED, as the first block is enough */
+    return status == BRIO_OK || status == BRIO_ERR_CANCELLED ? cli_fail(w->r, BRIO_ERR_NO_MEMORY, "out of memory")
+                                                             : status;
 }
 
 /* --- the virtual point cloud --- */
@@ -112,6 +121,7 @@ static const char *pdal_name(const char *name) {
                                            {"scan_direction_flag", "ScanDirectionFlag"},
                                            {"edge_of_flight_line", "EdgeOfFlightLine"},
                                            {"classification", "Classification"},
+                                           {"classification_flags", "ClassFlags"},
                                            {"synthetic", "Synthetic"},
                                            {"key_point", "KeyPoint"},
                                            {"withheld", "Withheld"},
@@ -271,10 +281,11 @@ static brio_status write_pieces(FILE *f, const written *w, const char *folder) {
 
 /* --- the run --- */
 
-static brio_status write_index(run *r, const written *w, const new_folder *folder) {
+static brio_status write_index(run *r, written *w, const new_folder *folder) {
     new_file f = {.target.folder = -1};
     brio_status status = BRIO_OK;
     TRY(cli_new_file_open(r, folder->index, &f));
+    if (!is_of_vtk(r)) TRY(find_properties(w, folder->path));
     if (is_of_vtk(r))
         TRY(write_pieces(f.file, w, folder->path));
     else

@@ -104,6 +104,9 @@ brio_status cli_shown_cells_add(run *r, shown_cells *s, const brio_cells *cells,
 brio_status cli_shown_cells_show(run *r, const shown_cells *s);
 void cli_shown_cells_free(shown_cells *s);
 
+/** Returns how many pieces are shown of those that there are: at most `most`, and those that fit in a part of
+ *  --max-memory.   bytes  of a piece. */
+uint64_t cli_most_shown(const run *r, uint64_t all, double most, double bytes);
 /** Shows the tetrahedra of all tiles, or of over 200,000 an even choice: one tile is in memory at a time. */
 brio_status cli_show_tiles(run *r, brio_tiles *t, uint32_t tiles);
 

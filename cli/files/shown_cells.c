@@ -6,6 +6,8 @@
 #include <string.h>
 
 enum { MOST_SHOWN = 8000 };
+/* Bytes of a cell that is shown, twice in a picture, its share of it included. Measured. */
+static const double SHOWN_BYTES = 6000;
 static const double SMALLER = 0.1;
 
 /* How far cells that are shown reach beyond the box of the points at most, as parts of its longest side. Open sets have
@@ -55,7 +57,7 @@ static brio_status add_meshes(run *r, shown_cells *s, const brio_cells *cells, s
 brio_status cli_shown_cells_add(run *r, shown_cells *s, const brio_cells *cells, const uint64_t *site) {
     brio_status status = BRIO_OK;
     size_t n = cells->num_cells;
-    uint64_t most = s->all < MOST_SHOWN ? s->all : MOST_SHOWN, end = s->seen + n;
+    uint64_t most = cli_most_shown(r, s->all, MOST_SHOWN, SHOWN_BYTES), end = s->seen + n;
     if (!n) return BRIO_OK;
     size_t count = (size_t)(end * most / s->all - s->seen * most / s->all);
     brio_cells named = *cells;

@@ -7,6 +7,9 @@
 /* Tetrahedra on a page or in a picture. Chosen: their corners are fewer than the vertices of a page with all digits. */
 enum { MOST_SHOWN = 200000 };
 
+/* Bytes of a tetrahedron that is shown, its share of the page or picture included: measured. */
+static const double SHOWN_BYTES = 400;
+
 /* A corner of a tetrahedron that is shown. */
 typedef struct {
     uint64_t point; /* in the input */
@@ -79,7 +82,7 @@ brio_status cli_show_tiles(run *r, brio_tiles *t, uint32_t tiles) {
     showing s = {.all = brio_tiles_facts(t)->tetrahedra};
     brio_mesh *mesh = NULL;
     if (!cli_showing(r)) return BRIO_OK;
-    s.most = s.all < MOST_SHOWN ? s.all : MOST_SHOWN;
+    s.most = cli_most_shown(r, s.all, MOST_SHOWN, SHOWN_BYTES);
     s.corner = malloc((4 * (size_t)s.most + 1) * sizeof *s.corner);
     if (!s.corner) FAIL(r, BRIO_ERR_NO_MEMORY, "out of memory for what is shown");
     for (uint32_t i = 0; i < tiles; i++) {

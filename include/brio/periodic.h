@@ -67,8 +67,8 @@ typedef struct brio_periodic brio_periodic;
  *  points, weights, num_points  as brio_delaunay.
  *  options  with the cell.   out  owned by the caller, freed with brio_periodic_free; NULL on error.
  *  Cost: as brio_delaunay for the points and the translates in a margin of 2.5 spacings.
- *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no direction repeats; the vectors span nothing, or are too skewed; a point is
- *  more than 2^26 cells away), and as brio_delaunay.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no direction repeats; the vectors span nothing, are too skewed, or not between
+ *  about 1e-100 and 1e100 long; a point is more than 2^26 cells away), and as brio_delaunay.
  *  Based on: [Caroli Teillaud 2016] for triangulations of closed Euclidean manifolds; [Devillers Teillaud 2011] for
  *  ties. */
 BRIO_API brio_status brio_delaunay_periodic(brio_context *ctx, const double *points, const double *weights,

@@ -32,7 +32,8 @@ typedef struct brio_tiles_options {
     uint32_t tiles;      /* how many, at most 65,536; 0 means 8 */
     int stars;           /* not 0: keeps what cells and alpha shapes need: 16 bytes for each tetrahedron of two tiles.
                             Memory and disk are counted before the work: 1: cells in order with their faces; 2: as they
-                            are computed, and alpha shapes, which need no disk; 3: in order without faces */
+                            are computed, and alpha shapes, which need no disk; 3: in order without faces; 4: alpha
+                            shapes whose faces go to a certificate of parts meanwhile */
     uint64_t key;        /* 0: no run goes on with what a killed process left. Else a number that tells this input and
                             this way to read it from others. After a process was killed, the next run in the same
                             folder with the same key and number of tiles goes on with its files */
@@ -71,10 +72,11 @@ typedef struct brio_tile_part {
 } brio_tile_part;
 
 /** Makes an empty set of points, and a folder in the scratch folder.
+ *  Memory: about 9 MB, and 1 kB a tile; more waits for the files of tiles, at most 40 MB and a part of the limit.
  *  out  owned by the caller: brio_tiles_free; NULL on error.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, in use by another process, or laid
  *  there by another user),
- *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY. */
+ *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY (also where the memory limit of the context is too low for so many tiles). */
 BRIO_API brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options, brio_tiles **out);
 
 /** Returns 1 if a run before left all points in the folder, so that none are to be added; else 0. */
@@ -91,7 +93,7 @@ BRIO_API brio_status brio_tiles_add(brio_context *ctx, brio_tiles *t, const doub
  *  tiles are triangulated, a further call goes on with those that are missing; after one before that, it is refused.
  *  Where all points are in a plane there are no tetrahedra; the counts are those of brio_delaunay. With weights such
  *  points are refused.
- *  Memory: about 520 bytes a point of the largest tile, and at most one byte for each of all points. Points whose
+ *  Memory: about 520 bytes a point of the largest tile, and at most two bytes for each of all points. Points whose
  *  spheres reach everything, as those on one sphere, need the memory of all points. A tile has less than 2^31 points.
  *  Returns BRIO_OK, BRIO_ERR_NO_ANSWER (points in a plane, with weights), BRIO_ERR_TOO_LARGE, BRIO_ERR_WRITE (the
  *  disk is full, or before the work, has less room than about 195 bytes a point, with cells in order 240 or 850),

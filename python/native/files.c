@@ -85,31 +85,32 @@ static PyObject *conversion_dict(const brio_convert_stats *s, const losses *l) {
     PyObject *lost = l->failed ? PyErr_NoMemory() : list_of(l);
     if (!lost) return NULL;
 #define COUNT(name) #name, (unsigned long long)s->name
-    return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:N,s:N}", COUNT(points_read), COUNT(points),
+    return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:N,s:N}", COUNT(points_read), COUNT(points),
                          COUNT(faces), COUNT(tetrahedra), COUNT(edges), COUNT(outliers), COUNT(thinned), COUNT(merged),
-                         COUNT(degenerate), "streamed", PyBool_FromLong(s->streamed), "lost", lost);
+                         COUNT(degenerate), COUNT(tiles), COUNT(largest_tile), "streamed", PyBool_FromLong(s->streamed), "lost", lost);
 #undef COUNT
 }
 
-/* convert(from, to, columns or None, write options, box or None, (neighbours, factor, thin, merge, distance), threads,
- * progress): a dict. */
+/* convert(from, to, columns or None, write options, box or None, (neighbours, factor, thin, merge, distance),
+ * (tiles, scratch or ""), threads, progress): a dict. */
 static PyObject *convert(PyObject *module, PyObject *args) {
     PyObject *options, *box, *progress, *result = NULL;
     brio_read_options in = {0};
     brio_write_options out = {0};
     brio_outliers_options outliers = {0};
-    brio_convert_options o = {0};
-    brio_convert_stats stats = {0};
-    const char *from, *to;
+    brio_convert_options o = {.size = sizeof o};
+    brio_convert_stats stats = {.size = sizeof stats};
+    const char *from, *to, *scratch;
     int threads;
     call c;
     input corners = {.held = 0};
     losses lost = {NULL, 0, 0};
-    if (!PyArg_ParseTuple(args, "yyzO!O(iddpd)iO", &from, &to, &in.columns, &PyTuple_Type, &options, &box,
-                          &o.drop_outliers, &outliers.factor, &o.thin, &o.merge, &o.merge_distance, &threads,
-                          &progress) ||
+    if (!PyArg_ParseTuple(args, "yyzO!O(iddpd)(Iy)iO", &from, &to, &in.columns, &PyTuple_Type, &options, &box,
+                          &o.drop_outliers, &outliers.factor, &o.thin, &o.merge, &o.merge_distance, &o.tiles,
+                          &scratch, &threads, &progress) ||
         read_write_options(options, &out))
         return NULL;
+    o.scratch = *scratch ? scratch : NULL;
     o.from = &in, o.to = &out, o.outliers = &outliers, o.lost = lose, o.lost_user = &lost;
     if (box != Py_None) {
         if (input_open(&corners, box, "box", 'd', 0)) return NULL;
@@ -200,7 +201,8 @@ PyMethodDef files_methods[] = {
     {"read", read_mesh, METH_VARARGS, "read(path, format, columns, threads, progress): a mesh."},
     {"write", write_mesh, METH_VARARGS, "write(path, mesh, (ascii, float32, compress, comment), threads, progress)"},
     {"convert", convert, METH_VARARGS,
-     "convert(from, to, columns, write options, box, (neighbours, factor, thin, merge, distance), threads, progress)"},
+     "convert(from, to, columns, write options, box, (neighbours, factor, thin, merge, distance), "
+     "(tiles, scratch), threads, progress)"},
     {"write_page", write_page, METH_VARARGS, "write_page(path, layers, options, threads, progress)"},
     {"write_picture", write_picture, METH_VARARGS, "write_picture(path, layers, options, look, threads, progress)"},
     {NULL, NULL, 0, NULL},

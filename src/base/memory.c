@@ -20,7 +20,8 @@
 /* HEADER: a cache line. FRONT: the bytes before a mapped block. LEAST_FILE, SHARE: a block of
  * these bytes, and of more than one in SHARE bytes of the memory, is in a scratch file, where there are such files;
  * chosen. */
-enum { HEADER = 64, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = BRIO_MAP_FROM, LEAST_FILE = 1 << 16, SHARE = 64 };
+enum { HEADER = BRIO_BLOCK_HEADER, FRONT = BRIO_SCRATCH_PAGE, MAP_FROM = BRIO_MAP_FROM };
+enum { LEAST_FILE = 1 << 16, SHARE = 64 };
 
 /* KIND_LOST is what is left of a header in a scratch file that somebody cut: zeros. Not even the size of such a block
  * is known, so that its mapping and its file stay. */
@@ -54,6 +55,11 @@ static char *base_of(const void *block) {
 size_t brio_memory_limit(const brio_context *ctx) {
     assert(ctx->machine_limit > 0);
     return ctx->caller_limit && ctx->caller_limit < ctx->machine_limit ? ctx->caller_limit : ctx->machine_limit;
+}
+
+size_t brio_waiting_bytes(const brio_context *ctx, size_t files, size_t least, size_t most, size_t all) {
+    size_t share = brio_memory_limit(ctx) / SHARE, each = (share < all ? share : all) / files;
+    return each < least ? least : each < most ? each : most;
 }
 
 static bool account_add(brio_context *ctx, size_t bytes) {

@@ -14,6 +14,9 @@
 #define BRIO_MAP_FROM (1 << 20)
 #endif
 
+/** Bytes before each block, which count as its own. */
+enum { BRIO_BLOCK_HEADER = 64 };
+
 /** Resizes a block to count elements of `size` bytes and keeps its contents; block NULL makes a new block. New bytes
  *  are not set. Returns the block. On failure sets *status, returns NULL and leaves the old block as it was. */
 void *brio_resize(brio_context *ctx, void *block, size_t count, size_t size, brio_status *status);
@@ -24,6 +27,11 @@ void brio_release(brio_context *ctx, void *block);
 /** Returns the lesser of the machine's memory (brio_system_memory, when the context was made) and the caller's
  *  limit. */
 size_t brio_memory_limit(const brio_context *ctx);
+
+/** Returns how many bytes wait for each of some files, to be written together: with all files at most `all` bytes and
+ *  one in 64 of the memory limit, as far as each has `least`.
+ *  least, most  bytes of a file.   files  greater than 0. */
+size_t brio_waiting_bytes(const brio_context *ctx, size_t files, size_t least, size_t most, size_t all);
 
 /** Announces that the block will be read from its beginning to its end: a page fault on its scratch file then reads
  *  ahead, as far as the disk is set to. No effect on blocks in memory. */

@@ -28,10 +28,11 @@ void brio_slack_end_all(brio_dynamic *d) {
     for (size_t s = 0; s < d->t.count; s++) d->until[s] = -1;
 }
 
-/* Returns a float below a time, or -1 where floats are too coarse for that. */
+/* Returns a float below a time, or -1 where floats are too coarse for that. A later time is above it also as the
+ * nearest float: with u = 2^-24, that is at least (1 - u) time, and this at most (1 - 4u) (1 + u) time. */
 static inline float below(double time) {
     if (!(time > 1e-30)) return -1;
-    return time < FLT_MAX ? (float)(time * (1 - 0x1p-22)) : FLT_MAX;
+    return (float)(fmin(time, FLT_MAX) * (1 - 0x1p-22));
 }
 
 /* Lets time begin anew, before it is so large that a float cannot tell a further step. */
@@ -87,17 +88,11 @@ static inline bool some_over(const float *until, float now) {
     return over;
 }
 
-/* Returns the least float that is not below a time. */
-static float not_below(double time) {
-    float f = (float)time;
-    return (double)f < time ? nextafterf(f, INFINITY) : f;
-}
-
 static brio_status test_slots(test_pass *own, size_t begin, size_t end, int thread) {
     brio_dynamic *d = own->d;
     enum { AHEAD = 128 }; /* slots whose tetrahedra are called for */
     queue q = {.count = 0};
-    float now = not_below(d->travelled);
+    float now = (float)d->travelled; /* times that are over are below it: see below() */
     for (size_t slot = begin; slot < end; slot++) {
         if (slot % SLOTS == 0 && slot + SLOTS <= end && !some_over(d->until + slot, now)) {
             slot += SLOTS - 1;

@@ -25,9 +25,15 @@ enum { BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400, MOST_TET
 enum { FEW_BALLS = 3, MOST_EXACT = 1 << 17 };
 /* Derived: a set that fits into one ball is triangulated once. Twelve balls that hold all of it would cost more. */
 enum { ALL = BALL_MOST };
+/* Chosen. SAMPLE: points of the greatest sample; EXACT_SAMPLE: where balls took MOST_EXACT. SAMPLE_TETRAHEDRA: a sample
+ * with more is halved; of two lines it has 1,024 points. MOST_SAMPLED: points of a set of which a sample tells a power.
+ * FEW: tetrahedra a point, of which surfaces and solids have twice as many. */
+enum { SAMPLE = 1 << 12, EXACT_SAMPLE = 1 << 10, SAMPLE_TETRAHEDRA = 1 << 18, MOST_SAMPLED = 1 << 14, FEW = 2 };
 /* Derived: scaled weights are below 2^MOST_EXPONENT, so they are finite. */
 enum { MOST_EXPONENT = 1000 };
 
+/* Chosen: of a sample, the tetrahedra a point for each of the surroundings. Scans, lattices and surfaces have less. */
+static const double MORE = 1.5;
 static const double USUAL = 6.8; /* tetrahedra a point of uniform points */
 /* The share of the tetrahedra a point that a ball has more than the ball of half its radius. In space the border of the
  * balls makes a share of 0.03. */
@@ -128,14 +134,14 @@ static int exponent_of_set(const double *points, const double *weights, size_t c
 }
 
 /* Triangulates a small set, which it scales in place. BRIO_ERR_TOO_LARGE if there are too many tetrahedra. */
-static brio_status triangulate(brio_context *ctx, double *points, double *weights, size_t count,
+static brio_status triangulate(brio_context *ctx, double *points, double *weights, size_t count, uint64_t most,
                                brio_triangulation **t) {
     brio_delaunay_options o = {0};
     brio_status status = BRIO_OK;
     int exponent = exponent_of_set(points, weights, count);
     BRIO_TRY(brio_scale(ctx, points, 3 * count, -exponent, points));
     if (weights) BRIO_TRY(brio_scale(ctx, weights, count, -2 * exponent, weights));
-    o.max_tetrahedra = MOST_TETRAHEDRA;
+    o.max_tetrahedra = most;
     status = brio_delaunay(ctx, points, weights, count, &o, t);
 done:
     return status;
@@ -161,7 +167,7 @@ static brio_status count_ball(const cloud *c, const ball *b, double radius2, tal
         assert(b->member[i] < c->count);
         inner[n++] = distance <= radius2 / 4;
     }
-    BRIO_TRY(triangulate(c->ctx, points, c->weights ? weights : NULL, n, &t));
+    BRIO_TRY(triangulate(c->ctx, points, c->weights ? weights : NULL, n, MOST_TETRAHEDRA, &t));
     const uint32_t *representative = brio_triangulation_representatives(t);
     sum->balls++, sum->all += (double)n;
     sum->exact += brio_triangulation_stats(t)->exact_calls;
@@ -197,17 +203,19 @@ done:
     return status;
 }
 
-static brio_status size_of_all(const cloud *c, brio_triangulation_size *size) {
+/* Triangulates as many random points, or all.   BRIO_ERR_TOO_LARGE if there are more than `most` tetrahedra. */
+static brio_status size_of_sample(const cloud *c, size_t count, uint64_t most, brio_triangulation_size *size) {
     brio_status status = BRIO_OK;
     brio_triangulation *t = NULL;
     double *points = NULL, *weights = NULL;
-    BRIO_TRY(BRIO_ALLOC(c->ctx, points, 3 * c->count));
-    if (c->count) memcpy(points, c->points, 3 * c->count * sizeof *points);
-    if (c->weights) {
-        BRIO_TRY(BRIO_ALLOC(c->ctx, weights, c->count));
-        if (c->count) memcpy(weights, c->weights, c->count * sizeof *weights);
+    BRIO_TRY(BRIO_ALLOC(c->ctx, points, 3 * count));
+    if (c->weights) BRIO_TRY(BRIO_ALLOC(c->ctx, weights, count));
+    for (size_t i = 0; i < count; i++) {
+        size_t from = count < c->count ? brio_sample_of(i, count, c->count) : i;
+        memcpy(points + 3 * i, c->points + 3 * from, 3 * sizeof *points);
+        if (weights) weights[i] = c->weights[from];
     }
-    BRIO_TRY(triangulate(c->ctx, points, weights, c->count, &t));
+    BRIO_TRY(triangulate(c->ctx, points, weights, count, most, &t));
     const brio_delaunay_stats *s = brio_triangulation_stats(t);
     *size = (brio_triangulation_size){(double)(s->tetrahedra + s->hull_facets), (double)s->hidden};
 done:
@@ -236,16 +244,38 @@ static void extrapolate(const cloud *c, const tally *far, const tally *near, bri
     *size = (brio_triangulation_size){points * ratio, c->weights ? points * far->hidden / far->points : 0};
 }
 
+/* Raises an estimate to what random samples tell, where tetrahedra join points far from each other, as those of two
+ * lines or two planes: no surroundings show them. The greatest sample whose tetrahedra are not too many and one of half
+ * as many points give the power. A sample keeps no noise and no lattice, and hides fewer points by weights. So only
+ * sets without weights are sampled, of many points only those that have next to no tetrahedra in surroundings, and a
+ * sample that has little more than the surroundings is left aside. */
+static brio_status raise_by_samples(const cloud *c, const tally *far, brio_triangulation_size *size) {
+    brio_triangulation_size all, half;
+    double points = (double)c->count, known = size->tetrahedra / points;
+    size_t most = far->exact < MOST_EXACT ? SAMPLE : EXACT_SAMPLE, n = c->count < most ? c->count : most;
+    brio_status status;
+    if (c->weights || (c->count > MOST_SAMPLED && known >= FEW)) return BRIO_OK;
+    while ((status = size_of_sample(c, n, SAMPLE_TETRAHEDRA, &all)) == BRIO_ERR_TOO_LARGE) n /= 2;
+    BRIO_FORWARD(status);
+    if (all.tetrahedra < MORE * known * (double)n) return BRIO_OK;
+    BRIO_FORWARD(size_of_sample(c, n / 2, SAMPLE_TETRAHEDRA, &half));
+    double power = half.tetrahedra > 0 ? log2(all.tetrahedra / half.tetrahedra) : 1;
+    power = fmin(power, c->count > MOST_SAMPLED ? 1 : 2);
+    size->tetrahedra = fmax(size->tetrahedra, all.tetrahedra * pow(points / (double)n, power));
+    return BRIO_OK;
+}
+
 brio_status brio_estimate_size(brio_context *ctx, const double *points, const double *weights, size_t num_points,
                                brio_triangulation_size *size) {
     const double scale = brio_scale_to_one(brio_exponent(brio_greatest(points, 3 * num_points)));
     const cloud c = {ctx, points, weights, num_points, scale};
     tally far = {0}, near = {0};
     brio_aside aside = brio_aside_begin(ctx);
-    brio_status status = num_points <= ALL ? size_of_all(&c, size) : BRIO_ERR_TOO_LARGE;
+    brio_status status = num_points <= ALL ? size_of_sample(&c, num_points, MOST_TETRAHEDRA, size) : BRIO_ERR_TOO_LARGE;
     if (status == BRIO_ERR_TOO_LARGE) {
         status = count_surroundings(&c, &far, &near);
         if (status == BRIO_OK) extrapolate(&c, &far, &near, size);
+        if (status == BRIO_OK) status = raise_by_samples(&c, &far, size);
         if (status == BRIO_OK && num_points <= ALL) size->tetrahedra = fmax(size->tetrahedra, MOST_TETRAHEDRA);
     }
     brio_aside_end(ctx, &aside);

@@ -21,7 +21,6 @@ static const double MOST_CHANGE = 0x1p26; /* so that all sums of shifts fit into
 #define TOO_SKEWED                                                                                                     \
     "the cell is too large, too small or too skewed: its vectors as sums of the shortest ones of their lattice have "  \
     "terms of more than 2^26"
-#define NO_SPAN "the periodic vectors of the cell span no %s"
 
 /* --- bases --- */
 
@@ -53,6 +52,23 @@ static bool complete(double (*v)[3], int rank, double (*dual)[3]) {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) dual[i][k] /= det;
     return true;
+}
+
+/* Refuses vectors that `complete` does not take: they span nothing, or only if products of their coordinates were to
+ * leave the range of doubles. */
+static brio_status refuse_span(brio_context *ctx, const brio_lattice *l) {
+    static const char *const SPAN[] = {"length", "area", "volume"};
+    double longest = 0, scaled[3][3], dual[3][3];
+    for (int i = 0; i < l->rank; i++)
+        for (int k = 0; k < 3; k++) longest = fmax(longest, fabs(l->given[i][k]));
+    for (int i = 0; i < l->rank && longest > 0; i++)
+        for (int k = 0; k < 3; k++) scaled[i][k] = ldexp(l->given[i][k], -ilogb(longest));
+    if (longest > 0 && complete(scaled, l->rank, dual))
+        return brio_fail(ctx, BRIO_ERR_ARGUMENT,
+                         "the vectors of the cell are too %s: their greatest coordinate is %g, and products of such "
+                         "are no doubles; scale the cell and the points",
+                         longest > 1 ? "long" : "short", longest);
+    return brio_fail(ctx, BRIO_ERR_ARGUMENT, "the periodic vectors of the cell span no %s", SPAN[l->rank - 1]);
 }
 
 /* The vectors of a reduction: positions in doubles, and what they are of the first ones. */
@@ -431,11 +447,9 @@ brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *opt
                              size_t num_points, brio_lattice *l) {
     double reach[3];
     reduction r;
-    const char *span;
     BRIO_FORWARD(take_vectors(ctx, options, l));
-    span = l->rank == 3 ? "volume" : l->rank == 2 ? "area" : "length";
     choose_origin(l, points, num_points);
-    BRIO_EXPECT(ctx, complete(l->given, l->rank, l->given_dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
+    if (!complete(l->given, l->rank, l->given_dual)) return refuse_span(ctx, l);
     begin((const double(*)[3])l->given, l->rank, &r);
     for (int round = 0; round < REDUCTIONS; round++) {
         reduce(&r);
@@ -446,14 +460,14 @@ brio_status brio_lattice_new(brio_context *ctx, const brio_periodic_options *opt
     }
     memcpy(l->near, r.v, sizeof l->near);
     memcpy(l->change, r.change, sizeof l->change);
-    BRIO_EXPECT(ctx, complete(l->near, l->rank, l->near_dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
+    if (!complete(l->near, l->rank, l->near_dual)) return refuse_span(ctx, l);
     BRIO_EXPECT(ctx, find_reach(l, points, num_points, reach), BRIO_ERR_ARGUMENT,
                 "a point is more than 2^26 cells away from the others");
     for (int k = 0; k < 3 && l->rank < 3; k++) reach[k] = fmax(reach[k], options->reach);
     BRIO_EXPECT(ctx, choose_units(l, (const double(*)[3])l->near, reach), BRIO_ERR_ARGUMENT, TOO_SKEWED);
     round_basis(l);
     find_used(l);
-    BRIO_EXPECT(ctx, complete(l->basis, l->rank, l->dual), BRIO_ERR_ARGUMENT, NO_SPAN, span);
+    if (!complete(l->basis, l->rank, l->dual)) return refuse_span(ctx, l);
     find_range(l, reach);
     for (int i = 0; i < l->rank; i++) /* before all translates are made that would matter */
         BRIO_EXPECT(ctx, l->range[i] <= BRIO_LATTICE_MOST_SHIFT, BRIO_ERR_ARGUMENT,

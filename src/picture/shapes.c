@@ -10,7 +10,7 @@
 
 /* MOST_LINED: polygons, or tetrahedra, up to which their edges are drawn: with more, lines would hide them.
  * FEW_CROWDED: edges of more than two faces up to which they are marked in any case; with more, if they are under a
- * tenth of the faces. Cells have many by their nature. Both chosen. */
+ * tenth of the faces. Cells have many by their nature. Both chosen; pages have the same rule (web/src/layer.js). */
 enum { MOST_LINED = 50000, FEW_CROWDED = 50 };
 
 static brio_status put_line(brio_context *ctx, brio_shapes *s, uint32_t a, uint32_t b, brio_line_kind kind) {

@@ -5,9 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Bytes that wait: for a file at most WAITING and at least LEAST_WAITING, for all together at most ALL_WAITING and one
- * in SHARE bytes of the memory, as far as LEAST_WAITING allows. All chosen. */
-enum { WAITING = 1 << 14, ALL_WAITING = 1 << 22, LEAST_WAITING = 1 << 10, SHARE = 64 };
+/* Bytes that wait for a file, and for all together (brio_waiting_bytes). All chosen. */
+enum { WAITING = 1 << 14, ALL_WAITING = 1 << 22, LEAST_WAITING = 1 << 10 };
 
 static void name_of(const char *name, uint32_t i, char full[32]) {
     snprintf(full, 32, "%s-%u", name, i);
@@ -15,9 +14,8 @@ static void name_of(const char *name, uint32_t i, char full[32]) {
 
 brio_status brio_row_files_open(brio_store_folder *folder, const char *name, uint32_t count, brio_row_files *out) {
     brio_context *ctx = folder->ctx;
-    size_t most = brio_memory_limit(ctx) / SHARE, share = (most < ALL_WAITING ? most : ALL_WAITING) / count;
     *out = (brio_row_files){.folder = folder, .count = count};
-    out->room = share < LEAST_WAITING ? LEAST_WAITING : share < WAITING ? share : WAITING;
+    out->room = brio_waiting_bytes(ctx, count, LEAST_WAITING, WAITING, ALL_WAITING);
     assert(strlen(name) < sizeof out->name);
     strcpy(out->name, name);
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, out->file, count));

@@ -85,8 +85,8 @@ brio_status brio_ordered_cells_new(brio_tiles *t, const brio_cells_options *opti
                                    const uint64_t *end, brio_ordered_cells **out);
 /** Removes the files. NULL is accepted. */
 void brio_ordered_cells_free(brio_ordered_cells *o);
-/** Returns the bytes that wait for the files. */
-double brio_ordered_cells_buffers(size_t tiles, bool with_faces);
+/** Returns the bytes of the files' buffers. */
+double brio_ordered_cells_buffers(const brio_context *ctx, size_t tiles, bool with_faces);
 
 /** Packs a cell into bytes, a multiple of 8, which any process of the same kind can put into its files.
  *  *bytes  valid until the next call. */

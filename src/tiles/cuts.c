@@ -47,6 +47,11 @@ void brio_tile_cuts_drop_sample(brio_context *ctx, brio_tile_cuts *c) {
     c->num_sample = 0;
 }
 
+double brio_tile_cuts_bytes(uint32_t num_tiles) {
+    enum { OF_SAMPLE = 3 * sizeof(double) + 2 * sizeof(uint64_t) /* position, hash, key */ };
+    return (double)MOST_SAMPLE * OF_SAMPLE + num_tiles * (double)sizeof(brio_tile_cut);
+}
+
 /* --- cuts --- */
 
 /* A part of space: its tiles and its points of the sample. */

@@ -43,6 +43,8 @@ void brio_tile_cuts_sample(brio_tile_cuts *c, const double point[3], uint64_t in
 brio_status brio_tile_cuts_make(brio_context *ctx, brio_tile_cuts *c, uint32_t num_tiles, brio_tile_home *home);
 /** Returns the tile of a position, also of one that was not in the sample. */
 uint32_t brio_tile_cuts_find(const brio_tile_cuts *c, const double point[3]);
+/** Returns the bytes of all this at most. */
+double brio_tile_cuts_bytes(uint32_t num_tiles);
 /** Frees the sample; the cuts stay. */
 void brio_tile_cuts_drop_sample(brio_context *ctx, brio_tile_cuts *c);
 void brio_tile_cuts_free(brio_context *ctx, brio_tile_cuts *c);

@@ -7,7 +7,8 @@
 #include <string.h>
 
 enum { MOST_SOME = 1 << 15 };
-enum { BUFFER = 1 << 10, LEAST_BUFFER = 1 << 4, ALL_BUFFERS = 1 << 20 }; /* points. Chosen */
+/* Points that wait for a tile's file, and for those of all tiles (brio_waiting_bytes). Chosen. */
+enum { BUFFER = 1 << 10, LEAST_BUFFER = 1 << 4, ALL_BUFFERS = 1 << 20 };
 
 /* --- taking --- */
 
@@ -111,10 +112,17 @@ struct brio_tile_tray {
 
 typedef brio_tile_tray tray;
 
-/* Returns how many points wait for each tile's file: few if there are many tiles, so that all together fit. */
+/* Returns how many points wait for each tile's file. */
 static size_t room_of_tray(const brio_tiles *t) {
-    size_t share = ALL_BUFFERS / t->num_tiles;
-    return share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
+    enum { SIZE = sizeof(brio_set_point) };
+    return brio_waiting_bytes(t->ctx, t->num_tiles, LEAST_BUFFER * SIZE, BUFFER * SIZE, ALL_BUFFERS * SIZE) / SIZE;
+}
+
+double brio_tiles_divide_bytes(const brio_tiles *t) {
+    enum { OF_TILE = sizeof(brio_tile) + sizeof(brio_tile_home) + sizeof(brio_ball_box) + sizeof(tray) };
+    size_t waiting = room_of_tray(t) * sizeof(brio_set_point) + BRIO_BLOCK_HEADER;
+    return MOST_SOME * sizeof(brio_set_point) + brio_tile_cuts_bytes(t->num_tiles) +
+           t->num_tiles * (double)(OF_TILE + waiting);
 }
 
 brio_status brio_tile_trays_new(brio_tiles *t, brio_tile_tray **out) {

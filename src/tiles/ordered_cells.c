@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* AT_ONCE: cells that are handed on together. BUFFER: bytes that wait for a file, at most; all together have
- * ALL_BUFFERS. Chosen. */
+/* AT_ONCE: cells that are handed on together. The others: bytes that wait for a file, and for all of them
+ * (brio_waiting_bytes). Chosen. */
 enum { AT_ONCE = 1 << 11, BUFFER = 1 << 16, LEAST_BUFFER = 1 << 10, ALL_BUFFERS = 1 << 25 };
 
 typedef struct {
@@ -112,19 +112,18 @@ static void name_of(const char *kind, size_t part, char name[32]) {
 }
 
 /* Returns the bytes that wait for each of the files. */
-static size_t room_of_tray(size_t num_parts) {
-    size_t share = ALL_BUFFERS / (2 * num_parts);
-    return share < LEAST_BUFFER ? LEAST_BUFFER : share < BUFFER ? share : BUFFER;
+static size_t room_of_tray(const brio_context *ctx, size_t num_parts) {
+    return brio_waiting_bytes(ctx, 2 * num_parts, LEAST_BUFFER, BUFFER, ALL_BUFFERS);
 }
 
-double brio_ordered_cells_buffers(size_t tiles, bool with_faces) {
-    size_t num_parts = BRIO_ORDERED_PARTS * tiles;
-    return (with_faces ? 2.0 : 1.0) * (double)num_parts * (double)room_of_tray(num_parts);
+double brio_ordered_cells_buffers(const brio_context *ctx, size_t tiles, bool with_faces) {
+    size_t num_parts = BRIO_ORDERED_PARTS * tiles, waiting = room_of_tray(ctx, num_parts) + BRIO_BLOCK_HEADER;
+    return (double)num_parts * (double)(2 * sizeof(tray) + (with_faces ? 2 : 1) * waiting);
 }
 
 static brio_status open_tray(ordering *o, const char *kind, size_t part, tray *f) {
     char name[32];
-    f->room = room_of_tray(o->num_parts);
+    f->room = room_of_tray(o->t->ctx, o->num_parts);
     name_of(kind, part, name);
     BRIO_FORWARD(brio_store_create(&o->t->folder, name, &f->file));
     brio_store_shut(&f->file);

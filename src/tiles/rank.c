@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { AT_ONCE = 1 << 11, LEAST_AT_ONCE = 1 << 5, ALL_AT_ONCE = 1 << 20 }; /* vertices. Chosen */
+enum { AT_ONCE = 1 << 11, LEAST_AT_ONCE = 1 << 5, ALL_AT_ONCE = 1 << 20 }; /* vertices of runs. Chosen */
 enum { HASHES_A_THREAD = 1 << 14 };
 
 /* A vertex of a run. */
@@ -138,11 +138,21 @@ static void free_runs(brio_tiles *t, run *runs) {
     brio_release(t->ctx, runs);
 }
 
+/* Returns how many vertices of each run are at hand, and ranks wait for its file. */
+static size_t room_of_run(const brio_context *ctx, size_t runs) {
+    enum { SIZE = sizeof(run_vertex) + sizeof(uint64_t) };
+    return brio_waiting_bytes(ctx, runs, LEAST_AT_ONCE * SIZE, AT_ONCE * SIZE, (size_t)ALL_AT_ONCE * SIZE) / SIZE;
+}
+
+double brio_tiles_merge_bytes(const brio_context *ctx, size_t runs) {
+    size_t rows = room_of_run(ctx, runs) * (sizeof(run_vertex) + sizeof(uint64_t));
+    return (double)runs * (double)(sizeof(run) + sizeof(uint32_t) + rows + 2 * BRIO_BLOCK_HEADER);
+}
+
 /* Opens a tile's run, and the file of its ranks. */
 static brio_status open_run(brio_tiles *t, uint32_t tile, run *r) {
     char name[32];
-    size_t share = ALL_AT_ONCE / t->num_tiles;
-    r->room = share < LEAST_AT_ONCE ? LEAST_AT_ONCE : share < AT_ONCE ? share : AT_ONCE;
+    r->room = room_of_run(t->ctx, t->num_tiles);
     snprintf(name, sizeof name, "run-%u", tile);
     BRIO_FORWARD(brio_store_open(&t->folder, name, &r->in));
     brio_store_shut(&r->in);

@@ -92,6 +92,11 @@ struct brio_tile_source {
     size_t num_asked, asked_capacity;
 };
 
+double brio_tile_source_bytes(const brio_tiles *t) {
+    enum { BOX = 7 * sizeof(double), OF_TREE = 3 * sizeof(uint32_t) };
+    return (double)t->num_nodes * (BOX + OF_TREE + sizeof(block *));
+}
+
 void brio_tiles_filter(const brio_tiles *t, brio_filter *f) {
     double extent[3], heaviest = fabs(t->all.weight), lightest = isfinite(t->lightest) ? t->lightest : 0;
     for (int k = 0; k < 3; k++) extent[k] = t->all.high[k] - t->all.low[k];

@@ -18,6 +18,13 @@ enum { TILES = 8, MOST_TILES = 1 << 16 };
 /* Bytes of memory for each point of the largest tile: its triangulation with a halo. For its cells: of each point, and
  * of each site of a slab. All measured: tiles.md. */
 static const double BYTES_A_POINT = 520, CELLS_A_POINT = 300, SLAB_A_SITE = 3600;
+/* Bytes of a tile's work whatever the number of points, and of each thread of it. Measured on 30,000 points. */
+static const double TILE_BYTES = 27e5, THREAD_BYTES = 335e3;
+/* Of the block of points that the caller hands over: 65,536 with a property. */
+static const double BLOCK_BYTES = 2e6;
+/* For a certificate of an alpha shape: faces for each point of the tile, of which uniform points have up to 2.7, at the
+ * worst alpha, and surfaces 2; bytes of a face in its part. Both measured: tiles.md. */
+static const double FACES_A_POINT = 2.7, CERTIFICATE_A_FACE = 150;
 /* Bytes of the disk for each point, when the ranks are made: points, tetrahedra, runs; and when cells are sorted, with
  * faces or without: points, tetrahedra, cells. Measured: tiles.md. */
 static const double DISK_A_POINT = 195, DISK_WITH_FACES = 850, DISK_WITH_CELLS = 240;
@@ -32,6 +39,15 @@ static brio_status begin_folder(brio_tiles *t, const char *scratch) {
     return brio_store_begin(t->ctx, scratch, name, &t->folder);
 }
 
+/* Refuses tiles whose files' buffers do not fit. */
+static brio_status require_room_to_divide(const brio_tiles *t) {
+    double need = brio_tiles_divide_bytes(t) + BLOCK_BYTES, limit = (double)brio_memory_limit(t->ctx);
+    BRIO_EXPECT(t->ctx, need <= limit, BRIO_ERR_NO_MEMORY,
+                "%u tiles need about %.1f MB, for any number of points, of the %.1f MB that are allowed", t->num_tiles,
+                need / 1e6, limit / 1e6);
+    return BRIO_OK;
+}
+
 brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options, brio_tiles **out) {
     BRIO_DOOR;
     brio_tiles_options o = {0};
@@ -40,7 +56,7 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     *out = NULL;
     BRIO_TRY(BRIO_TAKE(ctx, brio_tiles_options, options, &o));
     BRIO_REQUIRE(ctx, o.scratch, BRIO_ERR_ARGUMENT, "tiles need a scratch folder");
-    BRIO_REQUIRE(ctx, o.stars >= 0 && o.stars <= 3, BRIO_ERR_ARGUMENT, "brio_tiles_options.stars is %d", o.stars);
+    BRIO_REQUIRE(ctx, o.stars >= 0 && o.stars <= 4, BRIO_ERR_ARGUMENT, "brio_tiles_options.stars is %d", o.stars);
     BRIO_REQUIRE(ctx, o.tiles <= MOST_TILES, BRIO_ERR_ARGUMENT, "%u tiles; at most %d", o.tiles, MOST_TILES);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
@@ -50,6 +66,7 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     t->stars = o.stars != 0;
     t->sorts_cells = o.stars == 1 || o.stars == 3;
     t->sorts_faces = o.stars == 1;
+    t->certifies = o.stars == 4;
     t->key = o.key ? brio_hash(o.key, t->num_tiles) : 0;
     t->stats.size = sizeof t->stats;
     t->cells.size = sizeof t->cells;
@@ -58,6 +75,7 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t->tile, t->num_tiles));
     if (t->key) BRIO_TRY(brio_tiles_restore(t, &t->has_points));
     if (!t->has_points) brio_store_clear(&t->folder);
+    if (!t->has_points) BRIO_TRY(require_room_to_divide(t));
     *out = t;
     t = NULL;
 done:
@@ -270,26 +288,34 @@ double brio_tiles_disk(double points) {
 
 /* Returns the bytes for tiles of at most `points`, of which there are about `tiles`. */
 static double bytes_of_tiles(const brio_tiles *t, double points, double tiles, int at_once) {
-    double triangulating = at_once * points * BYTES_A_POINT;
-    if (!t->stars) return triangulating;
-    double cells = points * CELLS_A_POINT + fmin(points, BRIO_SLAB_SITES) * SLAB_A_SITE;
-    if (t->sorts_cells) cells += brio_ordered_cells_buffers((size_t)tiles, t->sorts_faces);
-    return fmax(triangulating, cells);
+    double index = (double)t->num_nodes * sizeof *t->node + tiles * (sizeof *t->tile + sizeof *t->cuts.cut);
+    double triangulating = at_once * points * BYTES_A_POINT + brio_tile_source_bytes(t);
+    double needed = fmax(triangulating, brio_tiles_merge_bytes(t->ctx, (size_t)tiles));
+    if (t->stars) {
+        double cells = points * CELLS_A_POINT + fmin(points, BRIO_SLAB_SITES) * SLAB_A_SITE;
+        if (t->sorts_cells) cells += brio_ordered_cells_buffers(t->ctx, (size_t)tiles, t->sorts_faces);
+        if (t->certifies) cells += points * FACES_A_POINT * CERTIFICATE_A_FACE;
+        needed = fmax(needed, cells);
+    }
+    return index + TILE_BYTES + brio_context_threads(t->ctx) * THREAD_BYTES + needed;
 }
 
 brio_status brio_tiles_require_memory(brio_tiles *t, int at_once) {
-    double most = 0, index = (double)t->num_nodes * (sizeof *t->node + 8), limit = (double)brio_memory_limit(t->ctx);
-    double tiles = t->num_tiles;
+    double most = 0, limit = (double)brio_memory_limit(t->ctx), tiles = t->num_tiles;
     for (uint32_t i = 0; i < t->num_tiles; i++) most = fmax(most, t->tile[i].points);
-    double need = bytes_of_tiles(t, most, tiles, at_once) + index;
+    double need = bytes_of_tiles(t, most, tiles, at_once);
     if (need <= limit) return BRIO_OK;
     for (double all = 1.2 * most * tiles; tiles < MOST_TILES; tiles = ceil(tiles * 1.02))
-        if (bytes_of_tiles(t, all / tiles, tiles, at_once) + index <= limit) break;
+        if (bytes_of_tiles(t, all / tiles, tiles, at_once) <= limit) break;
+    BRIO_EXPECT(t->ctx, tiles < MOST_TILES, BRIO_ERR_NO_MEMORY,
+                "the largest of %u tiles has %.0f points, and needs about %.0f MB, but %.1f MB are allowed, in which "
+                "no number of tiles fits",
+                t->num_tiles, most, need / 1e6, limit / 1e6);
     return brio_fail(
         t->ctx, BRIO_ERR_NO_MEMORY,
         "the largest of %u tiles has %.0f points, and needs about %.0f MB of the %.0f MB that are allowed: take "
         "about %.0f tiles",
-        t->num_tiles, most, need / 1e6, limit / 1e6, fmin(tiles, MOST_TILES));
+        t->num_tiles, most, need / 1e6, limit / 1e6, tiles);
 }
 
 brio_status brio_tiles_require_disk(brio_tiles *t, double n) {

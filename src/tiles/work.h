@@ -53,6 +53,7 @@ struct brio_tiles {
     brio_tiles_cells_stats cells;
     bool weighted, has_points, has_result, has_ranks, has_neighbours, stars;
     bool sorts_cells, sorts_faces; /* cells will be asked for in order, and their faces */
+    bool certifies;                /* faces of alpha shapes will be added to a certificate */
     bool torn;                     /* points were on their way to the tiles when a call failed: some are nowhere */
     uint64_t key;
     uint64_t points_hash; /* of the file of points */
@@ -90,6 +91,13 @@ brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
  *  disk. Cells need more. */
 double brio_tiles_least_memory(const brio_tiles_options *options, double points);
 double brio_tiles_disk(double points);
+
+/** Returns the bytes at most while points are taken and divided. */
+double brio_tiles_divide_bytes(const brio_tiles *t);
+/** Returns the bytes beside the tiles while so many runs of vertices are merged. */
+double brio_tiles_merge_bytes(const brio_context *ctx, size_t runs);
+/** Returns the bytes of what a source (below) has of all nodes. */
+double brio_tile_source_bytes(const brio_tiles *t);
 
 /** Refuses tiles that do not fit in the memory that the context may have.   at_once  tiles in memory together. */
 brio_status brio_tiles_require_memory(brio_tiles *t, int at_once);

@@ -229,6 +229,26 @@ async function shades() {
     await page.context().close();
 }
 
+/** Walls between small rooms are a complex, whose edges are not marked, as in pictures; few fins on a surface are faults. */
+async function complexes() {
+    const n = 4, at3 = (x, y, z) => (x * n + y) * n + z, vertices = [], walls = [];
+    for (let x = 0; x < n; x++) for (let y = 0; y < n; y++) for (let z = 0; z < n; z++) {
+        vertices.push([x, y, z]);
+        if (y + 1 < n && z + 1 < n) walls.push([at3(x, y, z), at3(x, y + 1, z), at3(x, y + 1, z + 1), at3(x, y, z + 1)]);
+        if (x + 1 < n && z + 1 < n) walls.push([at3(x, y, z), at3(x + 1, y, z), at3(x + 1, y, z + 1), at3(x, y, z + 1)]);
+        if (x + 1 < n && y + 1 < n) walls.push([at3(x, y, z), at3(x + 1, y, z), at3(x + 1, y + 1, z), at3(x, y + 1, z)]);
+    }
+    ply("walls.ply", vertices, walls);
+    ply("fin.ply", [...CUBE, [0.5, 0.5, 3]], [...QUADS, [0, 1, 8]]);
+    for (const [name, marked] of [["walls", false], ["fin", true]]) {
+        run("view", `${name}.ply`, "-o", `${name}.html`);
+        const page = await open(`${name}.html`);
+        const shown = await page.evaluate(() => { const d = window.brioPage.drawings[0]; return [d.layer.meta.nonmanifold, d.state.nonmanifold]; });
+        expect(shown[0] > 0 && shown[1] === marked, `${name}: ${shown}`);
+        await page.context().close();
+    }
+}
+
 /** Picking ten vertices gives the coordinates of the file, to the last bit, with number and properties. */
 async function picking() {
     const [vertices, faces] = bumps(14);
@@ -788,8 +808,8 @@ async function large() {
     return mesh;
 }
 
-const SHORT = { silhouetteAndColour, filled, shades, picking, explained, takenOnTheHull, narrowed: () => narrow("explained.html"), injection, alphas, apart, figures };
-const LONG = { silhouetteAndColour, filled, shades, picking, controls, moving, tetrahedra, alphas, apart, balls, explained, takenOnTheHull, labeled: () => explained("labeled-delaunay"), figures, narrow, narrowed: () => narrow("explained.html"), injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
+const SHORT = { silhouetteAndColour, filled, shades, complexes, picking, explained, takenOnTheHull, narrowed: () => narrow("explained.html"), injection, alphas, apart, figures };
+const LONG = { silhouetteAndColour, filled, shades, complexes, picking, controls, moving, tetrahedra, alphas, apart, balls, explained, takenOnTheHull, labeled: () => explained("labeled-delaunay"), figures, narrow, narrowed: () => narrow("explained.html"), injection, extremes, addresses, rounded, coloursOfFaces, lost, large };
 try {
     for (const [name, test] of Object.entries({ short: SHORT, long: LONG, bench: { bench } }[length])) {
         const began = Date.now();

@@ -32,6 +32,10 @@ class Periodic(CliTest):
                 self.usage("is not made of the letters", *command, points, "--cell", "1,1,1", "--periodic", directions)
         self.usage("not with --plane", "delaunay", points, "--cell", "1,1,1", "--plane", "xy")
         self.usage("span no volume", "delaunay", points, "--cell", "1,1,0")
+        self.usage("span no volume", "delaunay", points, "--cell", "1e-140,1e-140,0")
+        for side, words in (("1e-140", "too short: their greatest coordinate is 1e-140"), ("1e140", "too long: their greatest")):
+            self.usage(words, "delaunay", points, "--cell", ",".join([side] * 3))
+        self.expect(0, "delaunay", points, "--cell", "1e100,1e100,1e100")
 
     def test_one_atom_of_a_lattice(self):
         points, out, faces = self.xyz("a.xyz", [(0, 0, 0)]), self.path("cells.csv"), self.path("faces.csv")

@@ -161,6 +161,26 @@ class PointTiles(CliTest):
         names = {schema["name"] for schema in self.features("out.vpc")[0]["properties"]["pc:schemas"]}
         self.assertLessEqual({"X", "Intensity", "Classification", "GpsTime", "Red", "deviation"}, names)
 
+    def test_schemas_were_those_of_the_input(self):
+        """A format lacks some properties, and has others by other types."""
+        cloud = self.file("a.ply", "ply\nformat ascii 1.0\nelement vertex 9\nproperty double x\nproperty double y\nproperty double z\n"
+                          "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float nx\nproperty float ny\nproperty float nz\n"
+                          "property int count\nend_header\n" + "".join("%d %d %d 1 2 3 0 0 1 -7\n" % (i, i * i, i % 3) for i in range(9)))
+        sizes = {"int8": (1, "signed"), "uint8": (1, "unsigned"), "int16": (2, "signed"), "uint16": (2, "unsigned"), "int32": (4, "signed"),
+                 "uint32": (4, "unsigned"), "float32": (4, "floating"), "float64": (8, "floating")}
+        names = {"red": "Red", "green": "Green", "blue": "Blue", "nx": "NormalX", "ny": "NormalY", "nz": "NormalZ"}
+        for form in "laz", "las", "ply", "e57", "xyzrgb", "npy", "csv", "obj":
+            with self.subTest(form):
+                self.tiles(2, cloud, self.path("out.vpc"), "--format", form)
+                schemas = [(s["name"], s["size"], s["type"]) for s in self.features("out.vpc")[0]["properties"]["pc:schemas"]]
+                held = self.facts("info", self.files("out.vpc")[0]).get("properties", {})
+                held = {names.get(name, name): sizes[kind] for name, kind in held.items()}
+                self.assertEqual(schemas[:3], [(axis, 8, "floating") for axis in "XYZ"])
+                written = {name: (size, kind) for name, size, kind in schemas[3:]}
+                self.assertEqual({name: written.get(name) for name in names.values() if name in held or name in written},
+                                 {name: held.get(name) for name in names.values() if name in held or name in written})
+                self.assertEqual(len(written), len(held))
+
     def test_one_grid_fits_all_tiles(self):
         # each tile would fit a grid of less decimals, and each file had another one
         with open(self.path("a.csv"), "w", encoding="ascii") as f:
@@ -216,6 +236,21 @@ class PointTiles(CliTest):
             self.tiles(9, self.path("dark.csv"), self.path("out.vpc"), "--format", form)
             self.facts("convert", self.path("dark.csv"), self.path("whole." + form))
             self.same("whole." + form, "out.vpc")
+
+    def test_origins_of_glb_are_numbers_of_single_precision(self):
+        """Programs keep the places of nodes in single precision, and would move tiles against each other."""
+        draw = random.Random(3)
+        cloud = self.file("map.csv", "x,y,z\n" + "".join("%r,%r,%r\n" % (638982.55 + 90 * draw.random(), 4912345.75 + 90 * draw.random(), 3 * draw.random())
+                                                        for _ in range(2000)))
+        self.tiles(4, cloud, self.path("map.vpc"), "--format", "glb")
+        origins = set()
+        for path in self.files("map.vpc"):
+            with open(path, "rb") as f:
+                head = struct.unpack("<5I", f.read(20))
+                node, = json.loads(f.read(head[3]))["nodes"]
+            origins.add(tuple(node["translation"]))
+            self.assertEqual(struct.unpack("3f", struct.pack("3f", *node["translation"])), tuple(node["translation"]))
+        self.assertEqual(len(origins), 4)
 
     def test_a_tile_had_other_colours_where_those_of_all_are_no_colours(self):
         with open(self.path("a.csv"), "w", encoding="ascii") as f:
@@ -483,11 +518,11 @@ class PointTiles(CliTest):
 
     def test_too_little_memory_is_said_before_the_work(self):
         points, how = self.cloud("a.npy", 300000), ["--format", "vtp", "--scratch", self.scratch(), "--max-memory"]
-        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "1", *how, "60M")
+        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "1", *how, "38M")
         self.assertRegex(run.err, r"the largest of 1 tiles has 300000 points.*take about 2 tiles")
-        self.facts("convert", points, self.path("out.vpc"), "--tiles", "2", *how, "60M")
-        self.facts("convert", points, self.path("out.vpc"), "--tiles", "1", "--format", "laz", *how[2:], "60M")
-        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "3", *how, "20M")
+        self.facts("convert", points, self.path("out.vpc"), "--tiles", "2", *how, "38M")
+        self.facts("convert", points, self.path("out.vpc"), "--tiles", "1", "--format", "laz", *how[2:], "38M")
+        run = self.expect(4, "convert", points, self.path("out.vpc"), "--tiles", "3", *how, "12M")
         self.assertIn("points in tiles need about", run.err)
         self.assertEqual(os.listdir(self.scratch()), [])
 

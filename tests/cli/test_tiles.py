@@ -685,6 +685,32 @@ class Tiles(CliTest):
         facts = self.facts("voronoi", cloud, "--tiles", tiles, *limits, "-o", self.path("c.npy"))
         self.assertEqual(facts["cells"], 20000)
 
+    def test_what_waits_for_many_tiles_is_a_part_of_the_memory(self):
+        cloud, limits = self.rows("a.csv", 2000), ["--tiles", "500", "--scratch", self.scratch(), "--max-memory"]
+        for command in (["delaunay", cloud], ["voronoi", cloud, "-o", self.path("c.npy")], ["alpha", cloud, "--alpha", "0.1"],
+                        ["convert", cloud, self.path("a.vpc")]):
+            with self.subTest(command[0]):
+                self.facts(*command, *limits, "20M")
+        run = self.expect(4, "delaunay", cloud, *limits, "8M")
+        self.assertIn("500 tiles need about", run.err)
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_what_a_page_shows_was_outside_of_the_memory(self):
+        cloud, limits = self.cloud("many.npy", 32000), ["--tiles", "8", "--scratch", self.scratch(), "--max-memory", "40M"]
+        for shown in (["--view", self.path("v.html")], ["--picture", self.path("v.png")]):
+            facts = self.facts("delaunay", cloud, *limits, *shown)
+            self.assertTrue(any("an even choice of 26214 of" in words for words in facts["warnings"]))
+            self.assertLess(facts["peak_bytes"], 40 << 20)
+            facts = self.facts("voronoi", cloud, *limits, *shown)
+            self.assertTrue(any("cells" in words for words in facts["warnings"]), facts["warnings"])
+            self.assertLess(facts["peak_bytes"], 40 << 20)
+
+    def test_the_certificate_of_an_alpha_shape_is_counted_before_the_work(self):
+        cloud, limits = self.rows("a.csv", 40000), ["--tiles", "2", "--scratch", self.scratch(), "--max-memory", "70M"]
+        self.facts("voronoi", cloud, *limits)
+        run = self.expect(4, "alpha", cloud, "--alpha", "1e-3", "--json", *limits)
+        self.assertRegex(run.err, r"the largest of 2 tiles has \d+ points.*take about \d+ tiles")
+
     def test_flat_points(self):
         with open(self.path("flat.xyz"), "w", encoding="ascii") as f:
             f.writelines("%d %d 2\n" % (i % 20, i // 20) for i in range(400))

@@ -151,16 +151,44 @@ static void clusters_that_fit_a_ball_are_estimated(void) {
     EXPECT(ratio > 0.8 && ratio < 1.3, "%g", ratio);
 }
 
-/* Small surroundings of points on two lines have points of one line alone, and no tetrahedra: the growth from none was
- * infinite, and so was the estimate. */
-static void points_on_two_lines_had_an_infinite_estimate(void) {
-    enum { ON_LINES = 1000 };
-    for (size_t i = 0; i < ON_LINES; i++) {
-        double at = (double)i / ON_LINES;
+static void points_on_two_lines(size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double at = (double)i / (double)count;
         points[3 * i] = i % 2 ? at : 0.5, points[3 * i + 1] = i % 2 ? 0.5 : at, points[3 * i + 2] = i % 2 ? 0.2 : 0.7;
     }
-    double ratio = ratio_of_estimate(ON_LINES, NULL, NULL, 1);
-    EXPECT(ratio > 0.3 && ratio < 30, "%g", ratio);
+}
+
+/* Small surroundings of points on two lines have points of one line alone, and no tetrahedra: the growth from none was
+ * infinite, and so was the estimate. Then it was a ninth of n^2 / 4, and less of more points. */
+static void points_on_two_lines_had_an_infinite_estimate(void) {
+    static const size_t counts[] = {1000, 1500, 5000, 16000};
+    for (int k = 0; k < 4; k++) {
+        brio_context *ctx = new_context();
+        uint64_t tetrahedra = 0;
+        double n = (double)counts[k];
+        points_on_two_lines(counts[k]);
+        EXPECT(brio_estimate_tetrahedra(ctx, points, NULL, counts[k], &tetrahedra) == BRIO_OK);
+        double ratio = (double)tetrahedra / (n * n / 4);
+        EXPECT(ratio > 0.8 && ratio < 1.3, "%g points: %g", n, ratio);
+        brio_context_free(ctx);
+    }
+}
+
+/* Surroundings of points of two planes have no tetrahedra: the estimate was of none. */
+static void points_of_two_planes_had_no_tetrahedra(void) {
+    enum { ON_PLANES = 16000 };
+    brio_context *ctx = new_context();
+    brio_triangulation *t = NULL;
+    uint64_t tetrahedra = 0;
+    uniform_points(8, ON_PLANES, points);
+    for (size_t i = 0; i < ON_PLANES; i++) points[3 * i + 2] = (double)(i % 2);
+    EXPECT(brio_estimate_tetrahedra(ctx, points, NULL, ON_PLANES, &tetrahedra) == BRIO_OK);
+    EXPECT(brio_delaunay(ctx, points, NULL, ON_PLANES, NULL, &t) == BRIO_OK);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    double ratio = (double)tetrahedra / (double)(s->tetrahedra + s->hull_facets);
+    EXPECT(ratio > 0.8 && ratio < 1.3, "%g", ratio);
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
 }
 
 static int count_balls(const char *stage, double fraction, void *user) {
@@ -424,6 +452,7 @@ SUITE(test_estimate) {
     RUN(gaps_in_space_that_repeats_are_estimated);
     RUN(clusters_that_fit_a_ball_are_estimated);
     RUN(points_on_two_lines_had_an_infinite_estimate);
+    RUN(points_of_two_planes_had_no_tetrahedra);
     RUN(points_on_a_line_take_few_balls);
     RUN(tetrahedra_on_curves_are_estimated);
     RUN(estimates_are_the_same_at_every_scale);

@@ -6,6 +6,7 @@ import { Explanation } from "./explanation.js";
 import { bytesOf, differences, inParts, reals, trianglesOf, valuesOf } from "./decode.js";
 
 const CREASED = 0.03; // share of corners from which on a mesh has creases, not noise: chosen
+const FEW_CROWDED = 50; // edges of more than two faces up to which these are faults in any case, as in src/picture/shapes.c: chosen
 
 export class Layer {
     constructor(meta, blocks, number) {
@@ -18,8 +19,8 @@ export class Layer {
     get name() { return this.meta.name || `layer ${this.number + 1}`; }
     /** How many edges of a kind are too many to be marked. */
     get many() { return Math.max(1000, 0.1 * this.meta.triangles); }
-    /** Whether faces have sides: not in a complex, where many edges have more than two faces. */
-    get sided() { return this.meta.nonmanifold < this.many; }
+    /** Whether faces have sides: not in a complex, where many edges have more than two faces. Pictures have the same rule. */
+    get sided() { return this.meta.nonmanifold <= FEW_CROWDED || this.meta.nonmanifold < Math.floor(this.meta.faces / 10); }
     has(name) { return name in this.blocks; }
 
     /** Coordinate k of a step, in halves: boxes may be wider than the largest double. */

@@ -33,6 +33,8 @@ class Conversion:
         coordinates, or whole numbers of a text, were rounded.
     merged, degenerate : int
         Vertices that others stand for by `merge`, and faces, tetrahedra and edges dropped by that.
+    tiles, largest_tile : int
+        Files that were written by `tiles`, and the points of the largest.
     """
 
     points_read: int
@@ -46,6 +48,8 @@ class Conversion:
     lost: list[str]
     merged: int = 0
     degenerate: int = 0
+    tiles: int = 0
+    largest_tile: int = 0
 
 
 def _columns(columns: str | Sequence[str | None] | None) -> str | None:
@@ -115,7 +119,7 @@ def write(path: Path, mesh: Any, **options: Any) -> None:
 
 def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] | None = None, box: Any = None,
             outliers: int = 0, factor: float = 3.0, thin: float = 0.0, merge: bool | float = False, ascii: bool = False, float32: bool = False,
-            compress: bool = False, comment: str | None = None, threads: int = 0,
+            compress: bool = False, comment: str | None = None, tiles: int = 0, scratch: Path | None = None, threads: int = 0,
             progress: bool | Progress | None = None) -> Conversion:
     """Converts a file to another format, or chooses among its points, or both; large files block by block.
 
@@ -139,6 +143,13 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
         Merges vertices at equal positions (True), or at most this distance apart, as Mesh.merge_vertices does.
     ascii, float32, compress, comment
         As for Mesh.write.
+    tiles : int
+        The points of a file of any size in as many files of about equal numbers of points, by their places, at most
+        65,536; 0 writes one file. `target` then has a # in the place of a file's number, as in "folder/#.laz", and the
+        folder is there. No index is written: `brio convert --tiles` writes one. Faces, tetrahedra and edges are left
+        out, and named. Where this fails, files may be there.
+    scratch : str or path
+        With `tiles`: a folder with room for twice the points.
 
     Returns
     -------
@@ -156,12 +167,13 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     """
     corners = None if box is None else as_box(box, 3)
     comment = None if comment is None else as_text(comment, "comment")
+    divides = as_count(tiles, "tiles", most=65536), b"" if scratch is None else as_path(scratch)
     neighbours = as_count(outliers, "outliers", most=63)
     merges, distance = (merge, 0.0) if isinstance(merge, bool) else (True, as_number(merge, "merge"))
     with reporting(progress) as report:
         choice = neighbours, as_number(factor, "factor"), as_number(thin, "thin"), merges, distance
         facts = _native.convert(as_path(source), as_path(target), _columns(columns),
-                                (ascii, float32, compress, comment), corners, choice, threads, report)
+                                (ascii, float32, compress, comment), corners, choice, divides, threads, report)
     return Conversion(**facts)
 
 

@@ -15,7 +15,8 @@
 #include <math.h>
 #include <string.h>
 
-/* BUFFERS: bytes of rows that wait for their places, of all tiles together; MOST_WAITING of one. All chosen. */
+/* BUFFERS: bytes of rows that wait for their places, of all tiles together; MOST_WAITING of one (brio_waiting_bytes).
+ * All chosen. */
 enum { BUFFERS = 1 << 25, MOST_WAITING = 1 << 18, ROWS_A_THREAD = 1 << 13, POSITION = 3 * sizeof(double) };
 
 /* --- the file --- */
@@ -294,11 +295,21 @@ static brio_status place_row(division *d, const char *row, const double position
     return ++d->number[tile] == d->room ? place_waiting(d, tile) : BRIO_OK;
 }
 
-/* Makes room for rows that wait: less for each tile if there are many. */
+/* Returns how many rows wait for a tile's place: fewer if there are many tiles. */
+static size_t room_of_tile(const brio_rows *r, uint32_t num_tiles) {
+    size_t most = r->size > MOST_WAITING ? r->size : MOST_WAITING;
+    return brio_waiting_bytes(r->ctx, num_tiles, r->size, most, BUFFERS) / r->size;
+}
+
+double brio_rows_divide_bytes(const brio_rows *r, uint32_t num_tiles) {
+    size_t waiting = room_of_tile(r, num_tiles) * r->size;
+    return brio_tile_cuts_bytes(num_tiles) +
+           num_tiles * (double)(waiting + sizeof(uint32_t) + sizeof(uint64_t) + sizeof(brio_row_tile));
+}
+
 static brio_status make_room(division *d, uint32_t num_tiles) {
-    size_t share = BUFFERS / num_tiles, size = d->r->size;
-    d->room = (share < MOST_WAITING ? share : MOST_WAITING) / size;
-    if (!d->room) d->room = 1;
+    size_t size = d->r->size;
+    d->room = room_of_tile(d->r, num_tiles);
     BRIO_FORWARD(BRIO_ALLOC(d->r->ctx, d->waiting, num_tiles * d->room * size));
     BRIO_FORWARD(BRIO_ALLOC_ZERO(d->r->ctx, d->number, num_tiles));
     return BRIO_ALLOC_ZERO(d->r->ctx, d->placed, num_tiles);

@@ -42,6 +42,8 @@ brio_status brio_rows_require_room(const brio_rows *r, const char *name, uint64_
 brio_status brio_rows_pass(const brio_rows *r, uint64_t first, uint64_t count, const brio_sink *sink);
 /** Makes one mesh of rows.   out  owned by the caller, NULL on error. */
 brio_status brio_rows_mesh(const brio_rows *r, uint64_t first, uint64_t count, brio_mesh **out);
+/** Returns the bytes of memory, beside a block of rows, while the rows are divided. */
+double brio_rows_divide_bytes(const brio_rows *r, uint32_t num_tiles);
 /** Brings the rows into the order of tiles; those of a tile keep theirs.
  *  chosen  NULL, or of each row whether it stays.   tile  num_tiles; receives what is where.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */

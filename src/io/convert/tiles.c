@@ -11,10 +11,10 @@
 
 /* --- what is taken --- */
 
-/* Returns the bytes of memory beside a tile: the buffers of all tiles and the sample, and a block as rows, in arrays,
- * as it was read and as it is written. */
+/* Returns the bytes of memory beside a tile: of all tiles while they are divided, a block as rows, in arrays, as it was
+ * read and as it is written, and the buffers of a reader and a writer, measured. */
 static double bytes_beside(const brio_conversion *c) {
-    return 40e6 + 4.0 * BRIO_BLOCK_ROWS * (double)c->rows.size;
+    return 2e6 + brio_rows_divide_bytes(&c->rows, c->options->tiles) + 4.0 * BRIO_BLOCK_ROWS * (double)c->rows.size;
 }
 
 /* Returns the bytes of a point of a tile that is in memory as a whole: of its row, of the same compressed with VTK's

@@ -181,15 +181,24 @@ static uint64_t chunks_of(const brio_laz_writer *w) {
     return (w->num_rows + w->chunk - 1) / w->chunk;
 }
 
+/* Returns how many threads encode chunks: those whose chunks fit in a part of the memory. */
+static int workers_for(brio_context *ctx, size_t bytes) {
+    enum { SHARE = 4 /* chosen */ };
+    size_t fit = brio_memory_limit(ctx) / SHARE / bytes;
+    int threads = brio_threads(ctx, SIZE_MAX, 1);
+    return fit < 1 ? 1 : fit < (size_t)threads ? (int)fit : threads;
+}
+
 brio_status brio_laz_write_begin(brio_laz_writer *w, brio_output *out, const brio_laz_form *form) {
     brio_context *ctx = out->ctx;
     char place[8];
     w->form = *form;
     w->chunk = brio_laz_chunk_points(form);
-    w->threads = brio_threads(ctx, SIZE_MAX, 1);
-    size_t count = (size_t)w->threads, bytes = brio_laz_packer_bytes(form);
+    size_t bytes = brio_laz_packer_bytes(form), rows = w->chunk * form->record;
+    w->threads = workers_for(ctx, bytes + rows);
+    size_t count = (size_t)w->threads;
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, w->workers, count));
-    BRIO_FORWARD(BRIO_ALLOC(ctx, w->rows, count * w->chunk * form->record));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, w->rows, count * rows));
     for (size_t i = 0; i < count; i++) {
         char *memory;
         BRIO_FORWARD(BRIO_ALLOC(ctx, memory, bytes));

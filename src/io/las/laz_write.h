@@ -44,7 +44,7 @@ typedef struct brio_laz_writer {
     uint32_t chunk; /* points of one */
     int threads;
     struct brio_laz_worker *workers;
-    uint8_t *rows; /* of as many chunks as there are threads */
+    uint8_t *rows; /* of a chunk for each thread */
     size_t num_rows;
     uint32_t *sizes; /* of the chunks that were written */
     size_t num_chunks, chunk_capacity;
