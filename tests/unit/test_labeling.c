@@ -5,7 +5,7 @@
 #include "points.h"
 #include "surface_calls.h"
 #include "trial.h"
-#include "reconstruct/labels/tetrahedra_flow.h"
+#include "reconstruct/labels/max_flow.h"
 
 static const int ALL[TRIAL_LABELINGS] = {BRIO_LABELING_GREEDY, TRIAL_NAIVE, TRIAL_THEORETICAL, BRIO_LABELING_GLOBAL};
 
@@ -168,84 +168,6 @@ static void cuts_are_minimal_and_least(void) {
     brio_context_free(ctx);
 }
 
-/* Tetrahedra of which some take part, with random capacities. */
-enum { POINTS = 60, MOST_TETS = 500 };
-typedef struct {
-    const brio_tetrahedra *t;
-    bool in[MOST_TETS];
-    uint32_t open[MOST_TETS], node[MOST_TETS]; /* node: of the graph as a list of edges */
-    size_t num_open, num_edges;
-    brio_flow_edge edge[2 * MOST_TETS];
-    int64_t terminal[MOST_TETS];
-} tet_graph;
-
-static void join_tetrahedra(tet_graph *g, brio_rng *rng, brio_tet_flow *flow) {
-    for (uint32_t i = 0; i < g->num_open; i++)
-        for (uint32_t k = 0; k < 4; k++) {
-            uint32_t facet = 4 * g->open[i] + k, mate = *brio_mate(g->t, facet), other = mate >> 2;
-            if (!g->in[other]) flow->residual[facet >> 2][k] = flow->residual[other][mate & 3] = 0;
-            if (!g->in[other] || mate > facet) continue;
-            int32_t capacity = (int32_t)brio_rng_below(rng, 6);
-            flow->residual[facet >> 2][k] = flow->residual[other][mate & 3] = capacity;
-            g->edge[g->num_edges++] = (brio_flow_edge){i, g->node[other], capacity};
-        }
-}
-
-/* Gives the tetrahedra that take part other terminals, and holds the sides against those of the list of edges. */
-static void check_terminals(tet_graph *g, brio_rng *rng, brio_flow *flow, brio_tet_flow *tets) {
-    int64_t used[MOST_TETS];
-    uint8_t side[MOST_TETS];
-    for (size_t i = 0; i < g->num_open; i++) {
-        int64_t other = (int64_t)brio_rng_below(rng, 9) - 4;
-        tets->terminal[g->open[i]] += (int32_t)(other - g->terminal[i]);
-        used[i] = g->terminal[i] = other;
-    }
-    EXPECT(brio_flow_maximum(flow, g->num_open, g->edge, g->num_edges, used, side) == BRIO_OK);
-    brio_tet_flow_run(tets);
-    for (size_t i = 0; i < g->num_open; i++) EXPECT(tets->side[g->open[i]] == side[i], "tetrahedron %u", g->open[i]);
-}
-
-static void check_tetrahedra(brio_context *ctx, uint64_t trial) {
-    brio_rng rng = brio_rng_new(trial);
-    double p[3 * POINTS];
-    brio_triangulation *d = NULL;
-    tet_graph *g = calloc(1, sizeof *g);
-    uniform_points(trial, POINTS, p);
-    EXPECT(brio_delaunay(ctx, p, NULL, POINTS, NULL, &d) == BRIO_OK);
-    const brio_delaunay_stats *s = brio_triangulation_stats(d);
-    brio_tetrahedra t = {.tet = (brio_tetrahedron *)brio_triangulation_tetrahedra(d),
-                         .count = s->tetrahedra + s->hull_facets};
-    g->t = &t;
-    EXPECT(t.count <= MOST_TETS);
-    for (uint32_t i = 0; i < s->tetrahedra; i++) {
-        g->in[i] = trial % 2 || brio_rng_below(&rng, 3);
-        g->node[i] = (uint32_t)g->num_open;
-        if (g->in[i]) g->open[g->num_open++] = i;
-    }
-    brio_flow flow = brio_flow_new(ctx);
-    brio_tet_flow tets;
-    EXPECT(brio_tet_flow_new(ctx, &t, trial % 2 ? NULL : g->open, g->num_open, &tets) == BRIO_OK);
-    if (trial % 5) tets.part_size = 1 + trial % 40;
-    if (trial % 4) tets.most_together = 1 + trial % 300;
-    brio_context_set_threads(ctx, 1 + (int)(trial % 3));
-    for (size_t i = 0; i < g->num_open; i++) tets.terminal[g->open[i]] = 0;
-    join_tetrahedra(g, &rng, &tets);
-    for (int again = 0; again < 4; again++) check_terminals(g, &rng, &flow, &tets);
-    brio_tet_flow_free(&tets);
-    brio_flow_free(&flow);
-    brio_triangulation_free(d);
-    free(g);
-}
-
-/* The flow of tetrahedra, all or some, whole or in parts, in one to three threads; then with other terminals, three
- * times. */
-static void cuts_of_tetrahedra_are_those_of_their_graph(void) {
-    brio_context *ctx = new_context();
-    for (uint64_t trial = 0; trial < 200; trial++) check_tetrahedra(ctx, trial);
-    EXPECT(brio_context_memory(ctx) == 0);
-    brio_context_free(ctx);
-}
-
 static brio_status small_global_crust(brio_context *ctx) {
     double p[3 * 40];
     brio_surface_options o = CRUST_OPTIONS;
@@ -267,7 +189,6 @@ SUITE(test_labeling) {
     RUN(shuffled_samples_give_the_same_global_labels);
     RUN(unknown_labeling_is_refused);
     RUN(cuts_are_minimal_and_least);
-    RUN(cuts_of_tetrahedra_are_those_of_their_graph);
     RUN(every_failed_allocation_is_a_status);
     return harness_end();
 }

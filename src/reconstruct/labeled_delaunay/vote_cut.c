@@ -1,5 +1,7 @@
 /* The best labels of tetrahedra: a minimum cut. With the labels of the samples known, all other edges want one label,
- * so a minimum cut has the least energy.
+ * so a minimum cut has the least energy. What wants a tetrahedron outer or inner is summed when its part is collected
+ * (cut_in_parts.h). The next cut begins from the flow of the last one, unless arrays are in scratch files: to find the
+ * flow again takes less time than to read and write it.
  *
  * Where few tetrahedra are open they lie on nearly all pages of the graph's arrays, and six cuts would read all of it
  * six times. So what the cuts need of them is copied once, in their order.
@@ -8,23 +10,20 @@
 #include "reconstruct/labeled_delaunay/vote_cut.h"
 #include "base/memory.h"
 #include "base/team.h"
+#include "reconstruct/labels/cut_in_parts.h"
 #include <string.h>
 
 enum { TETS_A_THREAD = 1 << 12, CAPACITY = 1 << 20 };
 
 void brio_vote_cut_free(brio_vote_cut *c) {
     if (!c->g) return;
-    brio_tet_flow_free(&c->flow);
     brio_release(c->g->ctx, c->list);
-    brio_release(c->g->ctx, c->copied.tet);
-    brio_release(c->g->ctx, c->own_vote);
-    brio_release(c->g->ctx, c->border);
-    brio_release(c->g->ctx, c->wanted);
+    brio_release(c->g->ctx, c->copied);
+    brio_release(c->g->ctx, c->copied_vote);
+    brio_release(c->g->ctx, c->copied_facet);
+    brio_release(c->g->ctx, c->beyond);
+    brio_release(c->g->ctx, c->residual);
     *c = (brio_vote_cut){.g = c->g};
-}
-
-static uint32_t tet_at(const brio_vote_cut *c, size_t i) {
-    return c->list ? c->list[i] : (uint32_t)i;
 }
 
 static int32_t whole(float weight) {
@@ -33,199 +32,160 @@ static int32_t whole(float weight) {
 
 /* --- which tetrahedra take part --- */
 
-static brio_status list_open(brio_vote_cut *c, size_t *count) {
+static brio_status list_open(brio_vote_cut *c, const uint8_t *open) {
     brio_status status = BRIO_OK;
     size_t all = c->g->num_free;
-    *count = all;
-    if (!c->open) return BRIO_OK;
-    *count = 0;
-    for (size_t tet = 0; tet < all; tet++) *count += c->open[tet] != 0;
-    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->list, *count));
+    for (size_t tet = 0; tet < all; tet++) c->num_nodes += open[tet] != 0;
+    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->list, c->num_nodes));
     for (size_t tet = 0, i = 0; tet < all; tet++)
-        if (c->open[tet]) c->list[i++] = (uint32_t)tet;
+        if (open[tet]) c->list[i++] = (uint32_t)tet;
 done:
     return status;
 }
 
-static brio_status add_border(brio_vote_cut *c, size_t *room, uint32_t node, uint32_t facet) {
-    brio_status status = BRIO_OK;
-    uint32_t beyond = brio_tet_of(*brio_mate(&c->g->dual->t, facet));
-    int32_t weight = whole(c->g->facet[brio_tet_of(facet)][brio_slot_of(facet)]);
-    if (weight == 0) return BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(c->g->ctx, c->border, *room, c->num_border + 1));
-    c->border[c->num_border++] = (brio_cut_border){node, beyond, weight, 0};
-done:
-    return status;
-}
-
-/* Lists the facets of all that is open to the rest, which is beyond the hull. */
-static brio_status list_hull(brio_vote_cut *c) {
-    brio_status status = BRIO_OK;
-    const brio_tetrahedra *t = c->t;
-    size_t room = 0;
-    for (size_t tet = c->g->num_free; tet < t->count; tet++)
-        for (int k = 0; k < 4; k++) {
-            uint32_t facet = t->tet[tet].mate[k];
-            if (brio_tet_of(facet) < c->g->num_free) BRIO_TRY(add_border(c, &room, brio_tet_of(facet), facet));
-        }
-done:
-    return status;
-}
-
-/* Copies one open tetrahedron.   number  #T: the node of each that is open. */
+/* Copies one open tetrahedron.   number  #T: the node of each that is open, UINT32_MAX for others. */
 static brio_status copy_tet(brio_vote_cut *c, size_t *room, uint32_t node, const uint32_t *number) {
     brio_status status = BRIO_OK;
     uint32_t tet = c->list[node];
-    brio_tetrahedron *copy = &c->copied.tet[node];
+    brio_tetrahedron *copy = &c->copied[node];
     *copy = c->g->dual->t.tet[tet];
-    memcpy(c->own_vote[node], c->g->vote[tet], sizeof c->own_vote[node]);
+    memcpy(c->copied_vote[node], c->g->vote[tet], sizeof c->copied_vote[node]);
+    memcpy(c->copied_facet[node], c->g->facet[tet], sizeof c->copied_facet[node]);
     for (int k = 0; k < 4; k++) {
         uint32_t other = brio_tet_of(copy->mate[k]);
-        bool in = other < c->g->num_free && c->open[other];
-        if (!in) BRIO_TRY(add_border(c, room, node, brio_facet_of(tet, k)));
-        copy->mate[k] = in ? brio_facet_of(number[other], brio_slot_of(copy->mate[k])) : brio_facet_of(node, k);
+        if (number[other] != UINT32_MAX) {
+            copy->mate[k] = brio_facet_of(number[other], brio_slot_of(copy->mate[k]));
+            continue;
+        }
+        BRIO_TRY(BRIO_RESERVE(c->g->ctx, c->beyond, *room, c->num_beyond + 1));
+        copy->mate[k] = (uint32_t)(4 * c->num_nodes + c->num_beyond);
+        c->beyond[c->num_beyond++] = other;
     }
 done:
     return status;
 }
 
 /* Announces what is copied soon, at the first one of a stretch. */
-static void expect_listed(const brio_vote_cut *c, size_t i, size_t count) {
-    size_t from = i + BRIO_SWEEP_STRETCH, to = from + BRIO_SWEEP_STRETCH < count ? from + BRIO_SWEEP_STRETCH : count;
+static void expect_listed(const brio_vote_cut *c, size_t i) {
+    size_t n = c->num_nodes, from = i + BRIO_SWEEP_STRETCH;
+    size_t to = from + BRIO_SWEEP_STRETCH < n ? from + BRIO_SWEEP_STRETCH : n;
     if (i % BRIO_SWEEP_STRETCH == 0 && from < to)
         brio_expect_rows(c->g->ctx,
                          BRIO_ARRAYS(BRIO_READS(c->g->dual->t.tet), BRIO_READS(c->g->vote), BRIO_READS(c->g->facet)),
                          c->list[from], (size_t)c->list[to - 1] + 1);
 }
 
-/* Copies the open tetrahedra, and lists their facets to others. */
-static brio_status copy_open(brio_vote_cut *c, size_t count) {
+/* Copies the open tetrahedra. */
+static brio_status copy_open(brio_vote_cut *c) {
     brio_status status = BRIO_OK;
     uint32_t *number = NULL;
-    size_t room = 0;
-    BRIO_TRY(BRIO_ALLOC(c->g->ctx, number, c->g->dual->t.count));
-    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->copied.tet, count));
-    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->own_vote, count));
-    c->copied.count = count;
-    c->t = &c->copied;
-    c->vote = (const float(*)[4])c->own_vote;
-    for (size_t i = 0; i < count; i++) number[c->list[i]] = (uint32_t)i;
-    for (size_t i = 0; i < count; i++) {
-        expect_listed(c, i, count);
+    size_t room = 0, all = c->g->dual->t.count;
+    BRIO_TRY(BRIO_ALLOC(c->g->ctx, number, all));
+    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->copied, c->num_nodes));
+    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->copied_vote, c->num_nodes));
+    BRIO_TRY(BRIO_ALLOC(c->g->ctx, c->copied_facet, c->num_nodes));
+    memset(number, 0xFF, all * sizeof *number);
+    for (size_t i = 0; i < c->num_nodes; i++) number[c->list[i]] = (uint32_t)i;
+    for (size_t i = 0; i < c->num_nodes; i++) {
+        expect_listed(c, i);
         BRIO_TRY(copy_tet(c, &room, (uint32_t)i, number));
     }
+    c->tet = c->copied;
+    c->vote = (const float(*)[4])c->copied_vote;
+    c->facet = (const float(*)[4])c->copied_facet;
 done:
     brio_release(c->g->ctx, number);
     return status;
 }
 
-static void set_capacities(void *user, size_t begin, size_t end, int thread) {
-    const brio_vote_cut *c = user;
-    (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        const float *facet = c->g->facet[tet_at(c, i)];
-        c->flow.terminal[i] = c->wanted[i] = 0;
-        for (int k = 0; k < 4; k++) {
-            uint32_t mate = brio_tet_of(c->t->tet[i].mate[k]);
-            c->flow.residual[i][k] = mate != i && mate < c->flow.num_open ? whole(facet[k]) : 0;
-        }
-    }
-}
-
-/* Closes the facets of what is beyond the hull, which the flow reads. */
-static void close_hull(brio_vote_cut *c) {
-    for (size_t tet = c->flow.num_open; tet < c->t->count; tet++)
-        for (int k = 0; k < 4; k++) c->flow.residual[tet][k] = 0;
-}
-
 brio_status brio_vote_cut_new(const brio_vote_graph *g, const uint8_t *open, brio_vote_cut *out) {
-    brio_status status = BRIO_OK;
-    size_t count;
-    *out =
-        (brio_vote_cut){.g = g, .open = open, .t = &g->dual->t, .vote = (const float(*)[4])g->vote, .flow.ctx = g->ctx};
-    BRIO_TRY(list_open(out, &count));
-    BRIO_TRY(open ? copy_open(out, count) : list_hull(out));
-    BRIO_TRY(BRIO_ALLOC(g->ctx, out->wanted, count));
-    BRIO_TRY(brio_tet_flow_new(g->ctx, out->t, NULL, count, &out->flow));
-    BRIO_TRY(brio_sweep(g->ctx, brio_threads(g->ctx, count, TETS_A_THREAD), count, set_capacities, out,
-                        BRIO_READS(out->t->tet), {open ? NULL : g->facet, sizeof *g->facet, false},
-                        BRIO_WRITES(out->flow.residual), BRIO_WRITES(out->flow.terminal), BRIO_WRITES(out->wanted)));
-    close_hull(out);
-done:
-    return status;
-}
-
-/* --- what is wanted --- */
-
-typedef struct {
-    brio_vote_cut *c;
-    const uint8_t *label;
-    int32_t bias;
-} terminals;
-
-/* Sums the weights of each tetrahedron's edges to samples, for outer less for inner. */
-static void sum_votes(void *user, size_t begin, size_t end, int thread) {
-    const terminals *t = user;
-    const brio_vote_cut *c = t->c;
-    const uint8_t *sample = t->label + c->g->dual->t.count;
-    (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        const uint32_t *vertex = c->t->tet[i].vertex;
-        int32_t outer = t->bias + whole(brio_hull_vote(c->g, tet_at(c, i)));
-        for (int k = 0; k < 4; k++) {
-            int32_t vote = whole(c->vote[i][k]);
-            if (vertex[k] != c->g->dual->t.infinite) outer += sample[vertex[k]] == BRIO_LABEL_OUTER ? vote : -vote;
-        }
-        c->flow.terminal[i] += outer - c->wanted[i];
-        c->wanted[i] = outer;
+    *out = (brio_vote_cut){.g = g,
+                           .num_nodes = open ? 0 : g->num_free,
+                           .tet = g->dual->t.tet,
+                           .vote = (const float(*)[4])g->vote,
+                           .facet = (const float(*)[4])g->facet};
+    if (open) {
+        BRIO_FORWARD(list_open(out, open));
+        BRIO_FORWARD(copy_open(out));
     }
+    return g->ctx->scratch ? BRIO_OK : BRIO_ALLOC(g->ctx, out->residual, 4 * out->num_nodes);
 }
 
-/* Adds what the labels beyond the border want. */
-static void add_borders(const terminals *t) {
-    for (size_t i = 0; i < t->c->num_border; i++) {
-        brio_cut_border *b = &t->c->border[i];
-        int32_t wants = t->label[b->beyond] == BRIO_LABEL_OUTER ? b->weight : -b->weight;
-        t->c->flow.terminal[b->node] += wants - b->wants;
-        b->wants = wants;
-    }
-}
-
-/* --- results --- */
+/* --- the cut --- */
 
 typedef struct {
     const brio_vote_cut *c;
-    const uint8_t *label;
+    const uint8_t *label, *sample; /* of tetrahedra and samples */
+    int32_t bias;
+    uint8_t *side; /* #nodes */
     uint8_t *out;
-} results;
+} cutting;
 
-static void copy_labels(void *user, size_t begin, size_t end, int thread) {
-    const results *r = user;
-    (void)thread;
-    memcpy(r->out + begin, r->label + begin, end - begin);
+static int32_t for_label(uint8_t label, int32_t weight) {
+    return label == BRIO_LABEL_OUTER ? weight : -weight;
 }
 
-static void write_labels(void *user, size_t begin, size_t end, int thread) {
-    const results *r = user;
-    (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        r->out[tet_at(r->c, i)] = r->c->flow.side[i] == BRIO_FLOW_SINK ? BRIO_LABEL_INNER : BRIO_LABEL_OUTER;
+/* Returns the tetrahedron behind a facet that is to no node. */
+static uint32_t tet_beyond(const brio_vote_cut *c, uint32_t mate) {
+    return c->list ? c->beyond[mate - 4 * c->num_nodes] : brio_tet_of(mate);
+}
+
+/* Reads nodes. A terminal is the weight of what wants its node outer less of what wants it inner: the bias, samples,
+ * and tetrahedra that are not open. */
+static void read_nodes(const void *user, size_t begin, size_t end, uint32_t *mate, int32_t *capacity,
+                       int32_t *terminal) {
+    const cutting *cut = user;
+    const brio_vote_cut *c = cut->c;
+    uint32_t infinite = c->g->dual->t.infinite;
+    size_t num_facets = 4 * c->num_nodes;
+    for (size_t v = begin; v < end; v++, mate += 4, capacity += 4, terminal++) {
+        int32_t outer = cut->bias + whole(brio_hull_vote(c->g, c->list ? c->list[v] : v));
+        const uint32_t *vertex = c->tet[v].vertex;
+        for (int k = 0; k < 4; k++) {
+            mate[k] = c->tet[v].mate[k];
+            capacity[k] = whole(c->facet[v][k]);
+            if (vertex[k] != infinite) outer += for_label(cut->sample[vertex[k]], whole(c->vote[v][k]));
+            if (mate[k] < num_facets) continue;
+            outer += for_label(cut->label[tet_beyond(c, mate[k])], capacity[k]);
+            mate[k] = BRIO_NO_MATE;
+            capacity[k] = 0;
+        }
+        *terminal = outer;
     }
 }
 
-brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
+static void write_labels(void *user, size_t begin, size_t end, int thread) {
+    const cutting *cut = user;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) cut->out[cut->c->list[i]] = cut->side[i];
+}
+
+/* Cuts a graph of which some tetrahedra are open. */
+static brio_status cut_open(const brio_cut_graph *graph, cutting *cut) {
     brio_status status = BRIO_OK;
-    brio_context *ctx = c->g->ctx;
-    terminals t = {c, label, (int32_t)(bias * BRIO_VOTE_UNIT * CAPACITY)};
-    results r = {c, label, out};
-    size_t open = c->flow.num_open, all = c->g->num_free;
-    int threads = brio_threads(ctx, open, TETS_A_THREAD);
-    BRIO_TRY(brio_sweep(ctx, threads, open, sum_votes, &t, BRIO_READS(c->t->tet), BRIO_READS(c->vote),
-                        BRIO_WRITES(c->flow.terminal), BRIO_WRITES(c->wanted)));
-    add_borders(&t);
-    BRIO_TRY(brio_tet_flow_run(&c->flow));
-    if (out != label) BRIO_TRY(brio_for(ctx, brio_threads(ctx, all, TETS_A_THREAD), all, copy_labels, &r));
-    BRIO_TRY(brio_for(ctx, threads, open, write_labels, &r));
+    brio_context *ctx = graph->ctx;
+    BRIO_TRY(BRIO_ALLOC(ctx, cut->side, graph->num_nodes));
+    BRIO_TRY(brio_cut_in_parts(graph, 0, NULL, cut->side));
+    if (cut->out != cut->label) memcpy(cut->out, cut->label, cut->c->g->num_free);
+    BRIO_TRY(brio_for(ctx, brio_threads(ctx, graph->num_nodes, TETS_A_THREAD), graph->num_nodes, write_labels, cut));
 done:
+    brio_release(ctx, cut->side);
     return status;
+}
+
+brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *label, uint8_t *out) {
+    cutting cut = {.c = c,
+                   .label = label,
+                   .sample = label + c->g->dual->t.count,
+                   .bias = (int32_t)(bias * BRIO_VOTE_UNIT * CAPACITY),
+                   .out = out};
+    brio_cut_graph graph = {.ctx = c->g->ctx,
+                            .num_nodes = c->num_nodes,
+                            .read = read_nodes,
+                            .user = &cut,
+                            .along = {BRIO_READS(c->tet), BRIO_READS(c->vote), BRIO_READS(c->facet)},
+                            .residual = c->residual,
+                            .has_flow = c->has_flow};
+    c->has_flow = c->residual != NULL;
+    return c->list ? cut_open(&graph, &cut) : brio_cut_in_parts(&graph, 0, NULL, out);
 }

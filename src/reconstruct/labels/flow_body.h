@@ -14,15 +14,14 @@
  * Includers define first
  *   FLOW, FLOW_TERMINAL      the type of the workspace, with a member `trees` and the arrays node, terminal and side;
  *                            the type of the entries of `terminal`,
- *   FLOW_NODES(f)            the number of nodes,
- *   FLOW_NODE(f, i)          the i-th of them, and
+ *   FLOW_NODES(f)            the number of nodes, and
  *   FLOW_FIRST(f, v), FLOW_END(f, v), FLOW_HEAD(f, arc), FLOW_MATE(f, arc), FLOW_RESIDUAL(f, arc)
  *                            the arcs that leave a node, the end of an arc, the same edge in the other direction, and
  *                            its residual capacity, which can be assigned, and
  *   FLOW_IS_CLOSED(f, arc)   whether an arc is closed.
  * They get clear(f), which empties the trees of all nodes, plant(f), which makes the trees fit the terminals, and
- * push(f), which makes the flow maximal. The ring of orphans is in the entries orphan_base to orphan_base + room - 1 of
- * `node`.
+ * push(f), which makes the flow maximal. Where few terminals change, fit_terminal(f, v) for these and then adopt_all(f)
+ * do what plant(f) does. The ring of orphans is in the entries 0 to room - 1 of `node`.
  *
  * Based on: Boykov, Kolmogorov. An experimental comparison of min-cut/max-flow algorithms for energy minimization in
  *           vision. IEEE PAMI 2004.
@@ -65,11 +64,11 @@ static void pop_active(FLOW *f) {
 static void make_orphan(FLOW *f, uint32_t v) {
     size_t at = f->trees.orphan_first + f->trees.num_orphans++;
     f->node[v].parent = ORPHAN;
-    f->node[f->trees.orphan_base + (at < f->trees.room ? at : at - f->trees.room)].orphan = v;
+    f->node[at < f->trees.room ? at : at - f->trees.room].orphan = v;
 }
 
 static uint32_t pop_orphan(FLOW *f) {
-    uint32_t v = f->node[f->trees.orphan_base + f->trees.orphan_first].orphan;
+    uint32_t v = f->node[f->trees.orphan_first].orphan;
     f->trees.orphan_first = f->trees.orphan_first + 1 < f->trees.room ? f->trees.orphan_first + 1 : 0;
     f->trees.num_orphans--;
     return v;
@@ -217,11 +216,10 @@ static void adopt_all(FLOW *f) {
 
 static void clear(FLOW *f) {
     for (size_t i = 0; i < FLOW_NODES(f); i++) {
-        uint32_t v = FLOW_NODE(f, i);
-        f->node[v].next_active = NO_NODE;
-        f->node[v].parent = NO_ARC;
-        f->node[v].checked = 0;
-        f->side[v] = FREE;
+        f->node[i].next_active = NO_NODE;
+        f->node[i].parent = NO_ARC;
+        f->node[i].checked = 0;
+        f->side[i] = FREE;
     }
 }
 
@@ -234,21 +232,20 @@ static void plant_node(FLOW *f, uint32_t v, uint8_t side) {
     f->node[v].distance = 1;
 }
 
-/* Returns whether a node without a terminal has lost its parent: the terminal is saturated, or the arc is closed. */
-static bool lost_parent(const FLOW *f, uint32_t v) {
-    uint32_t parent = f->node[v].parent;
-    return parent == AT_TERMINAL || (parent < ORPHAN && FLOW_IS_CLOSED(f, parent));
+/* Makes the trees fit the terminal of a node. A terminal that is saturated may have been the node's parent. */
+static inline void fit_terminal(FLOW *f, uint32_t v) {
+    uint8_t side = f->terminal[v] > 0 ? SOURCE : SINK;
+    if (f->terminal[v] == 0) {
+        if (f->node[v].parent == AT_TERMINAL) make_orphan(f, v);
+    } else if (side != f->side[v] || f->node[v].parent != AT_TERMINAL) {
+        plant_node(f, v, side);
+    }
 }
 
-/* Makes the trees fit the terminals and the closed arcs. */
+/* Makes the trees fit all terminals. */
 static void plant(FLOW *f) {
     f->trees.time++;
-    for (size_t i = 0; i < FLOW_NODES(f); i++) {
-        uint32_t v = FLOW_NODE(f, i);
-        uint8_t side = f->terminal[v] > 0 ? SOURCE : SINK;
-        if (f->terminal[v] != 0 && (side != f->side[v] || f->node[v].parent != AT_TERMINAL)) plant_node(f, v, side);
-        if (f->terminal[v] == 0 && lost_parent(f, v)) make_orphan(f, v);
-    }
+    for (size_t i = 0; i < FLOW_NODES(f); i++) fit_terminal(f, (uint32_t)i);
     adopt_all(f);
 }
 

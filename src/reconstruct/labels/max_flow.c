@@ -5,7 +5,6 @@
 #define FLOW                 brio_flow
 #define FLOW_TERMINAL        int64_t
 #define FLOW_NODES(f)        ((f)->num_nodes)
-#define FLOW_NODE(f, i)      ((uint32_t)(i))
 #define FLOW_FIRST(f, v)     ((f)->first[v])
 #define FLOW_END(f, v)       ((f)->first[(v) + 1])
 #define FLOW_HEAD(f, a)      ((f)->arc[a].head)

@@ -31,7 +31,7 @@ typedef struct {
 } brio_flow_node;
 
 typedef struct {
-    size_t room, orphan_base; /* entries of the ring of orphans, at least the nodes, and the first of them */
+    size_t room; /* entries of the ring of orphans, at least the nodes */
     uint32_t time, active_head, active_tail;
     size_t orphan_first, num_orphans;
 } brio_flow_trees;
