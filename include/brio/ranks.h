@@ -142,6 +142,45 @@ BRIO_API brio_status brio_ranks_cells(brio_context *ctx, brio_ranks *r, const br
  *  view is valid until brio_ranks_free. */
 BRIO_API const brio_tiles_cells_stats *brio_ranks_cells_facts(const brio_ranks *r);
 
+/* --- surfaces --- */
+
+/** Ranks that triangulate for rank 0. */
+typedef struct brio_team_of_ranks brio_team_of_ranks;
+
+/** What a team did. */
+typedef struct brio_team_facts {
+    size_t size;
+    uint64_t triangulations;
+    uint64_t bytes; /* that rank 0 sent to others while they triangulated */
+} brio_team_facts;
+
+/** Has the triangulations of surfaces made by all ranks: on rank 0 alone, while all others call brio_ranks_serve. From
+ *  now on brio_surface with the method BRIO_SURFACE_LABELED, in this context, triangulates with the team, until
+ *  brio_ranks_dismiss. The surface has the same bits, whatever the number of ranks and tiles. Rank 0 has the points and
+ *  all other arrays of the surface: in files, if the context has a scratch folder (brio_context_set_scratch).
+ *  options  as in brio_ranks_new, without stars and key.   out  ended by brio_ranks_dismiss, in any case; NULL on error,
+ *  which other ranks do not get to know: the caller must end them.
+ *  Memory: of each rank as of brio_ranks_run, and 48 bytes a tetrahedron of a tile. Sent to rank 0: 48 bytes a
+ *  tetrahedron.
+ *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY. */
+BRIO_API brio_status brio_ranks_lead(brio_context *ctx, const brio_transport *transport,
+                                     const brio_ranks_options *options, brio_team_of_ranks **out);
+
+/** Returns the facts. The view is valid until brio_ranks_dismiss. */
+BRIO_API const brio_team_facts *brio_ranks_led(const brio_team_of_ranks *team);
+
+/** Ends the team on rank 0, and what others call.
+ *  status    what they return: BRIO_OK, or the failure of rank 0, whose sentence is in the context.
+ *  sentence  NULL, or the sentence instead.
+ *  Returns the status of all ranks. */
+BRIO_API brio_status brio_ranks_dismiss(brio_team_of_ranks *team, brio_status status, const char *sentence);
+
+/** Triangulates for rank 0 until it dismisses this rank: on all ranks but 0.
+ *  options  as those of rank 0; the folder is one of this host.
+ *  Returns what rank 0 says, with its sentence; or BRIO_ERR_OPEN if the transport failed. */
+BRIO_API brio_status brio_ranks_serve(brio_context *ctx, const brio_transport *transport,
+                                      const brio_ranks_options *options);
+
 /** Frees everything, and removes this rank's files, unless the run has a key and the last collective call failed, after
  *  the points were divided: then a run that follows goes on with them. NULL is accepted. Not collective. */
 BRIO_API void brio_ranks_free(brio_ranks *r);

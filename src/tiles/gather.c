@@ -51,17 +51,20 @@ static uint32_t add_infinite(brio_gather *g, uint32_t tet, int slot) {
     return (uint32_t)number;
 }
 
-void brio_gather_part(brio_gather *g, uint32_t tile, const brio_tile_part *part,
-                      const brio_tile_neighbour (*neighbours)[4]) {
-    for (size_t i = 0; i < part->num_tetrahedra; i++) {
-        uint32_t number = (uint32_t)(g->first[tile] + i);
-        brio_tetrahedron *t = &g->tet[number];
-        for (int k = 0; k < 4; k++) t->vertex[k] = (uint32_t)part->index[part->tetrahedra[i][k]];
-        for (int k = 0; k < 4; k++) {
-            brio_tile_neighbour n = neighbours[i][k];
-            t->mate[k] =
-                n.tile == BRIO_NO_TILE ? add_infinite(g, number, k) : (uint32_t)(g->first[n.tile] + n.tetrahedron);
-        }
+brio_gather_row brio_gather_row_of(const brio_tile_part *part, const brio_tile_neighbour (*neighbours)[4], size_t i) {
+    brio_gather_row row;
+    for (int k = 0; k < 4; k++) row.vertex[k] = (uint32_t)part->index[part->tetrahedra[i][k]];
+    memcpy(row.neighbour, neighbours[i], sizeof row.neighbour);
+    return row;
+}
+
+void brio_gather_take(brio_gather *g, uint32_t tile, uint64_t row, const brio_gather_row *tetrahedron) {
+    uint32_t number = (uint32_t)(g->first[tile] + row);
+    brio_tetrahedron *t = &g->tet[number];
+    memcpy(t->vertex, tetrahedron->vertex, sizeof t->vertex);
+    for (int k = 0; k < 4; k++) {
+        brio_tile_neighbour n = tetrahedron->neighbour[k];
+        t->mate[k] = n.tile == BRIO_NO_TILE ? add_infinite(g, number, k) : (uint32_t)(g->first[n.tile] + n.tetrahedron);
     }
 }
 
@@ -171,6 +174,23 @@ done:
 
 /* --- the tiles of one process --- */
 
+static brio_status take_tile(brio_gather *g, brio_tiles *t, uint32_t tile) {
+    brio_tile_part part = {.size = sizeof part};
+    brio_tile_neighbour(*neighbours)[4] = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_tiles_part(t->ctx, t, tile, &part));
+    BRIO_TRY(BRIO_ALLOC(t->ctx, neighbours, part.num_tetrahedra + 1));
+    BRIO_TRY(brio_tiles_neighbours(t->ctx, t, tile, &part, neighbours));
+    for (size_t i = 0; i < part.num_tetrahedra; i++) {
+        brio_gather_row row = brio_gather_row_of(&part, (const brio_tile_neighbour(*)[4])neighbours, i);
+        brio_gather_take(g, tile, i, &row);
+    }
+done:
+    brio_tile_part_free(t->ctx, &part);
+    brio_release(t->ctx, neighbours);
+    return status;
+}
+
 brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out) {
     brio_context *ctx = t->ctx;
     brio_status status = BRIO_OK;
@@ -179,17 +199,7 @@ brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_po
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, first, t->num_tiles + 1));
     for (uint32_t i = 0; i < t->num_tiles; i++) first[i + 1] = first[i] + t->tile[i].tetrahedra;
     BRIO_TRY(brio_gather_new(ctx, first, t->num_tiles, t->stats.hull_facets, &g));
-    for (uint32_t i = 0; i < t->num_tiles; i++) {
-        brio_tile_part part = {.size = sizeof part};
-        brio_tile_neighbour(*neighbours)[4] = NULL;
-        status = brio_tiles_part(ctx, t, i, &part);
-        if (status == BRIO_OK) status = BRIO_ALLOC(ctx, neighbours, part.num_tetrahedra + 1);
-        if (status == BRIO_OK) status = brio_tiles_neighbours(ctx, t, i, &part, neighbours);
-        if (status == BRIO_OK) brio_gather_part(&g, i, &part, (const brio_tile_neighbour(*)[4])neighbours);
-        brio_tile_part_free(ctx, &part);
-        brio_release(ctx, neighbours);
-        BRIO_TRY(status);
-    }
+    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(take_tile(&g, t, i));
     status = brio_gather_end(&g, points, num_points, t->stats.duplicates, out);
 done:
     brio_gather_free(&g);

@@ -294,9 +294,17 @@ brio_status brio_gather_new(brio_context *ctx, const uint64_t *first, uint32_t n
                             brio_gather *out);
 void brio_gather_free(brio_gather *g);
 
-/** Takes the part of a tile.   neighbours  as brio_tiles_neighbours names them.   Parts may come in any order. */
-void brio_gather_part(brio_gather *g, uint32_t tile, const brio_tile_part *part,
-                      const brio_tile_neighbour (*neighbours)[4]);
+/** A tetrahedron of a tile: its vertices by the indices of points, and what is across its facets. */
+typedef struct {
+    uint32_t vertex[4];
+    brio_tile_neighbour neighbour[4];
+} brio_gather_row;
+
+/** Returns row `i` of a part.   neighbours  of its tetrahedra, as brio_tiles_neighbours names them. */
+brio_gather_row brio_gather_row_of(const brio_tile_part *part, const brio_tile_neighbour (*neighbours)[4], size_t i);
+
+/** Takes a row of a tile's part. Rows may come in any order. */
+void brio_gather_take(brio_gather *g, uint32_t tile, uint64_t row, const brio_gather_row *tetrahedron);
 
 /** Makes what brio_delaunay makes of the points, once all parts are here.
  *  points  num_points by 3, by the indices of the parts.   duplicates  points at the position of another one.

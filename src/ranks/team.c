@@ -1,0 +1,257 @@
+/* Ranks that triangulate for one of them, rank 0, which reconstructs surfaces.
+ *
+ * Rank 0 has the points, and a context whose triangulator (triangulation.h) is the team. Whenever a surface needs a
+ * triangulation, rank 0 says so, and all ranks do the same: rank 0 adds its points, which the ranks divide among each
+ * other's tiles; all triangulate; the rows of all tiles go to rank 0, some at a time, where they become the
+ * triangulation that one process makes (tiles/gather.c). Between triangulations the others wait for the next word.
+ *
+ * A failure in a triangulation is that of all ranks. A failure of rank 0 between them reaches the others when rank 0
+ * dismisses them. */
+#include "base/float_state.h"
+#include "base/memory.h"
+#include "base/versioned.h"
+#include "ranks/work.h"
+#include <string.h>
+
+/* Chosen: 800 kB of rows from each rank are on their way at once, and points are added in blocks of 24 MB. */
+enum { ROWS_AT_ONCE = 1 << 14, POINTS_AT_ONCE = 1 << 20 };
+
+/* What rank 0 says. */
+typedef struct {
+    uint64_t triangulate; /* 0: the team is dismissed */
+    uint64_t num_points;
+} word;
+
+struct brio_team_of_ranks {
+    brio_context *ctx;
+    brio_transport transport;
+    brio_ranks_options options;
+    brio_exchange x; /* of words */
+    brio_triangulator triangulator;
+    brio_team_facts facts;
+};
+
+/* --- rows --- */
+
+/* Rows of a tile on their way to rank 0. */
+typedef struct {
+    uint64_t tile, first, count;
+} rows_head;
+
+/* The tile of this rank that is sent now. */
+typedef struct {
+    brio_tile_part part;
+    brio_tile_neighbour (*neighbours)[4];
+    size_t sent;
+} sending;
+
+static brio_status put_rows(brio_ranks *r, uint32_t tile, sending *s) {
+    size_t left = s->part.num_tetrahedra - s->sent, count = left < ROWS_AT_ONCE ? left : ROWS_AT_ONCE;
+    const rows_head head = {brio_ranks_tile(r, tile), s->sent, count};
+    void *room;
+    if (!count) return BRIO_OK;
+    BRIO_FORWARD(brio_exchange_put(&r->x, 0, &head, sizeof head));
+    BRIO_FORWARD(brio_exchange_room(&r->x, 0, count * sizeof(brio_gather_row), &room));
+    brio_gather_row *row = room;
+    for (size_t i = 0; i < count; i++)
+        row[i] = brio_gather_row_of(&s->part, (const brio_tile_neighbour(*)[4])s->neighbours, s->sent + i);
+    s->sent += count;
+    return BRIO_OK;
+}
+
+/* Takes what came, on rank 0. */
+static void take_rows(const brio_ranks *r, brio_gather *g) {
+    for (int i = 0; i < r->ranks; i++) {
+        const uint8_t *at = r->x.from[i]->bytes;
+        rows_head head;
+        if (!r->x.from[i]->size) continue;
+        memcpy(&head, at, sizeof head);
+        const brio_gather_row *row = (const brio_gather_row *)(const void *)(at + sizeof head);
+        for (uint64_t k = 0; k < head.count; k++) brio_gather_take(g, (uint32_t)head.tile, head.first + k, &row[k]);
+    }
+}
+
+/* Sends the rows of one tile of each rank to rank 0.   g  NULL on other ranks. */
+static brio_status send_tile(brio_ranks *r, uint32_t tile, brio_gather *g) {
+    sending s = {.part = {.size = sizeof s.part}};
+    brio_context *ctx = r->ctx;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_ranks_part(ctx, r, tile, &s.part));
+    BRIO_TRY(brio_exchange_agree(&r->x, BRIO_ALLOC(ctx, s.neighbours, s.part.num_tetrahedra + 1)));
+    BRIO_TRY(brio_ranks_neighbours(ctx, r, tile, &s.part, s.neighbours));
+    for (bool more = true; more; more = r->x.any) {
+        BRIO_TRY(put_rows(r, tile, &s));
+        BRIO_TRY(brio_exchange_now(&r->x, s.sent < s.part.num_tetrahedra));
+        if (g) take_rows(r, g);
+    }
+done:
+    brio_tile_part_free(ctx, &s.part);
+    brio_release(ctx, s.neighbours);
+    return brio_exchange_agree(&r->x, status);
+}
+
+/* Tells rank 0 how many tetrahedra each tile has.   first  on rank 0 #tiles of all ranks + 1. */
+static brio_status count_rows(brio_ranks *r, uint64_t *first) {
+    brio_tiles *t = r->t;
+    for (uint32_t i = 0; i < t->num_tiles; i++)
+        BRIO_FORWARD(brio_exchange_put(&r->x, 0, &t->tile[i].tetrahedra, sizeof t->tile[i].tetrahedra));
+    BRIO_FORWARD(brio_exchange_now(&r->x, false));
+    if (r->rank) return BRIO_OK;
+    for (int i = 0; i < r->ranks; i++) {
+        const uint64_t *count = r->x.from[i]->bytes;
+        for (uint32_t k = 0; k < t->num_tiles; k++, first++) first[1] = first[0] + count[k];
+    }
+    return BRIO_OK;
+}
+
+/* --- one triangulation --- */
+
+/* What rank 0 has besides: its points, and what becomes of the rows. */
+typedef struct {
+    const double *points;
+    size_t num_points;
+    uint64_t *first;
+    brio_gather rows;
+} at_rank_0;
+
+static brio_status add_points(brio_ranks *r, const at_rank_0 *own) {
+    for (size_t i = 0; own && i < own->num_points; i += POINTS_AT_ONCE) {
+        size_t some = own->num_points - i < POINTS_AT_ONCE ? own->num_points - i : POINTS_AT_ONCE;
+        BRIO_FORWARD(brio_ranks_add(r->ctx, r, own->points + 3 * i, NULL, some, i));
+    }
+    return BRIO_OK;
+}
+
+static brio_status make_room(brio_ranks *r, at_rank_0 *own) {
+    if (!own) return BRIO_OK;
+    return brio_gather_new(r->ctx, own->first, (uint32_t)r->ranks * r->t->num_tiles, r->facts.hull_facets, &own->rows);
+}
+
+static brio_status collect(brio_ranks *r, at_rank_0 *own) {
+    brio_status status = BRIO_OK;
+    if (own) status = BRIO_ALLOC_ZERO(r->ctx, own->first, (size_t)r->ranks * r->t->num_tiles + 1);
+    BRIO_FORWARD(brio_exchange_agree(&r->x, status));
+    BRIO_FORWARD(brio_exchange_agree(&r->x, count_rows(r, own ? own->first : NULL)));
+    BRIO_FORWARD(brio_exchange_agree(&r->x, make_room(r, own)));
+    for (uint32_t i = 0; i < r->t->num_tiles; i++) BRIO_FORWARD(send_tile(r, i, own ? &own->rows : NULL));
+    return BRIO_OK;
+}
+
+/* Triangulates with all ranks.   own  NULL on other ranks than 0.   facts  of the triangulation, written. */
+static brio_status work_together(brio_team_of_ranks *t, at_rank_0 *own, brio_tiles_stats *facts) {
+    brio_status status = BRIO_OK;
+    brio_ranks *r = NULL;
+    char *scratch = t->ctx->scratch;
+    t->ctx->scratch = NULL; /* tiles are in memory */
+    BRIO_TRY(brio_ranks_new(t->ctx, &t->transport, &t->options, &r));
+    BRIO_TRY(brio_ranks_agree(t->ctx, r, add_points(r, own), NULL));
+    BRIO_TRY(brio_ranks_run(t->ctx, r));
+    *facts = *brio_ranks_facts(r);
+    t->ctx->scratch = scratch;
+    if (facts->dimension == 3) BRIO_TRY(collect(r, own));
+    t->facts.bytes += r->x.bytes;
+    t->facts.triangulations++;
+done:
+    t->ctx->scratch = scratch;
+    if (r && r->x.broken) t->x.broken = true, t->x.failure = status; /* words cannot be exchanged, either */
+    brio_ranks_free(r);
+    return status;
+}
+
+/* --- rank 0 --- */
+
+static brio_status say(brio_team_of_ranks *t, word w) {
+    return brio_exchange_all(&t->x, &w, sizeof w);
+}
+
+/* Makes a triangulation on rank 0. */
+static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points,
+                        brio_triangulation **out) {
+    brio_team_of_ranks *t = user;
+    brio_status status = BRIO_OK;
+    brio_tiles_stats facts = {0};
+    at_rank_0 own = {.points = points, .num_points = num_points, .rows.ctx = ctx};
+    *out = NULL;
+    BRIO_TRY(say(t, (word){1, num_points}));
+    BRIO_TRY(work_together(t, &own, &facts));
+    status = facts.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, NULL, out)
+                                 : brio_gather_end(&own.rows, points, num_points, facts.duplicates, out);
+done:
+    brio_gather_free(&own.rows);
+    brio_release(ctx, own.first);
+    return status;
+}
+
+static brio_status team_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
+                            brio_team_of_ranks **out) {
+    brio_team_of_ranks *t = NULL;
+    brio_status status = BRIO_OK;
+    *out = NULL;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
+    t->ctx = ctx;
+    t->facts.size = sizeof t->facts;
+    BRIO_TRY(BRIO_TAKE(ctx, brio_transport, transport, &t->transport));
+    BRIO_TRY(BRIO_TAKE(ctx, brio_ranks_options, options, &t->options));
+    BRIO_REQUIRE(ctx, !t->options.stars && !t->options.key, BRIO_ERR_ARGUMENT,
+                 "ranks of a team have neither stars nor a key");
+    BRIO_TRY(brio_exchange_new(ctx, &t->transport, &t->x));
+    *out = t;
+    t = NULL;
+done:
+    if (t) brio_exchange_free(&t->x);
+    brio_release(ctx, t);
+    return status;
+}
+
+static void team_free(brio_team_of_ranks *t) {
+    brio_exchange_free(&t->x);
+    brio_release(t->ctx, t);
+}
+
+brio_status brio_ranks_lead(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
+                            brio_team_of_ranks **out) {
+    BRIO_DOOR;
+    BRIO_FORWARD(team_new(ctx, transport, options, out));
+    (*out)->triangulator = (brio_triangulator){*out, make};
+    ctx->triangulator = &(*out)->triangulator;
+    return BRIO_OK;
+}
+
+const brio_team_facts *brio_ranks_led(const brio_team_of_ranks *team) {
+    return &team->facts;
+}
+
+brio_status brio_ranks_dismiss(brio_team_of_ranks *team, brio_status status, const char *sentence) {
+    BRIO_DOOR;
+    if (!team) return status;
+    brio_context *ctx = team->ctx;
+    ctx->triangulator = NULL;
+    if (status != BRIO_OK && sentence) brio_fail(ctx, status, "%s", sentence);
+    if (status == BRIO_OK) status = say(team, (word){0, 0});
+    status = brio_exchange_agree(&team->x, status);
+    team_free(team);
+    return status;
+}
+
+/* --- other ranks --- */
+
+static brio_status serve(brio_team_of_ranks *t) {
+    brio_tiles_stats facts;
+    word w;
+    for (;;) {
+        BRIO_FORWARD(brio_exchange_now(&t->x, false));
+        memcpy(&w, t->x.from[0]->bytes, sizeof w);
+        if (!w.triangulate) return BRIO_OK;
+        brio_status status = work_together(t, NULL, &facts);
+        (void)status; /* of all ranks, if it is a failure: rank 0 says it again when it dismisses this one */
+    }
+}
+
+brio_status brio_ranks_serve(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options) {
+    BRIO_DOOR;
+    brio_team_of_ranks *t;
+    BRIO_FORWARD(team_new(ctx, transport, options, &t));
+    brio_status status = brio_exchange_agree(&t->x, serve(t));
+    team_free(t);
+    return status;
+}

@@ -1,0 +1,232 @@
+/* Surfaces whose triangulations many ranks make, which are threads here: the bits of one process, whatever the number of
+ * ranks and tiles and the order of messages. A failure of one rank is that of all. */
+#include "base/memory.h"
+#include "post_office.h"
+#include <dirent.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST = 4000, KINDS = 6 };
+
+static double points[3 * MOST];
+static char folder[64];
+
+static size_t files_left(void) {
+    DIR *d = opendir(folder);
+    size_t n = 0;
+    for (struct dirent *e; d && (e = readdir(d)) != NULL;) n += e->d_name[0] != '.';
+    if (d) closedir(d);
+    return n;
+}
+
+/* Fills points of a kind: a sphere, a scan, a noisy sphere, few places (duplicates), a grid, a plane. Returns their
+ * number, at most n. */
+static size_t make_points(uint64_t seed, size_t n, int kind) {
+    brio_rng rng = brio_rng_new(seed);
+    size_t side = (size_t)cbrt((double)n);
+    switch (kind) {
+    case 0:
+        sphere_points(seed, n, points);
+        return n;
+    case 1:
+        side = (size_t)sqrt((double)n);
+        depth_points(seed, side, points);
+        return side * side;
+    case 2:
+        sphere_points(seed, n, points);
+        for (size_t i = 0; i < 3 * n; i++) points[i] *= 1 + 0.02 * brio_rng_double(&rng);
+        return n;
+    case 3:
+        integer_points(seed, n, 9, points);
+        return n;
+    case 4:
+        n = side * side * side;
+        for (size_t i = 0; i < n; i++)
+            for (size_t k = 0, at = i; k < 3; k++, at /= side) points[3 * i + k] = (double)(at % side);
+        return n;
+    default:
+        uniform_points(seed, n, points);
+        for (size_t i = 0; i < n; i++) points[3 * i + 2] = 1;
+        return n;
+    }
+}
+
+/* --- a run --- */
+
+typedef struct {
+    size_t n;
+    int ranks;
+    uint32_t tiles;
+    uint64_t seed;
+    bool scratch;  /* the arrays of the surface are in files */
+    int poor;      /* the rank whose memory ends, or -1 */
+    size_t memory; /* that it has */
+} plan;
+
+typedef struct {
+    const plan *plan;
+    postman man;
+    brio_thread thread;
+    brio_status status;
+    brio_mesh *mesh; /* of rank 0 */
+    brio_context *ctx;
+    brio_team_facts facts;
+    char sentence[512];
+} member;
+
+/* Reconstructs the surface on rank 0. */
+static brio_status lead(member *m, const brio_transport *t, const brio_ranks_options *o) {
+    const brio_surface_options options = {.size = sizeof options};
+    brio_team_of_ranks *team;
+    brio_status status = brio_ranks_lead(m->ctx, t, o, &team);
+    EXPECT(status == BRIO_OK, "%s", brio_message(m->ctx));
+    status = brio_surface(m->ctx, points, m->plan->n, &options, &m->mesh, NULL);
+    m->facts = *brio_ranks_led(team);
+    return brio_ranks_dismiss(team, status, NULL);
+}
+
+static void work(void *argument) {
+    member *m = argument;
+    const plan *p = m->plan;
+    brio_transport t = {.size = sizeof t,
+                        .rank = m->man.rank,
+                        .ranks = p->ranks,
+                        .host = "here",
+                        .user = &m->man,
+                        .begin = post_begin,
+                        .end = post_end};
+    brio_ranks_options o = {.size = sizeof o, .scratch = folder, .tiles = p->tiles};
+    brio_context_set_threads(m->ctx, 1);
+    if (p->scratch && m->man.rank == 0) EXPECT(brio_context_set_scratch(m->ctx, folder) == BRIO_OK);
+    if (p->poor == m->man.rank) brio_context_set_memory_limit(m->ctx, p->memory);
+    m->status = m->man.rank ? brio_ranks_serve(m->ctx, &t, &o) : lead(m, &t, &o);
+    snprintf(m->sentence, sizeof m->sentence, "%s", m->status == BRIO_OK ? "" : brio_message(m->ctx));
+    for (int i = 0; i < p->ranks; i++) free(m->man.held[i]);
+}
+
+/* Runs all ranks. Returns the first, whose mesh and context are the caller's. */
+static member run_ranks(const plan *p) {
+    static post office;
+    static member members[MOST_RANKS];
+    office = (post){.ranks = p->ranks, .seed = p->seed};
+    brio_mutex_new(&office.lock);
+    brio_condition_new(&office.changed);
+    for (int i = 0; i < p->ranks; i++) {
+        members[i] = (member){.plan = p,
+                              .ctx = new_context(),
+                              .man = {.post = &office, .rank = i, .rng = brio_rng_new(p->seed + (uint64_t)i)}};
+        EXPECT(brio_thread_start(&members[i].thread, work, &members[i], 1 << 21));
+    }
+    for (int i = 0; i < p->ranks; i++) brio_thread_join(&members[i].thread);
+    for (int i = 1; i < p->ranks; i++) {
+        EXPECT(members[i].status == members[0].status && strstr(members[i].sentence, members[0].sentence),
+               "rank 0: %s; rank %d: %s", members[0].sentence, i, members[i].sentence);
+        EXPECT(brio_context_memory(members[i].ctx) == 0);
+        brio_context_free(members[i].ctx);
+    }
+    brio_condition_free(&office.changed);
+    brio_mutex_free(&office.lock);
+    return members[0];
+}
+
+static void drop(member *m) {
+    brio_mesh_free(m->mesh);
+    brio_context_free(m->ctx);
+    EXPECT(files_left() == 0);
+}
+
+/* --- tests --- */
+
+static void compare(const plan *p, int kind) {
+    brio_context *ctx = new_context();
+    brio_mesh *whole = NULL;
+    const brio_surface_options options = {.size = sizeof options};
+    brio_status expected = brio_surface(ctx, points, p->n, &options, &whole, NULL);
+    member m = run_ranks(p);
+    EXPECT(m.status == expected, "kind %d, %d ranks, %zu points: %s", kind, p->ranks, p->n, m.sentence);
+    if (expected != BRIO_OK) EXPECT(strstr(m.sentence, brio_message(ctx)), "%s / %s", m.sentence, brio_message(ctx));
+    if (expected == BRIO_OK && m.status == BRIO_OK) {
+        EXPECT(m.facts.triangulations > 0);
+        EXPECT(whole->num_vertices == m.mesh->num_vertices && whole->num_faces == m.mesh->num_faces,
+               "kind %d, %d ranks, %zu points", kind, p->ranks, p->n);
+        if (whole->num_vertices == m.mesh->num_vertices && whole->num_faces == m.mesh->num_faces) {
+            EXPECT(!memcmp(whole->vertices, m.mesh->vertices, 24 * whole->num_vertices));
+            EXPECT(!memcmp(whole->face_vertices, m.mesh->face_vertices, 12 * whole->num_faces));
+        }
+    }
+    drop(&m);
+    brio_mesh_free(whole);
+    brio_context_free(ctx);
+}
+
+static void surfaces_are_those_of_one_process(void) {
+    static const int ranks[] = {1, 2, 3, 5, 8};
+    for (uint64_t trial = 0; trial < (uint64_t)(BRIEF_TESTS ? 12 : SHORT_TESTS ? 30 : 500); trial++) {
+        brio_rng rng = brio_rng_new(trial);
+        int kind = (int)(trial % KINDS);
+        plan p = {.n = make_points(trial, 4 + brio_rng_below(&rng, trial % 4 ? 500 : 2500), kind),
+                  .ranks = ranks[trial % 5],
+                  .tiles = 1 + brio_rng_below(&rng, 3),
+                  .seed = trial % 3 ? trial : 0,
+                  .scratch = trial % 2,
+                  .poor = -1};
+        compare(&p, kind);
+    }
+}
+
+/* A tile of 26,000 tetrahedra goes to rank 0 in two messages. */
+static void large_tiles_come_in_pieces(void) {
+    plan p = {.n = MOST, .ranks = 1, .tiles = 1, .poor = -1};
+    uniform_points(8, MOST, points);
+    compare(&p, -1);
+}
+
+/* Whatever memory a rank has, all end alike, with its sentence or with the surface. */
+static void a_rank_without_memory_ends_all(void) {
+    size_t failed = 0, ended = 0;
+    for (uint64_t trial = 0; trial < (uint64_t)(SHORT_TESTS ? 16 : 200); trial++) {
+        plan p = {.n = make_points(3, 900, 0), .ranks = 3, .tiles = 2, .seed = trial, .poor = (int)(trial % 3)};
+        p.memory = (size_t)20000 << trial % 13;
+        member m = run_ranks(&p);
+        EXPECT(m.status == BRIO_OK || m.status == BRIO_ERR_NO_MEMORY, "%s", m.sentence);
+        EXPECT((m.status == BRIO_OK) == (m.mesh != NULL));
+        failed += m.status != BRIO_OK, ended += m.status == BRIO_OK;
+        drop(&m);
+    }
+    EXPECT(failed > 0 && ended > 0, "%zu failed, %zu did not", failed, ended);
+}
+
+static void the_failure_of_the_leader_ends_all(void) {
+    plan p = {.n = make_points(3, 500, 0), .ranks = 4, .tiles = 1, .poor = -1};
+    points[77] = NAN;
+    member m = run_ranks(&p);
+    EXPECT(m.status == BRIO_ERR_NOT_FINITE, "%s", m.sentence);
+    drop(&m);
+}
+
+static void teams_have_neither_stars_nor_a_key(void) {
+    brio_context *ctx = new_context();
+    postman man = {0};
+    brio_transport t = {
+        .size = sizeof t, .ranks = 1, .host = "here", .user = &man, .begin = post_begin, .end = post_end};
+    brio_ranks_options o = {.size = sizeof o, .scratch = folder, .key = 5};
+    brio_team_of_ranks *team;
+    EXPECT(brio_ranks_lead(ctx, &t, &o, &team) == BRIO_ERR_ARGUMENT && !team);
+    EXPECT(brio_ranks_dismiss(NULL, BRIO_ERR_ARGUMENT, NULL) == BRIO_ERR_ARGUMENT);
+    o.key = 0, o.stars = 1;
+    EXPECT(brio_ranks_serve(ctx, &t, &o) == BRIO_ERR_ARGUMENT);
+    EXPECT(brio_context_memory(ctx) == 0);
+    brio_context_free(ctx);
+}
+
+SUITE(test_ranks_surface) {
+    snprintf(folder, sizeof folder, "/tmp/brio-test-ranks-surface-%ld", (long)getpid());
+    EXPECT(mkdir(folder, 0700) == 0);
+    RUN(surfaces_are_those_of_one_process);
+    RUN(large_tiles_come_in_pieces);
+    RUN(a_rank_without_memory_ends_all);
+    RUN(the_failure_of_the_leader_ends_all);
+    RUN(teams_have_neither_stars_nor_a_key);
+    rmdir(folder);
+    return harness_end();
+}
