@@ -7,7 +7,7 @@
 
 /* --- a part as bytes ---
  *
- * A task is this head, then mates, capacities, terminals and sums outside of brio_part_cut. An answer is the labels,
+ * A task is this head, then mates, capacities, terminals and sums outside of brio_part_cut, of four bytes each. An answer is the labels,
  * filled up to a multiple of 8 bytes, then, if the graph keeps its flow, the capacities that it has left. */
 typedef struct {
     uint64_t num_nodes, keeps_flow;
@@ -18,9 +18,7 @@ static size_t labels_size(size_t num_nodes) {
 }
 
 static size_t part_size(size_t num_nodes) {
-    const brio_part_cut *c;
-    return sizeof(part_head) + num_nodes * (4 * sizeof *c->mate + 4 * sizeof *c->capacity + sizeof *c->terminal +
-                                            sizeof *c->outside);
+    return sizeof(part_head) + num_nodes * 4 * (4 + 4 + 1 + 1);
 }
 
 static size_t answer_size(const void *task, size_t size) {
