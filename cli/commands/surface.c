@@ -448,12 +448,6 @@ static brio_status check_method(run *r, int method) {
     return BRIO_OK;
 }
 
-/* Refuses gaps that are shorter than what they are held against. */
-static brio_status check_open_of_curves(run *r, double open) {
-    if (isnan(open) || open == 0 || open >= 1) return BRIO_OK;
-    return cli_fail(r, BRIO_ERR_ARGUMENT, "--open: %g is under 1; curves end at gaps over that many links", open);
-}
-
 /* Checks the options. A theta that voids the guarantee is worth a word. */
 static brio_status check_arguments(run *r) {
     const arguments *a = r->arguments;
@@ -466,7 +460,7 @@ static brio_status check_arguments(run *r) {
     if (a->explain && !r->common.view) return cli_fail(r, BRIO_ERR_ARGUMENT, "--explain has no meaning without --view");
     if (a->explain && a->pieces > 1) return cli_fail(r, BRIO_ERR_ARGUMENT, "--explain and --pieces exclude each other");
     TRY(cli_read_open(r, &a->crust, &spacings));
-    if (method_of(a) == CURVES) TRY(check_open_of_curves(r, spacings));
+    if (method_of(a) == CURVES) TRY(cli_check_curve_gaps(r, spacings));
     if (a->crust.open && isnan(spacings) && method_of(a) == BRIO_SURFACE_POWER_CRUST)
         return cli_fail(r, BRIO_ERR_ARGUMENT,
                         "--open auto is for --method labeled-delaunay, and the method is power-crust");
@@ -517,7 +511,7 @@ static brio_status curves(run *r, const brio_mesh *points, brio_mesh **result) {
     brio_status status = check_method(r, CURVES);
     TRY(status);
     TRY(cli_read_open(r, &a->crust, &open));
-    TRY(check_open_of_curves(r, open));
+    TRY(cli_check_curve_gaps(r, open));
     bool closed = open == 0; /* --closed, too */
     status = cli_curve(r, points, isnan(open) || closed ? 0 : open, closed, result);
 done:
@@ -542,15 +536,12 @@ done:
 
 static brio_status finish_surface(run *r, brio_mesh **points, brio_mesh *result, const outcome *found) {
     const arguments *a = r->arguments;
-    brio_status status = BRIO_OK;
-    if (a->left_out || found->leaves_many) TRY(cli_report_left_out(r, result, *points, a->left_out));
+    if (a->left_out || found->leaves_many) FORWARD(cli_report_left_out(r, result, *points, a->left_out));
     brio_mesh_free(*points);
     *points = NULL;
     unsigned how = found->open ? CERTIFY_OPEN : 0u;
     if (a->extraction != BRIO_EXTRACTION_LABELS) how |= CERTIFY_ANYTHING;
-    status = cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u));
-done:
-    return status;
+    return cli_certify(r, result, how | (a->self_intersections ? CERTIFY_COUNTED : 0u));
 }
 
 static brio_status surface(run *r) {

@@ -201,3 +201,8 @@ brio_status cli_planar_shape(run *r, const brio_mesh *points, brio_mesh **crust,
     cli_fact_count(f, "edges", (*shape)->num_edges);
     return carry(r, points, *crust);
 }
+
+brio_status cli_check_curve_gaps(run *r, double open) {
+    if (isnan(open) || open == 0 || open >= 1) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT, "--open: %g is under 1; curves end at gaps over that many links", open);
+}

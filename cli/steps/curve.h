@@ -32,4 +32,7 @@ brio_status cli_certify_edges(run *r, const brio_mesh *mesh, const size_t *corne
 /** Reports the certificate of the edges of a file; BRIO_ERR_CHECK where they branch, or end and are not to. */
 brio_status cli_check_edges(run *r, const brio_mesh *mesh, bool open);
 
+/** Refuses gaps of curves that are shorter than what they are held against.   open  in links; NaN: not given. */
+brio_status cli_check_curve_gaps(run *r, double open);
+
 #endif

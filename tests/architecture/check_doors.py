@@ -6,7 +6,7 @@ import re
 import sys
 
 # Handles, settings and views: no arithmetic on doubles in them, nor in what they call.
-NO_ARITHMETIC = re.compile(r"brio_(\w+_)?(free|string|message|size|format_of|format_facts|format_list|surface_method_facts|surface_method_has|version|version_number)$|brio_context_|brio_laboratory_|brio_last_failure$|brio_reason_name$|brio_tiles_(facts|cells_facts|has_points)$|brio_ranks_(facts|cells_facts|has_points|sent)$|brio_triangulation2?_"
+NO_ARITHMETIC = re.compile(r"brio_(\w+_)?(free|string|message|size|format_of|format_facts|format_list|surface_method_facts|surface_method_has|version|version_number)$|brio_context_|brio_laboratory_|brio_last_failure$|brio_reason_name$|brio_tiles_(facts|cells_facts|has_points)$|brio_ranks_(facts|cells_facts|has_points|sent|led)$|brio_triangulation2?_"
                            r"(stats|tetrahedra|triangles|representatives|points_hash|line)$|brio_periodic_(facts|images|positions|tetrahedra|representatives)$|brio_mesh_(new|set_\w+|add_property|add_face_property|cell|metadata|property\w*|face_property)$")
 DECLARED = re.compile(r"BRIO_API\s+[\w\s*]*?\b(brio_\w+)\s*\(")
 
