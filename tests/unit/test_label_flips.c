@@ -491,7 +491,38 @@ static void the_hull_is_outside_where_no_sample_tells(void) {
     free_scene(s);
 }
 
+/* With all others as in the cut of all, some tetrahedra have the labels that they have there. */
+static void a_cut_of_some_tetrahedra_is_that_of_all(void) {
+    static const double BIAS[] = {0, 4, -2};
+    scene *s = scene_of(torus_points);
+    size_t tets = s->dual.t.count;
+    uint8_t *open = calloc(tets, 1), *all = malloc(tets + SAMPLES);
+    for (int trial = 0; trial < 9; trial++) {
+        brio_rng rng = brio_rng_new((uint64_t)trial);
+        brio_vote_cut whole, some;
+        for (size_t p = 0; p < SAMPLES; p++)
+            s->label[tets + p] = brio_rng_below(&rng, 8) ? BRIO_LABEL_OUTER : BRIO_LABEL_INNER;
+        for (size_t t = 0; t < tets; t++) s->label[t] = BRIO_LABEL_OUTER;
+        EXPECT(brio_vote_cut_new(&s->graph, NULL, &whole) == BRIO_OK);
+        EXPECT(brio_vote_cut_find(&whole, BIAS[trial % 3], s->label, s->label) == BRIO_OK);
+        memcpy(all, s->label, tets + SAMPLES);
+        for (size_t t = 0; t < tets; t++) {
+            open[t] = brio_rng_below(&rng, 6) < 1 + (uint32_t)trial / 2;
+            if (open[t] && t < s->graph.num_free) s->label[t] = brio_other_label(s->label[t]);
+        }
+        EXPECT(brio_vote_cut_new(&s->graph, open, &some) == BRIO_OK);
+        EXPECT(brio_vote_cut_find(&some, BIAS[trial % 3], s->label, s->label) == BRIO_OK);
+        EXPECT(!memcmp(all, s->label, tets + SAMPLES), "trial %d", trial);
+        brio_vote_cut_free(&whole);
+        brio_vote_cut_free(&some);
+    }
+    free(open);
+    free(all);
+    free_scene(s);
+}
+
 SUITE(test_label_flips) {
+    RUN(a_cut_of_some_tetrahedra_is_that_of_all);
     RUN(the_hull_is_outside_where_no_sample_tells);
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
