@@ -7,8 +7,9 @@
 
 /* --- a part as bytes ---
  *
- * A task is this head, then mates, capacities, terminals and sums outside of brio_part_cut, of four bytes each. An answer is the labels,
- * filled up to a multiple of 8 bytes, then, if the graph keeps its flow, the capacities that it has left. */
+ * A task is this head, then mates, capacities, terminals and sums outside of brio_part_cut, of four bytes each. An
+ * answer is the labels, filled up to a multiple of 8 bytes, then, if the graph keeps its flow, the capacities that it
+ * has left. */
 typedef struct {
     uint64_t num_nodes, keeps_flow;
 } part_head;
