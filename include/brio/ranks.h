@@ -165,9 +165,9 @@ typedef struct brio_team_facts {
  *  out  ended by brio_ranks_dismiss, in any case; NULL on error, which other ranks do not get to know: the caller must
  *  end them.
  *  Memory: of each rank as of brio_ranks_run, and 48 bytes a tetrahedron of a tile. Sent to rank 0: 48 bytes a
- *  tetrahedron. For a cut 40 bytes a tetrahedron are sent from rank 0, and 1 comes back, 17 if the context has no scratch
- *  folder. The parts of at most 64 MiB, or one part, are on their way in each of two exchanges. A part in work takes 62
- *  bytes a tetrahedron.
+ *  tetrahedron. For a cut 40 bytes a tetrahedron are sent from rank 0, and 1 comes back, 17 if the context has no
+ *  scratch folder. The parts of at most 64 MiB, or one part, are on their way in each of two exchanges. A part in work
+ *  takes 62 bytes a tetrahedron.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_ranks_lead(brio_context *ctx, const brio_transport *transport,
                                      const brio_ranks_options *options, brio_team_of_ranks **out);
