@@ -13,6 +13,7 @@ typedef struct {
     weights_options weights;
     uint64_t tiles;
     const char *box, *faces;
+    void *of_surface; /* the values of the command `surface`; NULL for others */
 } arguments;
 
 typedef struct {
@@ -21,7 +22,8 @@ typedef struct {
     brio_mpi *mpi;
     brio_ranks *ranks;
     int rank, size;
-    uint64_t *first; /* of each file, the index of its first point */
+    bool leaves_others; /* this rank failed where others wait for it, and do not get to know it */
+    uint64_t *first;    /* of each file, the index of its first point */
 } job;
 
 /** Collective. Returns the failure of a rank on all, with its sentence. */
@@ -31,6 +33,9 @@ brio_status job_agree(job *j, brio_status status);
 static inline uint64_t job_index(const job *j, uint64_t name) {
     return j->first[name >> FILE_SHIFT] + (name & ((UINT64_C(1) << FILE_SHIFT) - 1));
 }
+
+/** Collective. Makes the surface of the command line's input, which rank 0 reads and writes. */
+brio_status job_surface(job *j);
 
 /** --- output; each function is collective --- */
 

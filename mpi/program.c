@@ -1,9 +1,10 @@
-/* brio-mpi: what `brio delaunay --tiles` and `brio voronoi --tiles` compute, by the ranks of an MPI job. Rank 0 reports;
+/* brio-mpi: what `brio delaunay --tiles`, `brio voronoi --tiles` and `brio surface` compute, by the ranks of an MPI job. Rank 0 reports;
  * all have one exit code. */
 #include "cli/files/files.h"
 #include "cli/files/lost.h"
 #include "cli/files/read_write.h"
 #include "cli/report/plain.h"
+#include "cli/run/commands.h"
 #include "cli/run/interrupt.h"
 #include "cli/run/run.h"
 #include "cli/steps/tiles.h"
@@ -30,6 +31,8 @@ static const option of_voronoi[] = {
     {"faces", 0, OPTION_OUTPUT, offsetof(arguments, faces), "FILE", "write a row for each face of each cell (.csv)", 0},
     {0},
 };
+
+static const option of_surface[] = {TILES_A_RANK, {0}};
 
 /* --- reading --- */
 
@@ -259,11 +262,14 @@ static brio_status triangulate(job *j) {
 
 static void print_help(void) {
     puts("usage: mpirun -n RANKS brio-mpi delaunay IN... --scratch DIR [options]\n"
-         "       mpirun -n RANKS brio-mpi voronoi IN... --scratch DIR [options]\n\n"
-         "What 'brio delaunay IN --tiles N' and 'brio voronoi IN --tiles N' compute, by many processes on many hosts:\n"
+         "       mpirun -n RANKS brio-mpi voronoi IN... --scratch DIR [options]\n"
+         "       mpirun -n RANKS brio-mpi surface IN --scratch DIR [options of 'brio surface']\n\n"
+         "What 'brio delaunay IN --tiles N', 'brio voronoi IN --tiles N' and 'brio surface IN' compute, by many\n"
+         "processes on many hosts:\n"
          "docs/mpi.md.\n\n"
          "  --tiles-per-rank N   tiles of each rank, two of which are in memory (default 4)\n"
-         "  --scratch DIR        a folder of each host, for about 190 bytes a point of its ranks\n"
+         "  --scratch DIR        a folder of each host, for about 190 bytes a point of its ranks;\n"
+         "                       surface: that of rank 0 also has the arrays of the surface\n"
          "  -o FILE              delaunay: .pvtu, a file for each tile; voronoi: .npy or .csv, a row for each cell.\n"
          "                       In a folder that all hosts see\n"
          "  --box B              voronoi: clip the cells to x0,y0,z0,x1,y1,z1\n"
@@ -284,6 +290,7 @@ static brio_status check_table(run *r, const char *path) {
 /* Rank 0 checks the output for all: it removes what a killed run left of it, which others would find half removed. */
 static brio_status check_output(run *r) {
     const arguments *a = r->arguments;
+    if (r->command == &cli_surface) return BRIO_OK; /* it looks itself */
     if (r->command == &delaunay) return cli_check_tile_files(r, ".pvtu");
     FORWARD(check_table(r, r->common.output));
     return check_table(r, a->faces);
@@ -292,15 +299,32 @@ static brio_status check_output(run *r) {
 /* Returns what is wrong with the names of tables. */
 static brio_status check_format(run *r) {
     const char *output = r->common.output;
-    if (r->command == &delaunay || !output) return BRIO_OK;
+    if (r->command != &voronoi || !output) return BRIO_OK;
     if (r->common.compress) return cli_fail(r, BRIO_ERR_ARGUMENT, "--compress: cells are written without compression");
     if (format_of(r) != BRIO_CELLS_FORMAT_AUTO) return BRIO_OK;
     return cli_fail_output(r, "%s: ranks write cells to .npy and .csv", output);
 }
 
+/* Returns the method among the values of the command `surface`. */
+static int *method_of(void *values) {
+    const option *o = cli_surface.options;
+    while (strcmp(o->name, "method") != 0) o++;
+    return (int *)(void *)((char *)values + o->offset);
+}
+
+/* Refuses the other methods, which have no work for ranks. */
+static brio_status check_method(run *r, void *values) {
+    if (*method_of(values) == BRIO_SURFACE_LABELED) return BRIO_OK;
+    return cli_fail(r, BRIO_ERR_ARGUMENT,
+                    "--method: ranks make surfaces by labeled-delaunay; brio surface has the others");
+}
+
 static brio_status check(run *r, arguments *a) {
     if (r->num_operands < 1)
-        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: expected IN..., got no argument", r->command->name);
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: expected %s, got no argument", r->command->name,
+                        r->command->operands);
+    if (r->command == &cli_surface && r->num_operands > 1)
+        return cli_fail(r, BRIO_ERR_ARGUMENT, "surface: one argument too many: '%s'", r->operands[1]);
     if (a->tiles > MOST_TILES)
         return cli_fail(r, BRIO_ERR_ARGUMENT, "--tiles-per-rank: %" PRIu64 " are more than %d", a->tiles, MOST_TILES);
     if (a->weights.exponent != NO_EXPONENT && r->num_operands > 1)
@@ -313,12 +337,14 @@ static brio_status check(run *r, arguments *a) {
     if (cli_showing(r))
         return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: ranks show nothing; brio view shows files", cli_showing(r));
     FORWARD(check_format(r));
+    if (a->of_surface) FORWARD(check_method(r, a->of_surface));
     return cli_check_tiles(r, &a->weights, a->tiles);
 }
 
 static brio_status parse(run *r, arguments *a, int argc, char **argv, bool *help) {
-    const option_group groups[] = {{r->command->options, a}, {cli_common_options, &r->common}};
-    option_parse p = {.groups = groups, .num_groups = 2};
+    const option_group groups[] = {
+        {r->command->options, a->of_surface ? a->of_surface : a}, {cli_common_options, &r->common}, {of_surface, a}};
+    option_parse p = {.groups = groups, .num_groups = a->of_surface ? 3 : 2};
     if (!cli_parse(&p, argc, argv)) return cli_fail(r, BRIO_ERR_ARGUMENT, "%s: %s", r->command->name, p.message);
     *help = p.help;
     r->operands = p.operands;
@@ -396,7 +422,8 @@ static brio_status begin_job(job *j) {
     if (!j->mpi) return cli_fail(r, BRIO_ERR_NO_MEMORY, "no memory for the exchange of %d ranks", j->size);
     FORWARD(cli_check_common(r));
     FORWARD(cli_begin(r));
-    FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* tiles are in memory */
+    if (j->rank || r->command != &cli_surface)
+        FORWARD(brio_context_set_scratch(r->ctx, NULL)); /* tiles are in memory */
     return j->rank ? BRIO_OK : check_output(r);
 }
 
@@ -410,7 +437,17 @@ static brio_status run_job(job *j, int argc, char **argv, bool *help) {
     brio_mpi_set_stop(j->mpi, stop, NULL);
     cli_opening_facts(r);
     r->lap = cli_clock();
-    return triangulate(j);
+    return r->command == &cli_surface ? job_surface(j) : triangulate(j);
+}
+
+/* Takes the options of the command `surface`, with the one method that ranks share. */
+static brio_status take_surface(job *j) {
+    void *values = malloc(cli_surface.size);
+    if (!values) return cli_fail(j->r, BRIO_ERR_NO_MEMORY, "no memory for the options");
+    memcpy(values, cli_surface.defaults, cli_surface.size);
+    *method_of(values) = BRIO_SURFACE_LABELED;
+    j->r->arguments = j->a.of_surface = values;
+    return BRIO_OK;
 }
 
 int main(int argc, char **argv) {
@@ -427,18 +464,22 @@ int main(int argc, char **argv) {
     j.mpi = brio_mpi_new(MPI_COMM_WORLD);
     brio_status status = BRIO_OK;
     if (argc > 1 && !strcmp(argv[1], voronoi.name)) r.command = &voronoi;
-    if (argc < 2 || strcmp(argv[1], r.command->name)) {
+    if (argc > 1 && !strcmp(argv[1], cli_surface.name)) r.command = &cli_surface, status = take_surface(&j);
+    if (status != BRIO_OK) {
+        help = false;
+    } else if (argc < 2 || strcmp(argv[1], r.command->name)) {
         help = argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"));
-        if (!help) status = cli_fail(&r, BRIO_ERR_ARGUMENT, "expected 'delaunay' or 'voronoi'; see --help");
+        if (!help) status = cli_fail(&r, BRIO_ERR_ARGUMENT, "expected 'delaunay', 'surface' or 'voronoi'; see --help");
     } else {
         status = run_job(&j, argc - 2, argv + 2, &help);
     }
     if (help && j.rank == 0) print_help();
     int code = help ? 0 : finish(&j, status);
-    bool broken = j.mpi && brio_mpi_has_failed(j.mpi); /* others wait for what does not come */
-    if (broken && j.rank) print_sentence(&r, status);  /* rank 0 may not get to know it */
+    bool broken = j.leaves_others || (j.mpi && brio_mpi_has_failed(j.mpi)); /* others wait for what does not come */
+    if (broken && j.rank) print_sentence(&r, status);                       /* rank 0 may not get to know it */
     brio_ranks_free(j.ranks);
     free(j.first);
+    free(j.a.of_surface);
     cli_end(&r);
     if (broken) MPI_Abort(MPI_COMM_WORLD, code);
     brio_mpi_free(j.mpi);

@@ -144,25 +144,30 @@ BRIO_API const brio_tiles_cells_stats *brio_ranks_cells_facts(const brio_ranks *
 
 /* --- surfaces --- */
 
-/** Ranks that triangulate for rank 0. */
+/** Ranks that triangulate for rank 0, and decide parts of minimum cuts. */
 typedef struct brio_team_of_ranks brio_team_of_ranks;
 
 /** What a team did. */
 typedef struct brio_team_facts {
     size_t size;
     uint64_t triangulations;
-    uint64_t bytes; /* that rank 0 sent to others while they triangulated */
+    uint64_t bytes;      /* that rank 0 sent to others while they triangulated */
+    uint64_t parts;      /* of minimum cuts, decided by all ranks */
+    uint64_t part_bytes; /* that rank 0 sent to others for these */
 } brio_team_facts;
 
-/** Has the triangulations of surfaces made by all ranks: on rank 0 alone, while all others call brio_ranks_serve. From
- *  now on brio_surface with the method BRIO_SURFACE_LABELED, in this context, triangulates with the team, until
- *  brio_ranks_dismiss. The surface has the same bits, whatever the number of ranks and tiles. Rank 0 has the points and
- *  all other arrays of the surface: in files, if the context has a scratch folder (brio_context_set_scratch).
+/** Has the triangulations and the minimum cuts of surfaces made by all ranks: on rank 0 alone, while all others call
+ *  brio_ranks_serve. From now on brio_surface with the method BRIO_SURFACE_LABELED, in this context, triangulates and
+ *  cuts with the team, until brio_ranks_dismiss. The surface has the same bits, whatever the number of ranks and tiles.
+ *  Rank 0 has the points and all other arrays of the surface: in files, if the context has a scratch folder
+ *  (brio_context_set_scratch).
  *  options  as in brio_ranks_new, without stars and key.
- *  out      ended by brio_ranks_dismiss, in any case; NULL on error, which other ranks do not get to know: the caller
- *           must end them.
+ *  out  ended by brio_ranks_dismiss, in any case; NULL on error, which other ranks do not get to know: the caller must
+ *  end them.
  *  Memory: of each rank as of brio_ranks_run, and 48 bytes a tetrahedron of a tile. Sent to rank 0: 48 bytes a
- *  tetrahedron.
+ *  tetrahedron. For a cut 40 bytes a tetrahedron are sent from rank 0, and 1 comes back, 17 if the context has no
+ *  scratch folder. The parts of at most 64 MiB, or one part, are on their way in each of two exchanges. A part in work
+ *  takes 62 bytes a tetrahedron.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_NO_MEMORY. */
 BRIO_API brio_status brio_ranks_lead(brio_context *ctx, const brio_transport *transport,
                                      const brio_ranks_options *options, brio_team_of_ranks **out);
@@ -176,7 +181,7 @@ BRIO_API const brio_team_facts *brio_ranks_led(const brio_team_of_ranks *team);
  *  Returns the status of all ranks. */
 BRIO_API brio_status brio_ranks_dismiss(brio_team_of_ranks *team, brio_status status, const char *sentence);
 
-/** Triangulates for rank 0 until it dismisses this rank: on all ranks but 0.
+/** Triangulates and cuts for rank 0 until it dismisses this rank: on all ranks but 0.
  *  options  as those of rank 0; the folder is one of this host.
  *  Returns what rank 0 says, with its sentence; or BRIO_ERR_OPEN if the transport failed. */
 BRIO_API brio_status brio_ranks_serve(brio_context *ctx, const brio_transport *transport,

@@ -47,6 +47,7 @@ struct brio_context {
     bool stopped;                                 /* the callback asked to stop, in the loop (team.h) that runs */
     const struct brio_experiment *experiment;     /* experiment.h; NULL: none */
     const struct brio_triangulator *triangulator; /* triangulation/triangulation.h; NULL: brio_delaunay */
+    const struct brio_part_decider *decider;      /* reconstruct/labels/cut_in_parts.h; NULL: the threads */
     char message[512];
     brio_failure failure, next; /* of the message; what is known so far of the failure that is about to come */
     uint64_t failures;          /* that were told in messages */

@@ -1,12 +1,13 @@
-/* Ranks that triangulate for one of them, rank 0, which reconstructs surfaces.
+/* Ranks that triangulate and cut for one of them, rank 0, which reconstructs surfaces.
  *
  * Rank 0 has the points, and a context whose triangulator (triangulation.h) is the team. Whenever a surface needs a
  * triangulation, rank 0 says so, and all ranks do the same: rank 0 adds its points, which the ranks divide among each
  * other's tiles; all triangulate; the rows of all tiles go to rank 0, some at a time, where they become the
- * triangulation that one process makes (tiles/gather.c). Between triangulations the others wait for the next word.
+ * triangulation that one process makes (tiles/gather.c). Parts of minimum cuts are closed tasks, which rank 0 sends to
+ * all (cuts.c). In between the others wait for the next word.
  *
- * A failure in a triangulation is that of all ranks. A failure of rank 0 between them reaches the others when rank 0
- * dismisses them. */
+ * A failure in a triangulation or a cut is that of all ranks. A failure of rank 0 between them reaches the others when
+ * rank 0 dismisses them. */
 #include "base/float_state.h"
 #include "base/memory.h"
 #include "base/versioned.h"
@@ -17,9 +18,10 @@
 enum { ROWS_AT_ONCE = 1 << 14, POINTS_AT_ONCE = 1 << 20 };
 
 /* What rank 0 says. */
+typedef enum { DISMISSED, TRIANGULATE, CUT } call;
+
 typedef struct {
-    uint64_t triangulate; /* 0: the team is dismissed */
-    uint64_t num_points;
+    uint64_t call, num_points;
 } word;
 
 struct brio_team_of_ranks {
@@ -28,6 +30,7 @@ struct brio_team_of_ranks {
     brio_ranks_options options;
     brio_exchange x; /* of words */
     brio_triangulator triangulator;
+    brio_part_decider decider;
     brio_team_facts facts;
 };
 
@@ -172,7 +175,7 @@ static brio_status make(void *user, brio_context *ctx, const double *points, siz
     brio_tiles_stats facts = {0};
     at_rank_0 own = {.points = points, .num_points = num_points, .rows.ctx = ctx};
     *out = NULL;
-    BRIO_TRY(say(t, (word){1, num_points}));
+    BRIO_TRY(say(t, (word){TRIANGULATE, num_points}));
     BRIO_TRY(work_together(t, &own, &facts));
     status = facts.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, NULL, out)
                                  : brio_gather_end(&own.rows, points, num_points, facts.duplicates, out);
@@ -180,6 +183,17 @@ done:
     brio_gather_free(&own.rows);
     brio_release(ctx, own.first);
     return status;
+}
+
+/* Has all ranks decide the parts of a cut. */
+static brio_status decide(void *user, brio_parts *parts) {
+    brio_team_of_ranks *t = user;
+    uint64_t before = t->x.bytes;
+    BRIO_FORWARD(say(t, (word){CUT, 0}));
+    BRIO_FORWARD(brio_ranks_lead_cut(&t->x, parts));
+    t->facts.parts += parts->num_parts;
+    t->facts.part_bytes += t->x.bytes - before;
+    return BRIO_OK;
 }
 
 static brio_status team_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
@@ -212,8 +226,11 @@ brio_status brio_ranks_lead(brio_context *ctx, const brio_transport *transport, 
                             brio_team_of_ranks **out) {
     BRIO_DOOR;
     BRIO_FORWARD(team_new(ctx, transport, options, out));
-    (*out)->triangulator = (brio_triangulator){*out, make};
-    ctx->triangulator = &(*out)->triangulator;
+    brio_team_of_ranks *t = *out;
+    t->triangulator = (brio_triangulator){t, make};
+    t->decider = (brio_part_decider){decide, t, (size_t)t->transport.ranks * (size_t)brio_context_threads(ctx)};
+    ctx->triangulator = &t->triangulator;
+    ctx->decider = &t->decider;
     return BRIO_OK;
 }
 
@@ -226,8 +243,9 @@ brio_status brio_ranks_dismiss(brio_team_of_ranks *team, brio_status status, con
     if (!team) return status;
     brio_context *ctx = team->ctx;
     ctx->triangulator = NULL;
+    ctx->decider = NULL;
     if (status != BRIO_OK && sentence) brio_fail(ctx, status, "%s", sentence);
-    if (status == BRIO_OK) status = say(team, (word){0, 0});
+    if (status == BRIO_OK) status = say(team, (word){DISMISSED, 0});
     status = brio_exchange_agree(&team->x, status);
     team_free(team);
     return status;
@@ -241,7 +259,11 @@ static brio_status serve(brio_team_of_ranks *t) {
     for (;;) {
         BRIO_FORWARD(brio_exchange_now(&t->x, false));
         memcpy(&w, t->x.from[0]->bytes, sizeof w);
-        if (!w.triangulate) return BRIO_OK;
+        if (w.call == DISMISSED) return BRIO_OK;
+        if (w.call == CUT) {
+            BRIO_FORWARD(brio_ranks_follow_cut(&t->x));
+            continue;
+        }
         brio_status status = work_together(t, NULL, &facts);
         (void)status; /* of all ranks, if it is a failure: rank 0 says it again when it dismisses this one */
     }

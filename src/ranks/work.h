@@ -4,6 +4,7 @@
 #define BRIO_RANKS_WORK_H
 
 #include "ranks/exchange.h"
+#include "reconstruct/labels/cut_in_parts.h"
 #include "tiles/work.h"
 
 enum { RANK_SHIFT = 40, RANK_SLOTS = 2 /* tiles that a rank works on at once */ };
@@ -56,6 +57,10 @@ brio_status brio_ranks_own_points(brio_ranks *r, const uint64_t *places, size_t 
 
 /** Makes the part of a tile of this rank, which all ranks do at once. */
 brio_status brio_ranks_make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p);
+
+/** Has all ranks decide the parts of a cut: rank 0 calls lead, all others follow. Return what brio_tasks_share does. */
+brio_status brio_ranks_lead_cut(brio_exchange *x, brio_parts *p);
+brio_status brio_ranks_follow_cut(brio_exchange *x);
 
 /** Returns the number of an own tile among those of all ranks. */
 static inline uint32_t brio_ranks_tile(const brio_ranks *r, uint32_t tile) {

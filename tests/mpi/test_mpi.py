@@ -106,6 +106,59 @@ class Mpi(MpiCase):
         self.assertTrue(link.is_symlink())
         self.assertEqual(self.names("real"), ["real.npy"])
 
+    def surface(self, ranks, path, *options):
+        """Compares the surface of ranks with that of one process, byte for byte."""
+        one, many = self.folder / "one.ply", self.folder / "many.ply"
+        line = [BRIO, "surface", str(path), *options, "-o", str(one), "--quiet"]
+        subprocess.run(line, check=True)
+        facts = self.mpi(ranks, path, *options, "-o", many, "--tiles-per-rank", 2, command="surface")
+        self.assertEqual(one.read_bytes(), many.read_bytes(), (ranks, path, options))
+        self.assertEqual(self.names("many"), ["many.ply"])
+        return facts["ranks"]
+
+    def test_surfaces_are_those_of_one_process(self):
+        scan, sphere = self.generate("scan", 6000, "scan.ply"), self.generate("sphere", 1500, "sphere.ply")
+        for ranks in (1, 2, 3, 5):
+            done = self.surface(ranks, scan)
+            self.assertEqual(done["count"], ranks)
+            self.assertGreater(done["triangulations"], 0)
+            self.assertEqual(done["part_bytes"] > 0, ranks > 1)  # cuts go to other ranks
+            self.assertEqual(done["bytes"] > 0, ranks > 1)
+        rng = random.Random(4)
+        rows = [[rng.gauss(0, 1) for _ in range(3)] for _ in range(1200)]
+        rows = [[c / sum(x * x for x in row) ** 0.5 + rng.gauss(0, 0.02) for c in row] for row in rows]
+        noisy = self.rows("noisy.xyz", rows + rows[:300])  # some twice
+        half = self.rows("half.xyz", [row for row in rows if row[2] > -0.2])
+        for i, arguments in enumerate(((sphere,), (noisy,), (half,), (noisy, "--closed", "--noise", "keep"))):
+            self.surface((2, 3, 5, 3)[i], *arguments)
+
+    @unittest.skipUnless(LONG, "BRIO_LONG=1")
+    def test_surfaces_of_every_set_for_every_number_of_ranks(self):
+        rng = random.Random(5)
+        sets = [self.generate(kind, points, kind + ".ply") for kind, points in (("scan", 40000), ("sphere", 3000),
+                                                                                ("clusters", 5000))]
+        for noise in (0.01, 0.05):
+            rows = [[rng.gauss(0, 1) for _ in range(3)] for _ in range(6000)]
+            rows = [[c / sum(x * x for x in row) ** 0.5 + rng.gauss(0, noise) for c in row] for row in rows]
+            sets += [self.rows("noisy-%g.xyz" % noise, rows + rows[:900])]
+            sets += [self.rows("open-%g.xyz" % noise, [row for row in rows if row[2] > -0.3 and abs(row[0]) > 0.2])]
+        sets += [path for path in (self.thinned("scan/bunny_raw.ply", 4), self.thinned("scan/dragon_raw.ply", 8)) if path]
+        for path in sets:
+            for ranks in (1, 2, 3, 5, 8):
+                self.surface(ranks, path)
+
+    def test_wrong_calls_for_surfaces(self):
+        path = self.generate("scan", 2000)
+        plane = self.rows("plane.xyz", [[x, y, 4] for x in range(9) for y in range(9)])
+        for code, text, *arguments in ((1, "ranks make surfaces by labeled-delaunay", path, "-o", "x.ply", "--method=cocone"),
+                                       (1, "--polygons is for", path, "-o", "x.ply", "--polygons"),
+                                       (1, "ranks show nothing", path, "--view", "x.html"),
+                                       (1, "one argument too many", path, path, "-o", "x.ply"),
+                                       (3, "bound no solid", plane, "-o", "x.ply")):
+            result = self.mpi(2, *arguments, check=False, command="surface")
+            self.assertIn(text, result.stderr)
+            self.assertEqual(facts_of(result)["exit"], code, result.stderr)
+
     def test_wrong_calls_for_cells(self):
         path = self.generate("cube", 300)
         plane = self.rows("plane.xyz", [[x, y, 4] for x in range(9) for y in range(9)])

@@ -143,6 +143,52 @@ class Faults(MpiCase):
         program = self.of_rank(1, 'set -- $(echo "$@" | sed "s|--scratch [^ ]*|--scratch /nowhere|")')
         self.fails(2, "rank 1 on ", self.generate("cube", 500), program=program)
 
+    # --- surfaces ---
+
+    def test_a_surface_that_fails_on_one_rank_ends_all(self):
+        path, one, out = self.generate("scan", 8000), self.folder / "one.ply", self.folder / "out.ply"
+        self.one(path, "-o", one, command="surface")
+        bad = self.rows("bad.xyz", [[0, 0, 0], [1, 2, 3], ["nan", 0, 0]])
+        self.fails(2, "bad.xyz", bad, "-o", out, command="surface")
+        poor = self.of_rank(1, 'set -- "$@" --max-memory 4M')
+        self.fails(4, "rank 1 on ", path, "-o", out, command="surface", program=poor)
+        nowhere = self.of_rank(2, 'set -- $(echo "$@" | sed "s|--scratch [^ ]*|--scratch /nowhere|")')
+        self.fails(2, "rank 2 on ", path, "-o", out, command="surface", program=nowhere)
+        self.assertEqual((self.names("out"), os.listdir(self.scratch)), ([], []))
+        self.goes_on(one, out, path, command="surface")
+
+    def test_a_full_disk_of_a_surface_ends_all(self):
+        disk = self.folder / "disk"
+        disk.mkdir()
+        if os.geteuid() or subprocess.run(["mount", "-t", "tmpfs", "-o", "size=600k", "none", str(disk)], check=False,
+                                          capture_output=True).returncode:
+            self.skipTest("no disk of this size")
+        try:
+            path, out = self.generate("scan", 20000), disk / "out.ply"
+            out.write_bytes(b"older")
+            self.fails(6, "No space left on device", path, "-o", out, command="surface")
+            self.assertEqual((os.listdir(disk), out.read_bytes()), (["out.ply"], b"older"))
+            for rank in (0, 1):  # the scratch folder of this rank alone is on it
+                program = self.of_rank(rank, 'set -- $(echo "$@" | sed "s|--scratch [^ ]*|--scratch %s|")' % disk)
+                result = self.mpi(3, path, "-o", self.folder / "out.ply", check=False, command="surface", program=program)
+                self.assertIn(result.returncode, (4, 6), result.stderr)
+                self.assertIn("rank %d on " % rank, result.stderr)
+                self.assertEqual((self.names("out"), os.listdir(disk)), ([], ["out.ply"]))
+        finally:
+            subprocess.run(["umount", str(disk)], check=False)
+
+    def test_a_surface_that_is_killed_leaves_the_older_output(self):
+        path, out, rng = self.generate("scan", 20000), self.folder / "out.ply", random.Random(7)
+        start = time.monotonic()
+        self.mpi(3, path, "-o", out, command="surface")
+        whole, expected, ended = time.monotonic() - start, out.read_bytes(), 0
+        for _ in range(12 if LONG else 3):
+            ended += self.kill(self.line(3, path, "-o", out, command="surface"), rng.uniform(0, whole), rng)
+            self.assertEqual(out.read_bytes(), expected)
+        self.assertGreater(ended, 0)
+        self.mpi(3, path, "-o", out, command="surface", check=False)
+        self.assertEqual(out.read_bytes(), expected)
+
     # --- ranks that are killed ---
 
     def ranks_of(self, job):

@@ -127,7 +127,7 @@ static void expect_cut(brio_context *ctx, const brio_cut_graph *cut, size_t size
 static void check_parts(brio_context *ctx, graph *g, uint64_t trial) {
     uint8_t expected[MOST_NODES];
     brio_cut_graph cut = {.ctx = ctx, .num_nodes = g->num_nodes, .read = read_nodes, .user = g};
-    brio_part_decider elsewhere = {decide_elsewhere, g};
+    brio_part_decider elsewhere = {.decide = decide_elsewhere, .user = g};
     cut_whole(ctx, g, expected);
     for (size_t parts = 1; parts <= 12; parts++) {
         size_t size = (g->num_nodes + parts - 1) / parts;
@@ -176,7 +176,7 @@ static void what_no_part_decides_is_cut_as_a_whole(void) {
     brio_context *ctx = new_context();
     graph *g = calloc(1, sizeof *g);
     uint8_t label[MOST_NODES];
-    brio_part_decider elsewhere = {decide_elsewhere, g};
+    brio_part_decider elsewhere = {.decide = decide_elsewhere, .user = g};
     for (uint64_t trial = 0; trial < 30; trial++) {
         brio_rng rng = brio_rng_new(trial);
         if (trial % 2)
@@ -266,7 +266,7 @@ static void failures_of_who_decides_are_returned(void) {
     uint8_t label[MOST_NODES];
     make_chain(20, g);
     brio_cut_graph cut = {.ctx = ctx, .num_nodes = 20, .read = read_nodes, .user = g};
-    EXPECT(brio_cut_in_parts(&cut, 3, &(brio_part_decider){decide_nothing, NULL}, label) == BRIO_ERR_CANCELLED);
+    EXPECT(brio_cut_in_parts(&cut, 3, &(brio_part_decider){.decide = decide_nothing}, label) == BRIO_ERR_CANCELLED);
     EXPECT(brio_context_memory(ctx) == 0);
     free(g);
     brio_context_free(ctx);

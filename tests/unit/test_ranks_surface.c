@@ -137,7 +137,7 @@ static void drop(member *m) {
 
 /* --- tests --- */
 
-static void compare(const plan *p, int kind) {
+static brio_team_facts compare(const plan *p, int kind) {
     brio_context *ctx = new_context();
     brio_mesh *whole = NULL;
     const brio_surface_options options = {.size = sizeof options};
@@ -157,6 +157,7 @@ static void compare(const plan *p, int kind) {
     drop(&m);
     brio_mesh_free(whole);
     brio_context_free(ctx);
+    return m.facts;
 }
 
 static void surfaces_are_those_of_one_process(void) {
@@ -179,6 +180,16 @@ static void large_tiles_come_in_pieces(void) {
     plan p = {.n = MOST, .ranks = 1, .tiles = 1, .poor = -1};
     uniform_points(8, MOST, points);
     compare(&p, -1);
+}
+
+/* Cuts of 27,000 tetrahedra are divided into parts for ranks: each of at least 4,096, so smaller sets have none. */
+static void cuts_are_divided_among_ranks(void) {
+    for (int trial = 0; trial < (SHORT_TESTS ? 2 : 6); trial++) {
+        plan p = {.n = make_points(8, MOST, trial % 3), .ranks = 3 - trial % 2, .tiles = 1, .poor = -1};
+        p.seed = (uint64_t)trial, p.scratch = trial % 2;
+        uint64_t parts = compare(&p, trial % 3).parts;
+        EXPECT(parts > 2, "trial %d: %llu parts", trial, (unsigned long long)parts);
+    }
 }
 
 /* Whatever memory a rank has, all end alike, with its sentence or with the surface. */
@@ -224,6 +235,7 @@ SUITE(test_ranks_surface) {
     EXPECT(mkdir(folder, 0700) == 0);
     RUN(surfaces_are_those_of_one_process);
     RUN(large_tiles_come_in_pieces);
+    RUN(cuts_are_divided_among_ranks);
     RUN(a_rank_without_memory_ends_all);
     RUN(the_failure_of_the_leader_ends_all);
     RUN(teams_have_neither_stars_nor_a_key);

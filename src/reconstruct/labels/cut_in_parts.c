@@ -192,24 +192,26 @@ done:
 
 /* --- the whole --- */
 
-/* Returns how many nodes of a part suit the memory and the threads. */
-static size_t suitable_size(const brio_cut_graph *g) {
-    size_t threads = (size_t)brio_threads(g->ctx, g->num_nodes, LEAST_SIZE), size = MOST_SIZE;
-    size_t held = most_held(g->ctx) / threads;
-    if (threads > 1 && g->num_nodes / PARTS / threads < size) size = g->num_nodes / PARTS / threads;
+/* Returns how many nodes of a part suit the memory and those who decide. */
+static size_t suitable_size(const brio_cut_graph *g, const brio_part_decider *decider) {
+    size_t size = MOST_SIZE, workers = decider ? decider->workers : 0;
+    if (!workers) workers = (size_t)brio_threads(g->ctx, g->num_nodes, LEAST_SIZE);
+    size_t held = most_held(g->ctx) / workers;
+    if (workers > 1 && g->num_nodes / PARTS / workers < size) size = g->num_nodes / PARTS / workers;
     if (g->ctx->scratch && held < size) size = held;
     return size > LEAST_SIZE ? size : LEAST_SIZE;
 }
 
 brio_status brio_cut_in_parts(const brio_cut_graph *g, size_t size, const brio_part_decider *decider, uint8_t *label) {
     brio_status status = BRIO_OK;
-    static const brio_part_decider THREADS = {decide_by_threads, NULL};
-    brio_parts p = {.g = g, .size = size ? size : suitable_size(g), .label = label};
-    if (!decider) decider = &THREADS;
+    static const brio_part_decider THREADS = {decide_by_threads, NULL, 0};
+    const brio_part_decider *others = g->ctx->decider;
+    brio_parts p = {.g = g, .size = size ? size : suitable_size(g, decider ? decider : others), .label = label};
     p.num_parts = (g->num_nodes + p.size - 1) / p.size;
+    const brio_part_decider *by = decider ? decider : others && p.num_parts > 1 ? others : &THREADS;
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, p.left, p.num_parts));
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, p.num_left, p.num_parts));
-    BRIO_TRY(decider->decide(decider->user, &p));
+    BRIO_TRY(by->decide(by->user, &p));
     BRIO_TRY(cut_left(&p, decider));
 done:
     for (size_t i = 0; p.left && i < p.num_parts; i++) brio_release(g->ctx, p.left[i]);

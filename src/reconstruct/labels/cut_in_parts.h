@@ -70,9 +70,10 @@ typedef struct {
 
 /** Sees that each part is decided: calls brio_parts_collect, has brio_part_cut_decide called, here or in another
  *  process, and calls brio_parts_keep. Parts are in any order, and several may be on their way at once. */
-typedef struct {
+typedef struct brio_part_decider {
     brio_status (*decide)(void *user, brio_parts *p);
     void *user;
+    size_t workers; /* that decide parts at once; 0: as many as the context has threads */
 } brio_part_decider;
 
 /** Return the first node and the number of nodes of a part. */
@@ -93,7 +94,7 @@ brio_status brio_parts_keep(brio_parts *p, size_t i, const brio_part_cut *cut, c
 
 /** Finds the minimum cut with the least sink's side. It does not depend on the parts.
  *  size     nodes of a part; 0: as many as suit the memory and the threads.
- *  decider  NULL: the threads of the context.
+ *  decider  NULL: that of the context (context.h); without one, or where there is one part, the threads of the context.
  *  label    #nodes, written: BRIO_LABEL_INNER on the sink's side, else BRIO_LABEL_OUTER. On failure undefined.
  *  Cost: each part is collected once. Memory: 62 bytes a node of the parts in work, 40 a node that they left undecided.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, or what the decider returns.

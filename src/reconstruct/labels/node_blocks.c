@@ -11,8 +11,8 @@
  *
  * In memory a colour is a round. Where the graph is in scratch files, each round of all blocks would read all of it: so
  * the rounds of a window of the curve, as large as fits in a part of the memory, come before those of the next one. A
- * window takes in what its blocks wait for, each block after those. Whatever the windows are, each block comes after the
- * blocks beside it of less colours and before the others, so the labels are the same.
+ * window takes in what its blocks wait for, each block after those. Whatever the windows are, each block comes after
+ * the blocks beside it of less colours and before the others, so the labels are the same.
  *
  * Based on: Morton. A computer oriented geodetic data base and a new technique in file sequencing. IBM 1966 (the order
  *           in which cells are lists of neighbours).
