@@ -260,6 +260,14 @@ void brio_tiles_leave(brio_tiles *t) {
 
 /* --- all stages --- */
 
+double brio_tiles_least_memory(const brio_tiles_options *o, double points) {
+    return BYTES_A_POINT * points / (o->tiles ? o->tiles : TILES);
+}
+
+double brio_tiles_disk(double points) {
+    return DISK_A_POINT * points;
+}
+
 /* Returns the bytes for tiles of at most `points`, of which there are about `tiles`. */
 static double bytes_of_tiles(const brio_tiles *t, double points, double tiles, int at_once) {
     double triangulating = at_once * points * BYTES_A_POINT;

@@ -157,6 +157,50 @@ class Tiles(CliTest):
         self.facts("surface", self.path("scan.ply"), "-o", self.path("o.ply"), "--tiles", "4", "--scratch", self.scratch())
         self.assertEqual(os.listdir(self.scratch()), [])  # what the killed ones left, too
 
+    def test_surfaces_are_counted_before_the_work(self):
+        self.rows("a.csv", 60000)
+        limits = ("--scratch", self.scratch(), "-o", self.path("o.ply"), "--max-memory", "11M", "--tiles")
+        self.assertIn("a tile of the 60000 points needs about 15.6 MB, and 11.5 MB are allowed: take more tiles",
+                      self.expect(4, "surface", self.path("a.csv"), *limits, "2").err)
+        with open(self.path("twice.csv"), "w", encoding="ascii") as f:  # points that are given twice need it once
+            f.write("x,y,z\n" + "".join("%r,%r,%r\n" % p for p in [(i % 7, i % 11 / 3, i % 13 / 5) for i in range(40000)]))
+        self.expect(0, "surface", self.path("twice.csv"), *limits, "1")
+        self.assertEqual(os.listdir(self.scratch()), [])
+
+    @posix_alone
+    def test_a_disk_too_small_for_a_surface_in_tiles_is_said_before_the_work(self):
+        self.facts("generate", "scan", "--points", "5000", "-o", self.path("scan.ply"))
+        line = 'mount -t tmpfs -o size=$2 none "$1" && shift 2 && exec "$0" "$@"'
+        run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, self.scratch(), "4300k", "surface", self.path("scan.ply"), "--tiles", "2",
+                              "--scratch", self.scratch(), "-o", self.path("o.ply"), "--quiet"], stderr=subprocess.PIPE, check=False)
+        if run.returncode in (1, 32, 126, 127):
+            self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
+        self.assertEqual(run.returncode, 4, run.stderr)  # without tiles 5,000 points need 5.55 MB, of which three quarters are sure
+        self.assertIn("5000 points need about 7 MB of scratch files, and this disk has room for 4 MB", run.stderr.decode())
+
+    @posix_alone
+    def test_a_disk_that_fills_leaves_no_surface_of_tiles(self):
+        self.facts("generate", "scan", "--points", "5000", "-o", self.path("scan.ply"))
+        for most in (1000, 150000, 400000):  # bytes of a file: in the points, in a tile, in the arrays
+            run = subprocess.run([BRIO, "surface", self.path("scan.ply"), "--tiles", "2", "--scratch", self.scratch(), "--quiet", "-o",
+                                  self.path("o.ply")], stderr=subprocess.PIPE, check=False, preexec_fn=lambda most=most: (
+                                      signal.signal(signal.SIGXFSZ, signal.SIG_IGN), resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))))
+            self.assertIn(run.returncode, (4, 6), run.stderr)
+            self.assertIn("File too large", run.stderr.decode())
+            self.assertFalse(os.path.exists(self.path("o.ply")))
+            self.assertEqual(os.listdir(self.scratch()), [])
+
+    def test_an_interrupted_surface_of_tiles_leaves_nothing(self):
+        self.facts("generate", "scan", "--points", "20000", "-o", self.path("scan.ply"))
+        for wait in (0.1, 0.3, 0.6):
+            process = subprocess.Popen([BRIO, "surface", self.path("scan.ply"), "--tiles", "8", "--scratch", self.scratch(), "--quiet", "-o",
+                                        self.path("o.ply")], stderr=subprocess.DEVNULL)
+            time.sleep(wait)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(), 130)
+            self.assertFalse(os.path.exists(self.path("o.ply")))
+            self.assertEqual(os.listdir(self.scratch()), [])
+
     def test_alpha_shapes_go_to_a_file_for_each_tile(self):
         scratch, index = self.scratch(), self.path("shape.pvtp")
         facts = self.facts("alpha", self.rows("a.csv", 3000), "--alpha", "0.05", "--tiles", "4", "--scratch", scratch, "-o", index)
