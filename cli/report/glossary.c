@@ -371,6 +371,7 @@ const glossary_line cli_glossary[] = {
     {"convert", NULL, "tiles", NULL, "parts of space that hold points (--tiles), a file each", LINE_PLAIN, STYLE_PLAIN},
     {TRIANGULATIONS " alpha", NULL, "tiles", NULL, "parts of space that hold points (--tiles)", LINE_PLAIN,
      STYLE_PLAIN},
+    {"surface", NULL, "tiles", NULL, "parts in which the points were triangulated (--tiles)", LINE_PLAIN, STYLE_PLAIN},
     {TRIANGULATIONS " alpha", NULL, "resumed", NULL, "tiles that a run that was killed had finished", LINE_PLAIN,
      STYLE_UNLESS_ZERO},
     {"convert", NULL, "largest_tile", NULL, "points in the largest tile", LINE_PLAIN, STYLE_PLAIN},
