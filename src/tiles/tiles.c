@@ -292,6 +292,18 @@ brio_status brio_tiles_require_memory(brio_tiles *t, int at_once) {
         t->num_tiles, most, need / 1e6, limit / 1e6, fmin(tiles, MOST_TILES));
 }
 
+brio_status brio_tiles_require_share(brio_context *ctx, const brio_tiles_options *options, double num_points) {
+    double limit = (double)brio_memory_limit(ctx), tiles = options->tiles ? options->tiles : TILES;
+    double need = num_points / tiles * BYTES_A_POINT;
+    BRIO_EXPECT(
+        ctx, need <= limit, BRIO_ERR_NO_MEMORY,
+        "each of %.0f tiles has about %.0f points, and needs about %.0f MB of the %.0f MB that are allowed: take "
+        "about %.0f tiles",
+        tiles, num_points / tiles, need / 1e6, limit / 1e6,
+        fmin(ceil(1.2 * num_points * BYTES_A_POINT / limit), MOST_TILES));
+    return BRIO_OK;
+}
+
 brio_status brio_tiles_require_disk(brio_tiles *t, double n) {
     uint64_t room;
     double each = t->sorts_faces ? DISK_WITH_FACES : t->sorts_cells ? DISK_WITH_CELLS : DISK_A_POINT;

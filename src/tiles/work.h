@@ -322,6 +322,11 @@ brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_poi
  *  points  num_points by 3: those that were added.   Returns what brio_delaunay returns. */
 brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out);
 
+/** Refuses tiles, each with the same share of `num_points`, that do not fit in the memory of a context: before any of
+ *  the points is taken.
+ *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY with a sentence that names a number of tiles that would do. */
+brio_status brio_tiles_require_share(brio_context *ctx, const brio_tiles_options *options, double num_points);
+
 /** Lets a context's triangulations be made in tiles.
  *  options  kept: neither stars nor a key.   Returns BRIO_OK, BRIO_ERR_ARGUMENT. */
 brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiles_options *options, brio_triangulator *out);

@@ -35,6 +35,7 @@ MODES = [
     "delaunay cloud.ply", "delaunay cloud.ply -o out.node", "delaunay cloud.ply --plane xy -o out.ply",
     "delaunay mesh.ply --locate trace",
     "surface cloud.ply", "surface cloud.ply -o out.ply", "surface cloud.ply -o out.stl",
+    "surface cloud.ply --tiles 2 --scratch . -o out.ply",
     "surface cloud.ply --method power-crust -o out.ply", "surface cloud.ply --method cocone -o out.ply",
     "surface cloud.ply --method cocone --pieces 3 -o out.ply",
     "medial cloud.ply -o out.ply", "medial cloud.ply", "medial cloud.ply --method voronoi -o out.ply", "balls axis.ply -o out.ply", "hull text.csv",

@@ -112,6 +112,7 @@ class Tiles(CliTest):
     def test_surfaces_are_those_without_tiles(self):
         self.facts("generate", "scan", "--points", "9000", "-o", self.path("scan.ply"))
         self.same_surface(self.path("scan.ply"), tiles=1)
+        self.same_surface(self.path("scan.ply"), tiles=2)
         self.same_surface(self.path("scan.ply"), "--closed", "--threads", "2", tiles=7, files=[("--normals", "normals.ply")])
         self.same_surface(self.path("scan.ply"), "--open", "4", "--noise", "smooth", "--simplify", tiles=64)
         rows = self.path("few.csv")  # with twins, a property, and a stray
@@ -124,6 +125,13 @@ class Tiles(CliTest):
                 f.write(("%.3f,%.3f,%.3f,%d\n" % (*[c / r for c in p], i)) * (1 + (i % 50 == 0)))
             f.write("9,9,9,0\n")
         self.same_surface(rows, tiles=5)
+
+    def test_surfaces_whose_tiles_are_too_large_are_refused_before_the_work(self):
+        self.facts("generate", "scan", "--points", "30000", "-o", self.path("scan.ply"))
+        large = "surface", self.path("scan.ply"), "-o", self.path("o.ply"), "--scratch", self.scratch(), "--max-memory", "5M", "--tiles"
+        sentence = self.expect(4, *large, "2").err
+        self.assertRegex(sentence, r"each of 2 tiles has about \d+ points, and needs about \d MB of the 5 MB that are allowed: take about \d tiles")
+        self.assertEqual(os.listdir(self.scratch()), [])
 
     def test_points_in_a_plane_need_no_tiles(self):
         with open(self.path("ring.csv"), "w", encoding="ascii") as f:

@@ -186,6 +186,25 @@ static void what_tiles_have_not_is_refused(void) {
     brio_context_free(ctx);
 }
 
+/* Points that are given twice need no memory of a tile. */
+static void shares_of_tiles_that_are_too_large_are_refused_before_the_work(void) {
+    brio_context *ctx = new_context();
+    brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = 2};
+    brio_surface_options options = {.size = sizeof options, .tiles = &o};
+    brio_surface_stats stats = {.size = sizeof stats};
+    brio_mesh *mesh = NULL;
+    uniform_points(5, 3000, points);
+    brio_context_set_memory_limit(ctx, 700000);
+    EXPECT(brio_surface(ctx, points, 3000, &options, &mesh, &stats) == BRIO_ERR_NO_MEMORY && !mesh);
+    EXPECT(strstr(brio_message(ctx), "each of 2 tiles has about 1"), "%s", brio_message(ctx));
+    EXPECT(strstr(brio_message(ctx), "take about 3 tiles") && files_left() == 0, "%s", brio_message(ctx));
+    for (size_t i = 300; i < 3000; i++) memcpy(points + 3 * i, points + 3 * (i % 300), 3 * sizeof *points);
+    (void)brio_surface(ctx, points, 3000, &options, &mesh, &stats);
+    EXPECT(!strstr(brio_message(ctx), "each of 2 tiles"), "%s", brio_message(ctx));
+    brio_mesh_free(mesh);
+    brio_context_free(ctx);
+}
+
 /* --- failures --- */
 
 static brio_status make_a_surface(brio_context *ctx, size_t n) {
@@ -247,6 +266,7 @@ SUITE(test_tiles_surface) {
     RUN(surfaces_have_the_bits_of_one_process);
     RUN(points_without_a_solid_have_the_same_sentence);
     RUN(what_tiles_have_not_is_refused);
+    RUN(shares_of_tiles_that_are_too_large_are_refused_before_the_work);
     RUN(no_memory_is_a_status);
     RUN(cancelled_surfaces_leave_nothing);
     rmdir(folder);

@@ -141,6 +141,16 @@ static brio_status require_room(brio_context *ctx, const double *points, size_t 
     return BRIO_OK;
 }
 
+/* Refuses tiles that do not fit in memory, before the work. Points that are given twice count once. */
+static brio_status require_memory_of_tiles(brio_context *ctx, const double *points, size_t num_points,
+                                           const brio_tiles_options *o) {
+    uint64_t *seen;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, seen, ROOM));
+    double positions = count_positions(points, num_points, seen);
+    brio_release(ctx, seen);
+    return brio_tiles_require_share(ctx, o, positions);
+}
+
 /* Makes the surface by its method, from triangulations that are made in tiles if options say so. */
 static brio_status make(brio_context *ctx, const double *points, size_t num_points, const brio_surface_options *o,
                         brio_mesh *mesh, brio_surface_stats *stats) {
@@ -148,6 +158,7 @@ static brio_status make(brio_context *ctx, const double *points, size_t num_poin
     const brio_method_row *method = brio_method_row_of(o->method);
     if (!o->tiles) return method->make(ctx, points, num_points, o, mesh, stats);
     BRIO_FORWARD(brio_triangulate_in_tiles(ctx, o->tiles, &in_tiles));
+    BRIO_FORWARD(require_memory_of_tiles(ctx, points, num_points, o->tiles));
     ctx->triangulator = &in_tiles;
     brio_status status = method->make(ctx, points, num_points, o, mesh, stats);
     ctx->triangulator = NULL;
