@@ -260,10 +260,6 @@ void brio_tiles_leave(brio_tiles *t) {
 
 /* --- all stages --- */
 
-double brio_tiles_least_memory(const brio_tiles_options *o, double points) {
-    return BYTES_A_POINT * points / (o->tiles ? o->tiles : TILES);
-}
-
 double brio_tiles_disk(double points) {
     return DISK_A_POINT * points;
 }

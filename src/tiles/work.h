@@ -86,9 +86,7 @@ brio_status brio_tiles_arrange(brio_tiles *t);
 /** Triangulates one tile, and writes its file. */
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 
-/** Return the bytes that brio_tiles_run needs for points at different positions: memory for one of equal tiles, and
- *  disk. Cells need more. */
-double brio_tiles_least_memory(const brio_tiles_options *options, double points);
+/** Returns the bytes of the disk that brio_tiles_run needs for points at different positions. Cells need more. */
 double brio_tiles_disk(double points);
 
 /** Refuses tiles that do not fit in the memory that the context may have.   at_once  tiles in memory together. */

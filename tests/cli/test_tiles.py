@@ -126,6 +126,27 @@ class Tiles(CliTest):
             f.write("9,9,9,0\n")
         self.same_surface(rows, tiles=5)
 
+    def test_surfaces_of_few_points_in_tiles(self):
+        rng = random.Random(4)
+        for n in (4, 5, 8, 20, 50) if not os.environ.get("BRIO_LONG") else range(4, 51):
+            with open(self.path("few.csv"), "w", encoding="ascii") as f:
+                f.write("x,y,z,height\n" + "".join("%.2f,%.2f,%.2f,%d\n" % (*(rng.random() for _ in range(3)), i) for i in range(n)))
+            plain = self.run_brio("surface", self.path("few.csv"), "--closed", "-o", self.path("x.ply"))
+            if plain.code == 0:
+                self.same_surface(self.path("few.csv"), "--closed", tiles=rng.choice((1, 2, 7)))
+            else:  # the points bound no solid
+                tiled = self.expect(3, "surface", self.path("few.csv"), "--closed", "-o", self.path("x.ply"), "--tiles", "2", "--scratch", self.scratch())
+                self.assertEqual((plain.code, plain.err), (3, tiled.err))
+                self.assertEqual(os.listdir(self.scratch()), [])
+
+    @unittest.skipUnless(os.environ.get("BRIO_LONG"), "skipped: long")
+    def test_larger_surfaces_in_any_number_of_tiles(self):
+        self.facts("generate", "scan", "--points", "30000", "-o", self.path("scan.ply"))
+        for tiles in (1, 2, 7, 64):
+            for more in ((), ("--closed", "--noise", "smooth"), ("--open", "6"), ("--simplify",), ("--noise", "keep", "--vertex-normals")):
+                with self.subTest((tiles, more)):
+                    self.same_surface(self.path("scan.ply"), *more, tiles=tiles, files=[("--normals", "normals.ply"), ("--left-out", "out.ply")])
+
     def test_surfaces_whose_tiles_are_too_large_are_refused_before_the_work(self):
         self.facts("generate", "scan", "--points", "30000", "-o", self.path("scan.ply"))
         large = "surface", self.path("scan.ply"), "-o", self.path("o.ply"), "--scratch", self.scratch(), "--max-memory", "5M", "--tiles"
@@ -164,16 +185,6 @@ class Tiles(CliTest):
             self.assertFalse(os.path.exists(self.path("o.ply")))
         self.facts("surface", self.path("scan.ply"), "-o", self.path("o.ply"), "--tiles", "4", "--scratch", self.scratch())
         self.assertEqual(os.listdir(self.scratch()), [])  # what the killed ones left, too
-
-    def test_surfaces_are_counted_before_the_work(self):
-        self.rows("a.csv", 60000)
-        limits = ("--scratch", self.scratch(), "-o", self.path("o.ply"), "--max-memory", "11M", "--tiles")
-        self.assertIn("a tile of the 60000 points needs about 15.6 MB, and 11.5 MB are allowed: take more tiles",
-                      self.expect(4, "surface", self.path("a.csv"), *limits, "2").err)
-        with open(self.path("twice.csv"), "w", encoding="ascii") as f:  # points that are given twice need it once
-            f.write("x,y,z\n" + "".join("%r,%r,%r\n" % p for p in [(i % 7, i % 11 / 3, i % 13 / 5) for i in range(40000)]))
-        self.expect(0, "surface", self.path("twice.csv"), *limits, "1")
-        self.assertEqual(os.listdir(self.scratch()), [])
 
     @posix_alone
     def test_a_disk_too_small_for_a_surface_in_tiles_is_said_before_the_work(self):

@@ -104,40 +104,24 @@ static double count_positions(const double *points, size_t num_points, uint64_t 
     return fmin((double)count * (double)step, (double)num_points);
 }
 
-/* Bytes that a surface needs, or that there are: of scratch files, and of memory for a tile. */
-typedef struct {
-    double disk, tile;
-} space;
-
-static space needed(double num_points, const brio_surface_options *o) {
-    space need = {brio_method_bytes(brio_method_row_of(o->method), num_points, o), 0};
-    if (!o->tiles) return need;
-    need.disk += brio_tiles_disk(num_points);
-    need.tile = brio_tiles_least_memory(o->tiles, num_points);
-    return need;
+static double disk_bytes(double num_points, const brio_surface_options *o) {
+    double bytes = brio_method_bytes(brio_method_row_of(o->method), num_points, o);
+    return o->tiles ? bytes + brio_tiles_disk(num_points) : bytes;
 }
 
-static bool fits(space need, space there) {
-    return SURE * need.disk <= there.disk && SURE * need.tile <= there.tile;
-}
-
-/* Refuses points for which the folder of scratch files, or the memory for a tile, has no room: before the work, not an
- * hour after. Points that are given twice need it once; they are looked for only where it matters. */
-static brio_status require_room(brio_context *ctx, const double *points, size_t num_points,
+/* Refuses points for which the folder of scratch files has no room: before the work, not an hour after. Points that are
+ * given twice need it once; they are looked for only where it matters. */
+static brio_status require_disk(brio_context *ctx, const double *points, size_t num_points,
                                 const brio_surface_options *o) {
-    uint64_t disk, *seen; /* not on the stack, of which callers may have 64 KiB */
-    space there = {INFINITY, (double)brio_memory_limit(ctx)}, need = needed((double)num_points, o);
-    if (brio_scratch_room(ctx, &disk)) there.disk = (double)disk;
-    if (fits(need, there)) return BRIO_OK;
+    uint64_t room, *seen; /* not on the stack, of which callers may have 64 KiB */
+    double need = disk_bytes((double)num_points, o);
+    if (!brio_scratch_room(ctx, &room) || SURE * need <= (double)room) return BRIO_OK;
     BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, seen, ROOM));
-    need = needed(count_positions(points, num_points, seen), o);
+    need = disk_bytes(count_positions(points, num_points, seen), o);
     brio_release(ctx, seen);
-    BRIO_EXPECT(ctx, SURE * need.disk <= there.disk, BRIO_ERR_NO_MEMORY,
+    BRIO_EXPECT(ctx, SURE * need <= (double)room, BRIO_ERR_NO_MEMORY,
                 "%s: %zu points need about %.0f MB of scratch files, and this disk has room for %.0f MB", ctx->scratch,
-                num_points, need.disk / 1e6, there.disk / 1e6);
-    BRIO_EXPECT(ctx, fits(need, there), BRIO_ERR_NO_MEMORY,
-                "a tile of the %zu points needs about %.1f MB, and %.1f MB are allowed: take more tiles", num_points,
-                need.tile / 1e6, there.tile / 1e6);
+                num_points, need / 1e6, (double)room / 1e6);
     return BRIO_OK;
 }
 
@@ -176,7 +160,7 @@ brio_status brio_surface(brio_context *ctx, const double *points, size_t num_poi
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_surface_stats, stats));
     BRIO_TRY(settle(ctx, options, &o));
     BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
-    BRIO_TRY(require_room(ctx, points, num_points, &o));
+    BRIO_TRY(require_disk(ctx, points, num_points, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
     BRIO_TRY(make(ctx, points, num_points, &o, mesh, &s));
     *out = mesh;
