@@ -126,6 +126,27 @@ class Tiles(CliTest):
             f.write("9,9,9,0\n")
         self.same_surface(rows, tiles=5)
 
+    def test_surfaces_of_few_points_in_tiles(self):
+        rng = random.Random(4)
+        for n in (4, 5, 8, 20, 50) if not os.environ.get("BRIO_LONG") else range(4, 51):
+            with open(self.path("few.csv"), "w", encoding="ascii") as f:
+                f.write("x,y,z,height\n" + "".join("%.2f,%.2f,%.2f,%d\n" % (*(rng.random() for _ in range(3)), i) for i in range(n)))
+            plain = self.run_brio("surface", self.path("few.csv"), "--closed", "-o", self.path("x.ply"))
+            if plain.code == 0:
+                self.same_surface(self.path("few.csv"), "--closed", tiles=rng.choice((1, 2, 7)))
+            else:  # the points bound no solid
+                tiled = self.expect(3, "surface", self.path("few.csv"), "--closed", "-o", self.path("x.ply"), "--tiles", "2", "--scratch", self.scratch())
+                self.assertEqual((plain.code, plain.err), (3, tiled.err))
+                self.assertEqual(os.listdir(self.scratch()), [])
+
+    @unittest.skipUnless(os.environ.get("BRIO_LONG"), "skipped: long")
+    def test_larger_surfaces_in_any_number_of_tiles(self):
+        self.facts("generate", "scan", "--points", "30000", "-o", self.path("scan.ply"))
+        for tiles in (1, 2, 7, 64):
+            for more in ((), ("--closed", "--noise", "smooth"), ("--open", "6"), ("--simplify",), ("--noise", "keep", "--vertex-normals")):
+                with self.subTest((tiles, more)):
+                    self.same_surface(self.path("scan.ply"), *more, tiles=tiles, files=[("--normals", "normals.ply"), ("--left-out", "out.ply")])
+
     def test_points_in_a_plane_need_no_tiles(self):
         with open(self.path("ring.csv"), "w", encoding="ascii") as f:
             f.write("x,y,z\n0,0,1\n1,0,1\n1,1,1\n0,1,1\n")
