@@ -14,10 +14,10 @@
  * The patches of a cut are listed before any is flipped, and go in the order of their hashes (hash_order.h). So what
  * becomes of one depends on those beside it, and on no number of a tetrahedron.
  *
- * That order goes here and there, and where arrays are in scratch files each place is a page to wait for. Nearly all
- * patches only deform the boundary. So this is found out when they are listed, along the tetrahedra, and it stands
- * until a flip that stays has a sample of the patch (forget_patches): the order of hashes meets no other patch's
- * pages. */
+ * That order goes here and there, and where arrays are in scratch files each place is pages to wait for. Nearly all
+ * patches only deform the boundary, and of the others most are not worth what they cost. So each is weighed when it is
+ * listed, along the tetrahedra, with the samples noted whose stars that reads. What is found stands until a flip that
+ * stays has one of these samples (forget_readers): the order of hashes meets the pages of few patches. */
 #include "reconstruct/labeled_delaunay/weak_handles.h"
 #include "base/memory.h"
 #include "base/sort.h"
@@ -31,6 +31,15 @@
 /* BIASES: cuts for each label. MOST_PATCH: tetrahedra of a patch. NEARBY: while no more tetrahedra were looked at,
  * their neighbours are, too, until those next to a patch are connected. All chosen. */
 enum { BIASES = 3, MOST_PATCH = BRIO_MOST_SIMPLE, NEARBY = 4096 };
+
+/* Samples are noted in blocks of so many, which are near each other. Chosen. */
+enum { BLOCK = 16 };
+
+#ifdef NDEBUG
+enum { CHECKED = 0 };
+#else
+enum { CHECKED = 1 };
+#endif
 
 /* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with
  * it, before samples are looked at. Chosen: on generated solids, raw scans and the models beside the project 8, 16 and
@@ -55,9 +64,13 @@ typedef struct {
     size_t *first;  /* where each begins */
     uint64_t *hash; /* of each */
     size_t size, num_patches, room, first_room, hash_room;
-    uint8_t *deforms; /* of each patch: whether it deforms the boundary only, as far as is known */
-    uint64_t *owner;  /* tetrahedron << 32 | patch, ascending; listed when it is needed */
-    size_t num_owners, deforms_room, owner_room;
+    uint8_t *settled; /* of each patch: whether it is known that its flips do not stay */
+    uint32_t *noted;  /* #P / BLOCK: the last weighing that read samples of the block, counted by `weighings` */
+    uint32_t weighings;
+    uint32_t *read;   /* blocks of samples whose stars the last weighing read */
+    uint64_t *reader; /* block << 32 | settled patch that has read it; ascending when the first flips stay */
+    size_t num_read, num_readers, settled_room, read_room, reader_room;
+    bool is_sorted; /* `reader` */
     size_t removed;
 } search;
 
@@ -99,49 +112,39 @@ static uint64_t sort_by_hash(const search *s, uint32_t *tet, size_t count) {
     return sum;
 }
 
-/* Lists the patch of a tetrahedron, and marks it as done. Leaves it out if it is too large. Looks at once whether it
- * deforms the boundary only, which nearly all do: patches are listed in the order of the tetrahedra, so what one reads
- * is near what the last one read. */
-static brio_status list_patch(search *s, uint32_t seed, uint8_t label) {
+/* --- what a weighing reads --- */
+
+static brio_status note(search *s, uint32_t sample) {
     brio_status status = BRIO_OK;
-    size_t begin = s->size;
-    uint64_t hash;
-    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->tet, s->room, begin + 1));
-    s->tet[s->size++] = seed;
-    s->leaning[seed] = label;
-    for (size_t i = begin; i < s->size; i++) {
-        BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->tet, s->room, s->size + 4));
-        for (int k = 0; k < 4; k++) {
-            uint32_t other = brio_tet_of(s->t->tet[s->tet[i]].mate[k]);
-            if (!leans(s, other, label)) continue;
-            s->leaning[other] = label;
-            s->tet[s->size++] = other;
-        }
-    }
-    if (s->size - begin > MOST_PATCH) {
-        s->size = begin;
-        return BRIO_OK;
-    }
-    hash = sort_by_hash(s, s->tet + begin, s->size - begin);
-    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->first, s->first_room, s->num_patches + 2));
-    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->hash, s->hash_room, s->num_patches + 1));
-    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->deforms, s->deforms_room, s->num_patches + 1));
-    s->hash[s->num_patches] = hash;
-    s->first[s->num_patches] = begin;
-    s->deforms[s->num_patches] = brio_flips_deform(s->m, s->tet + begin, s->size - begin);
-    s->first[++s->num_patches] = s->size;
+    if (sample == s->t->infinite || s->noted[sample / BLOCK] == s->weighings) return BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->read, s->read_room, s->num_read + 1));
+    s->read[s->num_read++] = sample / BLOCK;
+    s->noted[sample / BLOCK] = s->weighings;
 done:
     return status;
 }
 
-/* Lists the patches of tetrahedra with a label that have the other one if the votes lean to it. */
-static brio_status list_patches(search *s, uint8_t label) {
+/* Notes the first samples of a tetrahedron. Each of its neighbours has one of any two. */
+static brio_status note_samples(search *s, uint32_t tet, int count) {
     brio_status status = BRIO_OK;
-    s->size = s->num_patches = s->num_owners = 0;
-    for (uint32_t tet = 0; tet < s->f->num_finite; tet++) {
-        brio_along(s->f->ctx, tet, s->f->num_finite, BRIO_READS(s->t->tet));
-        if (leans(s, tet, label)) BRIO_TRY(list_patch(s, tet, label));
-    }
+    for (int k = 0; k < count; k++) BRIO_TRY(note(s, s->t->tet[tet].vertex[k]));
+done:
+    return status;
+}
+
+/* Notes what flips [from, size) and the mending after them read: of samples of these flips, which are all that were
+ * mended, the stars, and the stars of their samples. */
+static brio_status note_flips(search *s, size_t from) {
+    brio_status status = BRIO_OK;
+    const brio_vote_graph *g = s->f->g;
+    for (size_t i = from; i < s->f->size; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t p = s->t->tet[s->f->flipped[i]].vertex[k];
+            BRIO_TRY(note(s, p));
+            if (g->first[p + 1] - g->first[p] > BRIO_STAR_ROOM) continue;
+            for (size_t n = g->first[p]; n < g->first[p + 1]; n++)
+                BRIO_TRY(note_samples(s, brio_star_tet(g->star[n]), 4));
+        }
 done:
     return status;
 }
@@ -167,17 +170,20 @@ static size_t mark_next_to(search *s, size_t from, uint8_t label, uint32_t stamp
 
 typedef enum { APART, TOGETHER, NOTHING } neighbours;
 
-/* Returns whether the tetrahedra with a label next to flips are connected nearby, or whether there are none. Looks ring
+/* Finds whether the tetrahedra with a label next to flips are connected nearby, or whether there are none. Looks ring
  * after ring round one of them, each as a whole: so the order within a ring does not matter. */
-static neighbours look_next_to(search *s, size_t from, uint8_t label) {
+static brio_status look_next_to(search *s, size_t from, uint8_t label, neighbours *out) {
+    brio_status status = BRIO_OK;
     uint32_t wanted = ++s->stamp, done = ++s->stamp;
     size_t size = 1, ring = 1, left = mark_next_to(s, from, label, wanted, s->front);
-    if (left == 0) return NOTHING;
+    *out = NOTHING;
+    if (left == 0) return BRIO_OK;
     s->seen[s->front[0]] = done;
     left--;
     for (size_t i = 0; i < size && left > 0; i++) {
         if (i == ring && size > NEARBY) break;
         if (i == ring) ring = size;
+        BRIO_TRY(note_samples(s, s->front[i], 2));
         for (int k = 0; k < 4; k++) {
             uint32_t other = brio_tet_of(s->t->tet[s->front[i]].mate[k]);
             if (s->f->label[other] != label || s->seen[other] == done) continue;
@@ -186,7 +192,9 @@ static neighbours look_next_to(search *s, size_t from, uint8_t label) {
             s->front[size++] = other;
         }
     }
-    return left == 0 ? TOGETHER : APART;
+    *out = left == 0 ? TOGETHER : APART;
+done:
+    return status;
 }
 
 /* --- one patch --- */
@@ -201,28 +209,149 @@ done:
     return status;
 }
 
-/* Returns whether flips are worth what they cost.   twice  by how much they raise twice the Euler characteristic. */
-static bool is_worth(search *s, uint8_t label, size_t from, int64_t cost, int64_t twice) {
-    if (twice == 0) return false;
-    neighbours left = look_next_to(s, from, label), grown = look_next_to(s, from, brio_other_label(label));
-    if (left == NOTHING) twice = 4;
-    return left != APART && grown == TOGETHER && twice > 0 && 4 * cost < twice * HANDLE;
+/* Finds whether flips are worth what they cost.   twice  by how much they raise twice the Euler characteristic. */
+static brio_status is_worth(search *s, uint8_t label, size_t from, int64_t cost, int64_t twice, bool *worth) {
+    brio_status status = BRIO_OK;
+    enum { ALONE = 4 }; /* what a crumb or a bubble counts */
+    neighbours left, grown;
+    *worth = false;
+    if (twice == 0 || 4 * cost >= (twice > ALONE ? twice : ALONE) * HANDLE) return BRIO_OK;
+    BRIO_TRY(look_next_to(s, from, label, &left));
+    if (left == NOTHING) twice = ALONE;
+    if (left == APART || twice <= 0 || 4 * cost >= twice * HANDLE) return BRIO_OK;
+    BRIO_TRY(look_next_to(s, from, brio_other_label(label), &grown));
+    *worth = grown == TOGETHER;
+done:
+    return status;
 }
 
-/* Flips a patch, and takes the flips back unless they are worth their energy. */
-static brio_status weigh_patch(search *s, const uint32_t *patch, size_t count, uint8_t label) {
+/* Flips a patch, and takes the flips back unless they are worth their energy.
+ * stays  whether the flips may stay.   worth  receives whether they are worth it. */
+static brio_status weigh_patch(search *s, const uint32_t *patch, size_t count, uint8_t label, bool stays, bool *worth) {
     brio_status status = BRIO_OK;
     size_t from = s->f->size, singular = s->m->singular;
     int64_t energy = s->f->energy, twice = s->f->faces - 2 * s->m->all_fans;
+    *worth = false;
     brio_mending_forget(s->m);
     BRIO_TRY(flip_patch(s, patch, count));
+    BRIO_TRY(note_flips(s, from));
     size_t to = s->f->size;
     twice += 2 * s->m->all_fans - s->f->faces;
-    bool worth = s->m->singular <= singular && is_worth(s, label, from, s->f->energy - energy, twice);
-    s->removed += worth;
-    if (worth) goto done;
+    if (s->m->singular <= singular) BRIO_TRY(is_worth(s, label, from, s->f->energy - energy, twice, worth));
+    if (*worth && stays) goto done;
     brio_take_back(s->f, from);
     BRIO_TRY(brio_mending_look(s->m, from, to));
+done:
+    return status;
+}
+
+/* Weighs a patch unless it deforms the boundary only, and notes what that reads. */
+static brio_status try_patch(search *s, const uint32_t *patch, size_t count, uint8_t label, bool stays, bool *worth) {
+    brio_status status = BRIO_OK;
+    *worth = false;
+    s->num_read = 0;
+    s->weighings++;
+    if (brio_flips_deform(s->m, patch, count))
+        for (size_t i = 0; i < count; i++) BRIO_TRY(note_samples(s, patch[i], 4));
+    else
+        BRIO_TRY(weigh_patch(s, patch, count, label, stays, worth));
+done:
+    return status;
+}
+
+/* --- all patches of a cut --- */
+
+/* Lists the patch of a tetrahedron, and marks it as done. */
+static brio_status flood_patch(search *s, uint32_t seed, uint8_t label) {
+    brio_status status = BRIO_OK;
+    size_t begin = s->size;
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->tet, s->room, begin + 1));
+    s->tet[s->size++] = seed;
+    s->leaning[seed] = label;
+    for (size_t i = begin; i < s->size; i++) {
+        BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->tet, s->room, s->size + 4));
+        for (int k = 0; k < 4; k++) {
+            uint32_t other = brio_tet_of(s->t->tet[s->tet[i]].mate[k]);
+            if (!leans(s, other, label)) continue;
+            s->leaning[other] = label;
+            s->tet[s->size++] = other;
+        }
+    }
+done:
+    return status;
+}
+
+/* Adds a settled patch to the readers of what its weighing read. */
+static brio_status list_reader(search *s, size_t patch) {
+    brio_status status = BRIO_OK;
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->reader, s->reader_room, s->num_readers + s->num_read));
+    for (size_t i = 0; i < s->num_read; i++) s->reader[s->num_readers++] = (uint64_t)s->read[i] << 32 | patch;
+done:
+    return status;
+}
+
+/* Lists the patch of a tetrahedron, and weighs it. Leaves it out if it is too large. Patches are listed in the order of
+ * the tetrahedra, so what one reads is near what the last one read. */
+static brio_status list_patch(search *s, uint32_t seed, uint8_t label) {
+    brio_status status = BRIO_OK;
+    size_t begin = s->size, patch = s->num_patches;
+    bool worth;
+    BRIO_TRY(flood_patch(s, seed, label));
+    if (s->size - begin > MOST_PATCH) {
+        s->size = begin;
+        return BRIO_OK;
+    }
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->first, s->first_room, patch + 2));
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->hash, s->hash_room, patch + 1));
+    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->settled, s->settled_room, patch + 1));
+    s->hash[patch] = sort_by_hash(s, s->tet + begin, s->size - begin);
+    s->first[patch] = begin;
+    s->first[patch + 1] = s->size;
+    s->num_patches++;
+    BRIO_TRY(try_patch(s, s->tet + begin, s->size - begin, label, false, &worth));
+    s->settled[patch] = !worth;
+    if (!worth) BRIO_TRY(list_reader(s, patch));
+done:
+    return status;
+}
+
+/* Lists the patches of tetrahedra with a label that have the other one if the votes lean to it. */
+static brio_status list_patches(search *s, uint8_t label) {
+    brio_status status = BRIO_OK;
+    s->size = s->num_patches = s->num_readers = 0;
+    s->is_sorted = false;
+    for (uint32_t tet = 0; tet < s->f->num_finite; tet++) {
+        brio_along(s->f->ctx, tet, s->f->num_finite, BRIO_READS(s->t->tet));
+        if (leans(s, tet, label)) BRIO_TRY(list_patch(s, tet, label));
+    }
+done:
+    return status;
+}
+
+/* Returns the first reader of a block of samples, or one of a later block, or s->num_readers. */
+static size_t first_reader(const search *s, uint32_t block) {
+    size_t low = 0, high = s->num_readers;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (s->reader[middle] >> 32 < block)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* Forgets what is known of the patches that have read stars of samples of flips [from, size). */
+static brio_status forget_readers(search *s, size_t from) {
+    brio_status status = BRIO_OK;
+    if (!s->is_sorted) BRIO_TRY(brio_sort_many_keys(s->f->ctx, s->reader, s->num_readers));
+    s->is_sorted = true;
+    for (size_t i = from; i < s->f->size; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t block = s->t->tet[s->f->flipped[i]].vertex[k] / BLOCK;
+            for (size_t n = first_reader(s, block); n < s->num_readers && s->reader[n] >> 32 == block; n++)
+                s->settled[(uint32_t)s->reader[n]] = 0;
+        }
 done:
     return status;
 }
@@ -235,64 +364,23 @@ static size_t keep_label(const search *s, uint32_t *patch, size_t count, uint8_t
     return kept;
 }
 
-/* Lists which patch each tetrahedron of the patches is in, by tetrahedra. */
-static brio_status list_owners(search *s) {
+/* Gives a patch its turn: its flips stay if they are worth what they cost. */
+static brio_status take_turn(search *s, size_t patch, uint8_t label) {
     brio_status status = BRIO_OK;
-    BRIO_TRY(BRIO_RESERVE(s->f->ctx, s->owner, s->owner_room, s->size));
-    for (size_t i = 0; i < s->num_patches; i++)
-        for (size_t k = s->first[i]; k < s->first[i + 1]; k++) s->owner[k] = (uint64_t)s->tet[k] << 32 | i;
-    BRIO_TRY(brio_sort_many_keys(s->f->ctx, s->owner, s->size));
-    s->num_owners = s->size;
+    uint32_t *tet = s->tet + s->first[patch];
+    size_t from = s->f->size, count = keep_label(s, tet, s->first[patch + 1] - s->first[patch], label);
+    bool worth;
+    if (count == 0) return BRIO_OK;
+    BRIO_TRY(try_patch(s, tet, count, label, !s->settled[patch], &worth));
+    assert(!s->settled[patch] || !worth);
+    s->removed += worth;
+    if (worth) BRIO_TRY(forget_readers(s, from));
 done:
     return status;
 }
 
-/* Forgets what is known of the patch that a tetrahedron is in. */
-static void forget_patch(search *s, uint32_t tet) {
-    size_t low = 0, high = s->num_owners;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (s->owner[middle] >> 32 < tet)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    if (low < s->num_owners && s->owner[low] >> 32 == tet) s->deforms[(uint32_t)s->owner[low]] = 0;
-}
-
-/* Forgets what is known of the patches at the samples of flips [from, size). Whether a patch deforms the boundary only
- * is read from the stars of its samples. What is flipped in such a star has the sample, too. A patch at a sample with a
- * star of over BRIO_STAR_ROOM tetrahedra is never known to deform only, so that these stars need not be read. */
-static brio_status forget_patches(search *s, size_t from) {
-    brio_status status = BRIO_OK;
-    const brio_vote_graph *g = s->f->g;
-    if (s->num_owners == 0) BRIO_TRY(list_owners(s));
-    for (size_t i = from; i < s->f->size; i++)
-        for (int k = 0; k < 4; k++) {
-            uint32_t p = s->t->tet[s->f->flipped[i]].vertex[k];
-            if (g->first[p + 1] - g->first[p] > BRIO_STAR_ROOM) continue;
-            for (size_t n = g->first[p]; n < g->first[p + 1]; n++) forget_patch(s, brio_star_tet(g->star[n]));
-        }
-done:
-    return status;
-}
-
-/* Weighs a patch unless it deforms the boundary only. */
-static brio_status try_patch(search *s, size_t i, uint8_t label) {
-    brio_status status = BRIO_OK;
-    size_t from = s->f->size, count;
-    uint32_t *patch = s->tet + s->first[i];
-    assert(!s->deforms[i] || brio_flips_deform(s->m, patch, s->first[i + 1] - s->first[i]));
-    if (s->deforms[i]) return BRIO_OK;
-    count = keep_label(s, patch, s->first[i + 1] - s->first[i], label);
-    if (count == 0 || brio_flips_deform(s->m, patch, count)) return BRIO_OK;
-    BRIO_TRY(weigh_patch(s, patch, count, label));
-    if (s->f->size > from) BRIO_TRY(forget_patches(s, from));
-done:
-    return status;
-}
-
-/* Weighs the patches of tetrahedra with a label that have the other one if the votes lean to it. */
+/* Weighs the patches of tetrahedra with a label that have the other one if the votes lean to it. Checked builds weigh
+ * the settled ones again. */
 static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     brio_status status = BRIO_OK;
     brio_context *ctx = s->f->ctx;
@@ -303,7 +391,8 @@ static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     BRIO_TRY(BRIO_ALLOC(ctx, order, s->num_patches));
     for (size_t i = 0; i < s->num_patches; i++) order[i] = (uint32_t)i;
     BRIO_TRY(brio_radix_sort(ctx, s->hash, order, s->num_patches, 64));
-    for (size_t i = 0; i < s->num_patches; i++) BRIO_TRY(try_patch(s, order[i], label));
+    for (size_t i = 0; i < s->num_patches; i++)
+        if (CHECKED || !s->settled[order[i]]) BRIO_TRY(take_turn(s, order[i], label));
 done:
     brio_release(ctx, order);
     return status;
@@ -321,6 +410,7 @@ brio_status brio_remove_weak_handles(brio_mending *m, size_t *removed) {
     BRIO_TRY(open_doubtful(s));
     BRIO_TRY(brio_vote_cut_new(s->f->g, s->open, &s->cut));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->seen, s->f->num_tets));
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, s->noted, s->f->num_samples / BLOCK + 1));
     for (int i = 0; i < BIASES; i++) {
         brio_label_samples(s->f);
         BRIO_TRY(weigh_patches(s, BRIO_LABEL_OUTER, BIAS[i]));
@@ -336,8 +426,10 @@ done:
         brio_release(ctx, s->tet);
         brio_release(ctx, s->first);
         brio_release(ctx, s->hash);
-        brio_release(ctx, s->deforms);
-        brio_release(ctx, s->owner);
+        brio_release(ctx, s->settled);
+        brio_release(ctx, s->noted);
+        brio_release(ctx, s->read);
+        brio_release(ctx, s->reader);
     }
     brio_release(ctx, s);
     return status;
