@@ -13,6 +13,7 @@
 #include "base/sort.h"
 #include "store/row_files.h"
 #include "tiles/work.h"
+#include "triangulation/canonical_turn.h"
 #include "triangulation/tetrahedra.h"
 #include <string.h>
 
@@ -36,15 +37,6 @@ static inline void vertices_of(const brio_tile_part *p, uint32_t facet, uint32_t
     sort_three(v);
 }
 
-static int compare_facets(uint32_t i, uint32_t j, const void *user) {
-    uint32_t a[3], b[3];
-    vertices_of(user, i, a);
-    vertices_of(user, j, b);
-    for (int k = 1; k < 3; k++) /* the least vertices are the same */
-        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
-    return 0;
-}
-
 /* Lists the facets of a part by their least vertex.   end  receives where those of each vertex end. */
 static void list_facets(const brio_tile_part *p, size_t *end, uint32_t *facet) {
     uint32_t v[3];
@@ -59,10 +51,33 @@ static void list_facets(const brio_tile_part *p, size_t *end, uint32_t *facet) {
     }
 }
 
+/* Returns the two vertices of a facet that are not its least one, as a number. */
+static uint64_t key_of(const brio_tile_part *p, uint32_t facet) {
+    uint32_t v[3];
+    vertices_of(p, facet, v);
+    return (uint64_t)v[1] << 32 | v[2];
+}
+
+static void join_facets(uint32_t tile, uint32_t a, uint32_t b, brio_tile_neighbour (*neighbours)[4]) {
+    neighbours[brio_tet_of(a)][brio_slot_of(a)] = (brio_tile_neighbour){tile, brio_tet_of(b)};
+    neighbours[brio_tet_of(b)][brio_slot_of(b)] = (brio_tile_neighbour){tile, brio_tet_of(a)};
+}
+
+/* Joins the facets of one vertex, of which at most two are alike. Few of them are compared each with each. */
+static void match(uint32_t tile, uint64_t *key, uint32_t *facet, size_t n, brio_tile_neighbour (*neighbours)[4]) {
+    enum { FEW = 64 }; /* chosen: a vertex is the least one of 27 in the mean */
+    size_t reach = n;
+    if (n > FEW) brio_heap_sort(key, facet, n), reach = 2;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = i + 1; j < n && j < i + reach; j++)
+            if (key[i] == key[j]) join_facets(tile, facet[i], facet[j], neighbours);
+}
+
 brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
                                    brio_tile_neighbour (*neighbours)[4]) {
     uint32_t *facet = NULL;
-    size_t *end = NULL;
+    size_t *end = NULL, room = 0;
+    uint64_t *key = NULL;
     brio_status status = BRIO_OK;
     BRIO_REQUIRE(ctx, p->num_tetrahedra <= MOST_TETRAHEDRA, BRIO_ERR_TOO_LARGE,
                  "tile %u has %zu tetrahedra; facets of at most %d have numbers: take more tiles", tile,
@@ -72,18 +87,16 @@ brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, end, p->num_vertices + 1));
     list_facets(p, end, facet);
     for (size_t v = 0, begin = 0; v < p->num_vertices; begin = end[v++]) {
-        brio_sort_indices(facet + begin, end[v] - begin, compare_facets, p);
-        for (size_t i = begin + 1; i < end[v]; i++) {
-            uint32_t a = facet[i - 1], b = facet[i];
-            if (compare_facets(a, b, p)) continue;
-            neighbours[brio_tet_of(a)][brio_slot_of(a)] = (brio_tile_neighbour){tile, brio_tet_of(b)};
-            neighbours[brio_tet_of(b)][brio_slot_of(b)] = (brio_tile_neighbour){tile, brio_tet_of(a)};
-        }
-        BRIO_TRY(brio_look(ctx, end[v] - begin));
+        size_t n = end[v] - begin;
+        BRIO_TRY(BRIO_RESERVE(ctx, key, room, n));
+        for (size_t i = 0; i < n; i++) key[i] = key_of(p, facet[begin + i]);
+        match(tile, key, facet + begin, n, neighbours);
+        BRIO_TRY(brio_look(ctx, n));
     }
 done:
     brio_release(ctx, facet);
     brio_release(ctx, end);
+    brio_release(ctx, key);
     return status;
 }
 
