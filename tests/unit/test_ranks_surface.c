@@ -207,6 +207,31 @@ static void a_rank_without_memory_ends_all(void) {
     EXPECT(failed > 0 && ended > 0, "%zu failed, %zu did not", failed, ended);
 }
 
+/* Tiles of one process would take the place of the ranks. */
+static void ranks_have_their_own_tiles(void) {
+    brio_context *ctx = new_context();
+    postman man = {0};
+    post office = {.ranks = 1};
+    brio_transport t = {
+        .size = sizeof t, .ranks = 1, .host = "here", .user = &man, .begin = post_begin, .end = post_end};
+    brio_ranks_options o = {.size = sizeof o, .scratch = folder};
+    const brio_tiles_options tiles = {.size = sizeof tiles, .scratch = folder, .tiles = 2};
+    const brio_surface_options options = {.size = sizeof options, .tiles = &tiles};
+    brio_team_of_ranks *team;
+    brio_mesh *mesh;
+    man.post = &office;
+    brio_mutex_new(&office.lock);
+    brio_condition_new(&office.changed);
+    EXPECT(brio_ranks_lead(ctx, &t, &o, &team) == BRIO_OK);
+    EXPECT(brio_surface(ctx, points, make_points(3, 500, 0), &options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(strstr(brio_message(ctx), "ranks triangulate for this surface"), "%s", brio_message(ctx));
+    EXPECT(brio_ranks_dismiss(team, BRIO_OK, NULL) == BRIO_OK);
+    free(man.held[0]);
+    brio_condition_free(&office.changed);
+    brio_mutex_free(&office.lock);
+    brio_context_free(ctx);
+}
+
 static void the_failure_of_the_leader_ends_all(void) {
     plan p = {.n = make_points(3, 500, 0), .ranks = 4, .tiles = 1, .poor = -1};
     points[77] = NAN;
@@ -237,6 +262,7 @@ SUITE(test_ranks_surface) {
     RUN(large_tiles_come_in_pieces);
     RUN(cuts_are_divided_among_ranks);
     RUN(a_rank_without_memory_ends_all);
+    RUN(ranks_have_their_own_tiles);
     RUN(the_failure_of_the_leader_ends_all);
     RUN(teams_have_neither_stars_nor_a_key);
     rmdir(folder);
