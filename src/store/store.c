@@ -20,10 +20,13 @@ static void path_of(const brio_store_folder *f, const char *name, char path[BRIO
     snprintf(path, BRIO_PATH_MOST, "%s/%s", f->path, name);
 }
 
-brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out) {
+/* Does what brio_store_begin does.   *in_use  receives whether it failed because another process has the folder. */
+static brio_status begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out,
+                         bool *in_use) {
     char path[BRIO_PATH_MOST];
     size_t size = strlen(parent) + strlen(name) + 2;
     *out = (brio_store_folder){.ctx = ctx, .lock = -1};
+    *in_use = false;
     BRIO_EXPECT(ctx, *parent && size < BRIO_PATH_MOST - 64, BRIO_ERR_OPEN, "%s: not a writable folder: %s",
                 *parent ? parent : "\"\"", strerror(*parent ? ENAMETOOLONG : ENOENT));
     BRIO_FORWARD(BRIO_ALLOC(ctx, out->path, size));
@@ -36,12 +39,17 @@ brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *
         if (there) out->lock = brio_lock_file(path);
     }
     if (out->lock >= 0) return BRIO_OK;
-    brio_fail(ctx, BRIO_ERR_OPEN, "%s: %s", out->path,
-              errno == EWOULDBLOCK ? "in use by another process" : strerror(errno));
+    *in_use = errno == EWOULDBLOCK;
+    brio_fail(ctx, BRIO_ERR_OPEN, "%s: %s", out->path, *in_use ? "in use by another process" : strerror(errno));
     if (made) brio_remove_folder(out->path);
     brio_release(ctx, out->path);
     out->path = NULL;
     return BRIO_ERR_OPEN;
+}
+
+brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out) {
+    bool in_use;
+    return begin(ctx, parent, name, out, &in_use);
 }
 
 /* Removes all files but the lock. */
@@ -53,10 +61,11 @@ brio_status brio_store_begin_free(brio_context *ctx, const char *parent, const c
     char numbered[64], path[BRIO_PATH_MOST];
     for (unsigned number = 1;; number++) {
         snprintf(numbered, sizeof numbered, "%s-%u", name, number);
-        brio_status status = brio_store_begin(ctx, parent, numbered, out);
+        bool in_use; /* it may be gone by now */
+        brio_status status = begin(ctx, parent, numbered, out, &in_use);
         if (status == BRIO_OK) break;
         snprintf(path, sizeof path, "%s/%s", parent, numbered);
-        if (status != BRIO_ERR_OPEN || number == MOST_AT_ONCE || !brio_is_there(path)) return status;
+        if (status != BRIO_ERR_OPEN || number == MOST_AT_ONCE || !(in_use || brio_is_there(path))) return status;
     }
     brio_store_clear(out);
     return BRIO_OK;

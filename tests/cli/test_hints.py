@@ -186,6 +186,7 @@ ERRORS = {
                                                                 ["delaunay few.xyz --order hilbert"]),
     "unknown option '%s'; did you mean '--%s'?": ("delaunay few.xyz --verfy", 1, ["delaunay few.xyz --verify"]),
     "--tiles needs --scratch DIR, where the tiles are": ("delaunay few.xyz --tiles 2", 1, ["delaunay few.xyz --tiles 2 --scratch ."]),
+    "the vectors of the cell are too %s": ("delaunay few.xyz --cell 1e140,1e140,1e140", 1, ["delaunay few.xyz --cell 9,9,9"]),
     "--error is for the mesh: -o OUT is missing": ("balls axis.ply --error 0.01", 1, ["balls axis.ply --error 0.01 -o out.ply"]),
     "no alpha: --alpha A or --alpha auto is missing": ("alpha few.xyz -o out.ply", 1, ["alpha few.xyz --alpha auto -o out.ply"]),
     "no property: --property NAME is missing": ("interpolate values.csv --at few.xyz -o out.csv", 1,

@@ -100,6 +100,7 @@ static void options_of_other_methods_are_refused(void) {
 /* The table says of every method and every option whether brio_surface takes it. */
 static void the_table_lists_the_options_that_are_taken(void) {
     static const brio_evidence evidence = {0};
+    static const brio_tiles_options tiles = {.scratch = ".", .tiles = 2};
     double normals[3 * N];
     brio_mesh *cube = NULL;
     brio_explanation *explanation = NULL;
@@ -125,7 +126,8 @@ static void the_table_lists_the_options_that_are_taken(void) {
                 {{.boundaries = 1}, "boundaries"},
                 {{.density = 1}, "density"},
                 {{.pieces = 2}, "pieces"},
-                {{.size = sizeof uses->o, .explanation = &explanation}, "explanation"}};
+                {{.size = sizeof uses->o, .explanation = &explanation}, "explanation"},
+                {{.size = sizeof uses->o, .tiles = &tiles}, "tiles"}};
     for (int method = 0; method < BRIO_SURFACE_END; method++) {
         const char *options = brio_surface_method_facts((brio_surface_method)method)->options;
         size_t listed = *options != 0, known = 0;
