@@ -183,7 +183,8 @@ BRIO_API brio_status brio_ranks_dismiss(brio_team_of_ranks *team, brio_status st
 
 /** Triangulates and cuts for rank 0 until it dismisses this rank: on all ranks but 0.
  *  options  as those of rank 0; the folder is one of this host.
- *  Returns what rank 0 says, with its sentence; or BRIO_ERR_OPEN if the transport failed. */
+ *  Returns what rank 0 says, with its sentence; BRIO_ERR_OPEN if the transport failed; or, before there were exchanges,
+ *  BRIO_ERR_ARGUMENT or BRIO_ERR_NO_MEMORY, which other ranks do not get to know: the caller must end them. */
 BRIO_API brio_status brio_ranks_serve(brio_context *ctx, const brio_transport *transport,
                                       const brio_ranks_options *options);
 

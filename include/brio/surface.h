@@ -215,11 +215,11 @@ struct brio_surface_options {
      * Takes 700 bytes a point more, and 4 kB an explained sample. */
     brio_explanation **explanation;
     size_t explained;
-    /* LABELED: NULL, or how the triangulations are made in tiles (brio/tiles.h): a folder, which one process uses at a
-     * time, and how many; neither `stars` nor a key. The surface has the same bits, however many. With a scratch folder
-     * of the context (brio_context_set_scratch), which may be the same one, nothing but a tile and parts of the other
-     * steps is in memory. Memory and disk of a triangulation: as of brio_tiles_run; tiles whose share of the points
-     * does not fit in the memory limit are refused before the work (BRIO_ERR_NO_MEMORY). */
+    /* LABELED: NULL, or how the triangulations are made in tiles (brio/tiles.h): a folder, and how many; neither
+     * `stars` nor a key. The surface has the same bits, however many. With a scratch folder of the context
+     * (brio_context_set_scratch), which may be the same one, nothing but a tile and parts of the other steps is in
+     * memory. Memory and disk of a triangulation: as of brio_tiles_run; tiles whose share of the points does not fit in
+     * the memory limit are refused before the work (BRIO_ERR_NO_MEMORY). */
     const struct brio_tiles_options *tiles;
 };
 

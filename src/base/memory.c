@@ -116,8 +116,8 @@ static void *map_file(brio_context *ctx, size_t size, brio_scratch_file *file, b
         if (!file->in_runs) brio_pages_advise(base, size, BRIO_PAGES_RANDOM);
         return base;
     }
-    *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file of %zu bytes cannot be mapped: %s", ctx->scratch,
-                        size, strerror(errno));
+    *status = brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file of %zu bytes cannot be mapped: %s",
+                        brio_scratch_name(ctx), size, strerror(errno));
     brio_scratch_close(file);
     return NULL;
 }
@@ -211,7 +211,7 @@ void brio_release(brio_context *ctx, void *block) {
 /* --- blocks in scratch files --- */
 
 static brio_status lost(brio_context *ctx) {
-    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", brio_scratch_name(ctx));
 }
 
 void brio_expect_random(const void *block) {

@@ -44,7 +44,7 @@ static brio_status move_all(brio_context *ctx, const brio_scratch_file *f, trans
         if (n < 0 && errno == EINVAL && past) n = move_some(f->cached, &t), past = false;
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0)
-            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot %s a scratch file: %s", ctx->scratch,
+            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot %s a scratch file: %s", brio_scratch_name(ctx),
                              t.in ? "read" : "write", n ? strerror(errno) : "it ends early");
         assert((size_t)n <= t.size);
         *direct &= past;
@@ -74,15 +74,16 @@ brio_status brio_scratch_require_whole(brio_context *ctx, const brio_scratch_fil
     }
     if (!memcmp(found, MARK, sizeof MARK)) return BRIO_OK;
     if (n < 0)
-        return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot read a scratch file: %s", ctx->scratch, strerror(errno));
-    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", ctx->scratch);
+        return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot read a scratch file: %s", brio_scratch_name(ctx),
+                         strerror(errno));
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: a scratch file was cut from outside", brio_scratch_name(ctx));
 }
 
 /* --- size --- */
 
 static brio_status no_room(brio_context *ctx, size_t size, int error) {
-    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s",
-                     ctx->scratch ? ctx->scratch : "scratch", size, strerror(error));
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: no room for a scratch file of %zu bytes: %s", brio_scratch_name(ctx),
+                     size, strerror(error));
 }
 
 brio_status brio_scratch_try(brio_context *ctx, const char *folder) {
@@ -185,7 +186,7 @@ static brio_status write_behind(brio_context *ctx, int file, size_t begin, size_
             brio_advise_cache(file, before, STRETCH, BRIO_CACHE_NEVER);
         }
         if (!taken)
-            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot write a scratch file: %s", ctx->scratch,
+            return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot write a scratch file: %s", brio_scratch_name(ctx),
                              strerror(errno));
     }
     return BRIO_OK;
@@ -210,7 +211,8 @@ brio_status brio_scratch_write(brio_context *ctx, const brio_scratch_file *f, si
 
 brio_status brio_scratch_settle(brio_context *ctx, const brio_scratch_file *f, size_t offset, size_t size) {
     if (brio_start_writing(f->cached, offset, size)) return BRIO_OK;
-    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot write a scratch file: %s", ctx->scratch, strerror(errno));
+    return brio_fail(ctx, BRIO_ERR_NO_MEMORY, "%s: cannot write a scratch file: %s", brio_scratch_name(ctx),
+                     strerror(errno));
 }
 
 void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size) {

@@ -59,4 +59,9 @@ brio_status brio_scratch_settle(brio_context *ctx, const brio_scratch_file *f, s
 /** Announces that these bytes will be read soon. */
 void brio_scratch_expect(const brio_scratch_file *f, size_t offset, size_t size);
 
+/** Returns how sentences name the folder of scratch files. Its name is put aside while tiles are in memory. */
+static inline const char *brio_scratch_name(const brio_context *ctx) {
+    return ctx->scratch ? ctx->scratch : "scratch";
+}
+
 #endif

@@ -35,9 +35,7 @@ static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *options) 
     return agree_on_points(r);
 }
 
-brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
-                           brio_ranks **out) {
-    BRIO_DOOR;
+brio_status brio_ranks_prepare(brio_context *ctx, const brio_transport *transport, brio_ranks **out) {
     brio_transport how = {0};
     brio_ranks *r = NULL;
     brio_status status = BRIO_OK;
@@ -51,11 +49,25 @@ brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, c
     r->ctx = ctx, r->rank = how.rank, r->ranks = how.ranks;
     r->cells.size = sizeof r->cells;
     BRIO_TRY(brio_exchange_new(ctx, &how, &r->x));
-    BRIO_TRY(brio_exchange_agree(&r->x, open_tiles(r, options)));
     *out = r;
     r = NULL;
 done:
     brio_ranks_free(r);
+    return status;
+}
+
+brio_status brio_ranks_open(brio_ranks *r, const brio_ranks_options *options) {
+    return brio_exchange_agree(&r->x, open_tiles(r, options));
+}
+
+brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
+                           brio_ranks **out) {
+    BRIO_DOOR;
+    BRIO_FORWARD(brio_ranks_prepare(ctx, transport, out));
+    brio_status status = brio_ranks_open(*out, options);
+    if (status == BRIO_OK) return BRIO_OK;
+    brio_ranks_free(*out);
+    *out = NULL;
     return status;
 }
 

@@ -146,7 +146,10 @@ static brio_status work_together(brio_team_of_ranks *t, at_rank_0 *own, brio_til
     brio_ranks *r = NULL;
     char *scratch = t->ctx->scratch;
     t->ctx->scratch = NULL; /* tiles are in memory */
-    BRIO_TRY(brio_ranks_new(t->ctx, &t->transport, &t->options, &r));
+    status = brio_ranks_prepare(t->ctx, &t->transport, &r);
+    if (status != BRIO_OK) status = brio_exchange_agree(&t->x, status); /* others are in brio_ranks_open */
+    BRIO_TRY(status);
+    BRIO_TRY(brio_ranks_open(r, &t->options));
     BRIO_TRY(brio_ranks_agree(t->ctx, r, add_points(r, own), NULL));
     BRIO_TRY(brio_ranks_run(t->ctx, r));
     *facts = *brio_ranks_facts(r);

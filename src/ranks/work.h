@@ -35,6 +35,11 @@ struct brio_ranks {
     bool has_result;
 };
 
+/** Does of brio_ranks_new what needs no other rank, so that its failure is known to none. */
+brio_status brio_ranks_prepare(brio_context *ctx, const brio_transport *transport, brio_ranks **out);
+/** Does the rest; collective. */
+brio_status brio_ranks_open(brio_ranks *r, const brio_ranks_options *options);
+
 /** --- stages, collective; each returns BRIO_OK or a failure of this rank or of all --- */
 
 /** Sends the points to the ranks of their tiles. */

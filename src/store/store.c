@@ -20,7 +20,8 @@ static void path_of(const brio_store_folder *f, const char *name, char path[BRIO
     snprintf(path, BRIO_PATH_MOST, "%s/%s", f->path, name);
 }
 
-/* Does what brio_store_begin does.   *in_use  receives whether it failed because another process has the folder. */
+/* Does what brio_store_begin does.   *in_use  receives whether it failed because another process, or another user, has
+ * the folder. */
 static brio_status begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out,
                          bool *in_use) {
     char path[BRIO_PATH_MOST];
@@ -39,8 +40,9 @@ static brio_status begin(brio_context *ctx, const char *parent, const char *name
         if (there) out->lock = brio_lock_file(path);
     }
     if (out->lock >= 0) return BRIO_OK;
-    *in_use = errno == EWOULDBLOCK;
-    brio_fail(ctx, BRIO_ERR_OPEN, "%s: %s", out->path, *in_use ? "in use by another process" : strerror(errno));
+    bool locked = errno == EWOULDBLOCK;
+    *in_use = locked || (errno == EACCES && brio_is_there(out->path));
+    brio_fail(ctx, BRIO_ERR_OPEN, "%s: %s", out->path, locked ? "in use by another process" : strerror(errno));
     if (made) brio_remove_folder(out->path);
     brio_release(ctx, out->path);
     out->path = NULL;
@@ -58,14 +60,12 @@ void brio_store_clear(brio_store_folder *f) {
 }
 
 brio_status brio_store_begin_free(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out) {
-    char numbered[64], path[BRIO_PATH_MOST];
-    for (unsigned number = 1;; number++) {
+    char numbered[64];
+    bool in_use = true; /* by a process that may be gone by now */
+    for (unsigned number = 1; number <= MOST_AT_ONCE && in_use; number++) {
         snprintf(numbered, sizeof numbered, "%s-%u", name, number);
-        bool in_use; /* it may be gone by now */
         brio_status status = begin(ctx, parent, numbered, out, &in_use);
-        if (status == BRIO_OK) break;
-        snprintf(path, sizeof path, "%s/%s", parent, numbered);
-        if (status != BRIO_ERR_OPEN || number == MOST_AT_ONCE || !(in_use || brio_is_there(path))) return status;
+        if (status != BRIO_OK && (status != BRIO_ERR_OPEN || !in_use || number == MOST_AT_ONCE)) return status;
     }
     brio_store_clear(out);
     return BRIO_OK;

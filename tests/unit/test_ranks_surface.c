@@ -207,6 +207,18 @@ static void a_rank_without_memory_ends_all(void) {
     EXPECT(failed > 0 && ended > 0, "%zu failed, %zu did not", failed, ended);
 }
 
+/* A rank whose memory ended before it could say so let the others wait for ever. */
+static void a_rank_without_any_memory_let_others_wait(void) {
+    for (size_t memory = 2400; memory < 7000; memory += SHORT_TESTS ? 300 : 50)
+        for (int poor = 0; poor < 3; poor++) {
+            plan p = {.n = make_points(3, 200, 0), .ranks = 3, .tiles = 2, .poor = poor, .memory = memory};
+            member m = run_ranks(&p);
+            EXPECT(m.status == BRIO_ERR_NO_MEMORY || m.status == BRIO_OK, "%zu bytes of rank %d: %s", memory, poor,
+                   m.sentence);
+            drop(&m);
+        }
+}
+
 /* Tiles of one process would take the place of the ranks. */
 static void ranks_have_their_own_tiles(void) {
     brio_context *ctx = new_context();
@@ -262,6 +274,7 @@ SUITE(test_ranks_surface) {
     RUN(large_tiles_come_in_pieces);
     RUN(cuts_are_divided_among_ranks);
     RUN(a_rank_without_memory_ends_all);
+    RUN(a_rank_without_any_memory_let_others_wait);
     RUN(ranks_have_their_own_tiles);
     RUN(the_failure_of_the_leader_ends_all);
     RUN(teams_have_neither_stars_nor_a_key);

@@ -27,8 +27,8 @@
  * in stars of more tetrahedra, single flips are not tried. All chosen. */
 enum { MOST = 64, PRICES = 9, SMALL = 96 };
 
-/* Chosen. MOST_PLACES: threads that look at all samples: each has two bytes a tetrahedron, all together less than a
- * flow. */
+/* Chosen. MOST_PLACES: threads that look at all samples: each has two bytes a tetrahedron, all together at most 32
+ * bytes a tetrahedron. */
 enum { SAMPLES_A_THREAD = 1 << 11, MOST_PLACES = 16 };
 
 /* What joining two sheets that touch costs, which makes a handle if they belong to one component. Chosen on seven

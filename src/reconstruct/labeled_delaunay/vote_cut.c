@@ -186,6 +186,8 @@ brio_status brio_vote_cut_find(brio_vote_cut *c, double bias, const uint8_t *lab
                             .along = {BRIO_READS(c->tet), BRIO_READS(c->vote), BRIO_READS(c->facet)},
                             .residual = c->residual,
                             .has_flow = c->has_flow};
-    c->has_flow = c->residual != NULL;
-    return c->list ? cut_open(&graph, &cut) : brio_cut_in_parts(&graph, 0, NULL, out);
+    c->has_flow = false; /* until all of it is there */
+    brio_status status = c->list ? cut_open(&graph, &cut) : brio_cut_in_parts(&graph, 0, NULL, out);
+    c->has_flow = status == BRIO_OK && c->residual;
+    return status;
 }

@@ -96,7 +96,8 @@ brio_status brio_parts_keep(brio_parts *p, size_t i, const brio_part_cut *cut, c
  *  size     nodes of a part; 0: as many as suit the memory and the threads.
  *  decider  NULL: that of the context (context.h); without one, or where there is one part, the threads of the context.
  *  label    #nodes, written: BRIO_LABEL_INNER on the sink's side, else BRIO_LABEL_OUTER. On failure undefined.
- *  Cost: each part is collected once. Memory: 62 bytes a node of the parts in work, 40 a node that they left undecided.
+ *  Cost: each part is collected once. Memory: 62 bytes a node of the parts in work, 81 a node that they left
+ *  undecided, and 62 more where what they left is cut as a whole.
  *  Returns BRIO_OK, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED, or what the decider returns.
  *  Based on: [Kovtun 2003]; Liu, Sun. Parallel graph-cuts by adaptive bottom-up merging. CVPR 2010. */
 brio_status brio_cut_in_parts(const brio_cut_graph *g, size_t size, const brio_part_decider *decider, uint8_t *label);

@@ -162,10 +162,15 @@ brio_status brio_surface(brio_context *ctx, const double *points, size_t num_poi
     brio_status status = BRIO_OK;
     brio_surface_options o = {0};
     brio_surface_stats s = {0};
+    brio_tiles_options tiles = {0};
     brio_mesh *mesh = NULL;
     *out = NULL;
     BRIO_TRY(BRIO_CHECK_RESULT(ctx, brio_surface_stats, stats));
     BRIO_TRY(settle(ctx, options, &o));
+    if (o.tiles) {
+        BRIO_TRY(BRIO_TAKE(ctx, brio_tiles_options, o.tiles, &tiles));
+        o.tiles = &tiles;
+    }
     BRIO_TRY(brio_refuse_points(ctx, points, num_points)); /* before anything is read by their number */
     BRIO_TRY(require_room(ctx, points, num_points, &o));
     BRIO_TRY(brio_mesh_new(ctx, &mesh));
