@@ -94,7 +94,7 @@ double brio_tiles_disk(double points);
 
 /** Returns the bytes at most while points are taken and divided. */
 double brio_tiles_divide_bytes(const brio_tiles *t);
-/** Returns the bytes beside the tiles while so many runs of vertices are merged. */
+/** Returns the bytes beside the tiles while runs of vertices are merged.   runs  how many. */
 double brio_tiles_merge_bytes(const brio_context *ctx, size_t runs);
 /** Returns the bytes of what a source (below) has of all nodes. */
 double brio_tile_source_bytes(const brio_tiles *t);

@@ -2,54 +2,7 @@
  * ranks and tiles and the order of messages. A failure of one rank is that of all. */
 #include "base/memory.h"
 #include "post_office.h"
-#include <dirent.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-enum { MOST = 4000, KINDS = 6 };
-
-static double points[3 * MOST];
-static char folder[64];
-
-static size_t files_left(void) {
-    DIR *d = opendir(folder);
-    size_t n = 0;
-    for (struct dirent *e; d && (e = readdir(d)) != NULL;) n += e->d_name[0] != '.';
-    if (d) closedir(d);
-    return n;
-}
-
-/* Fills points of a kind: a sphere, a scan, a noisy sphere, few places (duplicates), a grid, a plane. Returns their
- * number, at most n. */
-static size_t make_points(uint64_t seed, size_t n, int kind) {
-    brio_rng rng = brio_rng_new(seed);
-    size_t side = (size_t)cbrt((double)n);
-    switch (kind) {
-    case 0:
-        sphere_points(seed, n, points);
-        return n;
-    case 1:
-        side = (size_t)sqrt((double)n);
-        depth_points(seed, side, points);
-        return side * side;
-    case 2:
-        sphere_points(seed, n, points);
-        for (size_t i = 0; i < 3 * n; i++) points[i] *= 1 + 0.02 * brio_rng_double(&rng);
-        return n;
-    case 3:
-        integer_points(seed, n, 9, points);
-        return n;
-    case 4:
-        n = side * side * side;
-        for (size_t i = 0; i < n; i++)
-            for (size_t k = 0, at = i; k < 3; k++, at /= side) points[3 * i + k] = (double)(at % side);
-        return n;
-    default:
-        uniform_points(seed, n, points);
-        for (size_t i = 0; i < n; i++) points[3 * i + 2] = 1;
-        return n;
-    }
-}
+#include "surface_points.h"
 
 /* --- a run --- */
 
@@ -161,10 +114,10 @@ static brio_team_facts compare(const plan *p, int kind) {
 }
 
 static void surfaces_are_those_of_one_process(void) {
-    static const int ranks[] = {1, 2, 3, 5, 8};
+    static const int ranks[] = {1, 2, 3, 5, 8}, kinds[] = {2, 5, 6, 3, 4, 8};
     for (uint64_t trial = 0; trial < (uint64_t)(BRIEF_TESTS ? 12 : SHORT_TESTS ? 30 : 500); trial++) {
         brio_rng rng = brio_rng_new(trial);
-        int kind = (int)(trial % KINDS);
+        int kind = kinds[trial % 6];
         plan p = {.n = make_points(trial, 4 + brio_rng_below(&rng, trial % 4 ? 500 : 2500), kind),
                   .ranks = ranks[trial % 5],
                   .tiles = 1 + brio_rng_below(&rng, 3),
@@ -177,8 +130,8 @@ static void surfaces_are_those_of_one_process(void) {
 
 /* A tile of 26,000 tetrahedra goes to rank 0 in two messages. */
 static void large_tiles_come_in_pieces(void) {
-    plan p = {.n = MOST, .ranks = 1, .tiles = 1, .poor = -1};
-    uniform_points(8, MOST, points);
+    plan p = {.n = 4000, .ranks = 1, .tiles = 1, .poor = -1};
+    uniform_points(8, 4000, points);
     compare(&p, -1);
 }
 
@@ -196,7 +149,7 @@ static void cuts_are_divided_among_ranks(void) {
 static void a_rank_without_memory_ends_all(void) {
     size_t failed = 0, ended = 0;
     for (uint64_t trial = 0; trial < (uint64_t)(SHORT_TESTS ? 16 : 200); trial++) {
-        plan p = {.n = make_points(3, 900, 0), .ranks = 3, .tiles = 2, .seed = trial, .poor = (int)(trial % 3)};
+        plan p = {.n = make_points(3, 900, 2), .ranks = 3, .tiles = 2, .seed = trial, .poor = (int)(trial % 3)};
         p.memory = (size_t)20000 << trial % 13;
         member m = run_ranks(&p);
         EXPECT(m.status == BRIO_OK || m.status == BRIO_ERR_NO_MEMORY, "%s", m.sentence);
@@ -211,7 +164,7 @@ static void a_rank_without_memory_ends_all(void) {
 static void a_rank_without_any_memory_let_others_wait(void) {
     for (size_t memory = 2400; memory < 7000; memory += SHORT_TESTS ? 300 : 50)
         for (int poor = 0; poor < 3; poor++) {
-            plan p = {.n = make_points(3, 200, 0), .ranks = 3, .tiles = 2, .poor = poor, .memory = memory};
+            plan p = {.n = make_points(3, 200, 2), .ranks = 3, .tiles = 2, .poor = poor, .memory = memory};
             member m = run_ranks(&p);
             EXPECT(m.status == BRIO_ERR_NO_MEMORY || m.status == BRIO_OK, "%zu bytes of rank %d: %s", memory, poor,
                    m.sentence);
@@ -235,7 +188,7 @@ static void ranks_have_their_own_tiles(void) {
     brio_mutex_new(&office.lock);
     brio_condition_new(&office.changed);
     EXPECT(brio_ranks_lead(ctx, &t, &o, &team) == BRIO_OK);
-    EXPECT(brio_surface(ctx, points, make_points(3, 500, 0), &options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
+    EXPECT(brio_surface(ctx, points, make_points(3, 500, 2), &options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(strstr(brio_message(ctx), "ranks triangulate for this surface"), "%s", brio_message(ctx));
     EXPECT(brio_ranks_dismiss(team, BRIO_OK, NULL) == BRIO_OK);
     free(man.held[0]);
@@ -245,7 +198,7 @@ static void ranks_have_their_own_tiles(void) {
 }
 
 static void the_failure_of_the_leader_ends_all(void) {
-    plan p = {.n = make_points(3, 500, 0), .ranks = 4, .tiles = 1, .poor = -1};
+    plan p = {.n = make_points(3, 500, 2), .ranks = 4, .tiles = 1, .poor = -1};
     points[77] = NAN;
     member m = run_ranks(&p);
     EXPECT(m.status == BRIO_ERR_NOT_FINITE, "%s", m.sentence);

@@ -32,7 +32,7 @@
  * their neighbours are, too, until those next to a patch are connected. All chosen. */
 enum { BIASES = 3, MOST_PATCH = BRIO_MOST_SIMPLE, NEARBY = 4096 };
 
-/* Samples are noted in blocks of so many, which are near each other. Chosen. */
+/* Samples of a block, which are near each other: blocks are noted. Chosen. */
 enum { BLOCK = 16 };
 
 #ifdef NDEBUG
