@@ -76,7 +76,8 @@ typedef struct brio_tile_part {
  *  out  owned by the caller: brio_tiles_free; NULL on error.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT, BRIO_ERR_OPEN (not a writable folder, in use by another process, or laid
  *  there by another user),
- *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY (also where the memory limit of the context is too low for the number of tiles). */
+ *  BRIO_ERR_WRITE, BRIO_ERR_NO_MEMORY (also where the memory limit of the context is too low for the number of
+ *  tiles). */
 BRIO_API brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options, brio_tiles **out);
 
 /** Returns 1 if a run before left all points in the folder, so that none are to be added; else 0. */
