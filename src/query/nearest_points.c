@@ -5,8 +5,8 @@
  * are sorted. So the tree does not depend on the order of the input.
  *
  * A query lists the points it meets that are not farther than its bound (near_list.h). It enters the far half of a
- * range only when the cut is within the bound. Of a range of duplicates it lists as many as are wanted, and it ends when
- * it has as many where it is: else a query among n duplicates would meet them all.
+ * range only when the cut is within the bound. Of a range of duplicates it lists as many as are wanted, and it ends
+ * when it has as many where it is: else a query among n duplicates would meet them all.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977.
