@@ -1,4 +1,5 @@
-/* Floating-point stages 1 and 2 of the predicates: error bounds, and the permanents from which they are derived.
+/* Floating-point stages of the predicates: error bounds, the permanents from which they are derived, and stages 2 and 3
+ * of rows that are scaled where underflow or overflow would count.
  *
  * The permanent of an expression is the expression with every term replaced by its magnitude. With u = 2^-53, the error
  * of an estimate is at most
@@ -16,16 +17,26 @@ static const double ORIENT_BOUND = 8 * 0x1p-53, INSPHERE_BOUND = 18 * 0x1p-53;
 /* Chosen: with larger extents, stages 1 to 3 could overflow (polynomials of degree 5, Dekker's splitting). */
 static const double EXTENT_MOST = 1e55, WEIGHT_MOST = 1e110;
 
+/* About a hundred products may each lose 2^-1074 by underflow. The floors multiply this by the largest cofactors of
+ * rows whose differences are at most `most` and whose weights differ by at most w. */
+static const double FLOOR_UNIT = 0x1p-1060;
+
+static double orient_floor(double most) {
+    return FLOOR_UNIT * (1 + most) * (1 + most);
+}
+
+static double insphere_floor(double most, double w) {
+    return FLOOR_UNIT * (1 + most) * (1 + most) * (1 + most) * (1 + most + w);
+}
+
 void brio_filter_set(brio_filter *f, const double extent[3], double weight_extent, bool weighted) {
     assert(brio_float_is_standard()); /* the bounds hold for rounding to nearest */
     double x = extent[0], y = extent[1], z = extent[2];
     double most = fmax(x, fmax(y, z)), w = weighted ? weight_extent : 0;
-    *f = (brio_filter){INFINITY, INFINITY, INFINITY, INFINITY, weighted, false, false, 0};
+    *f = (brio_filter){INFINITY, INFINITY, INFINITY, INFINITY, weighted, false, false, 0, 0};
     if (!(most <= EXTENT_MOST && w <= WEIGHT_MOST)) return;
-    /* about a hundred products may each lose 2^-1074 by underflow; the floors multiply this by the largest cofactors */
-    double unit = 0x1p-1060;
-    f->orient_floor = unit * (1 + most) * (1 + most);
-    f->insphere_floor = unit * (1 + most) * (1 + most) * (1 + most) * (1 + most + w);
+    f->orient_floor = orient_floor(most);
+    f->insphere_floor = insphere_floor(most, w);
     /* a 3 by 3 minor has 6 products, insphere 4 minors times a lift; 1.001 covers the rounding of the bound */
     f->orient_static = 1.001 * ORIENT_BOUND * 6 * x * y * z + f->orient_floor;
     f->insphere_static = 1.001 * INSPHERE_BOUND * 24 * x * y * z * (x * x + y * y + z * z + w) + f->insphere_floor;
@@ -96,6 +107,8 @@ void brio_filter_for(brio_filter *f, const double (*record)[4], size_t n, bool w
     if (f->lattice) f->orient_static = f->insphere_static = 0;
 }
 
+/* --- orient3d --- */
+
 static double orient3d_with_permanent(const double *a, const double *b, const double *c, const double *d,
                                       double *permanent) {
     double bx = b[0] - a[0], by = b[1] - a[1], bz = b[2] - a[2];
@@ -106,6 +119,19 @@ static double orient3d_with_permanent(const double *a, const double *b, const do
     return dx * (by * cz - bz * cy) + dy * (bz * cx - bx * cz) + dz * (bx * cy - by * cx);
 }
 
+int brio_orient3d_rescaled(const brio_filter *f, const double *a, const double *b, const double *c, const double *d) {
+    const double *const row[4] = {b, c, d, a};
+    double permanent;
+    brio_near_one r;
+    orient3d_with_permanent(a, b, c, d, &permanent);
+    if (!brio_floor_matters(permanent, f->orient_floor)) return 2;
+    if (!brio_bring_near_one(row, 4, false, 0, &r)) return 2;
+    double det = orient3d_with_permanent(r.row[3], r.row[0], r.row[1], r.row[2], &permanent);
+    if (fabs(det) > ORIENT_BOUND * permanent + orient_floor(1)) return det > 0 ? 1 : -1;
+    return brio_orient3d_double_double(r.row[3], r.row[0], r.row[1], r.row[2],
+                                       (brio_magnitude){permanent, orient_floor(1)});
+}
+
 int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d) {
     double permanent;
     if (f->lattice) return 0;
@@ -114,8 +140,17 @@ int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, co
     if (fabs(det) > bound) return det > 0 ? 1 : -1;
     f->unsettled++;
     int sign = f->coarse ? 2 : brio_orient3d_double_double(a, b, c, d, (brio_magnitude){permanent, f->orient_floor});
-    return sign != 2 ? sign : brio_orient3d_exact(a, b, c, d);
+    return sign != 2 ? sign : brio_orient3d_late(f, a, b, c, d);
 }
+
+int brio_orient3d_late(brio_filter *f, const double *a, const double *b, const double *c, const double *d) {
+    int sign = f->coarse ? 2 : brio_orient3d_rescaled(f, a, b, c, d);
+    if (sign != 2) return sign;
+    f->exact++;
+    return brio_orient3d_exact(a, b, c, d);
+}
+
+/* --- insphere --- */
 
 static double insphere_permanent(const double *a, const double *b, const double *c, const double *d, const double *e,
                                  bool weighted) {
@@ -133,6 +168,19 @@ static double insphere_permanent(const double *a, const double *b, const double 
            lift[3] * (z[0] * xy[1][2] + z[1] * xy[0][2] + z[2] * xy[0][1]);
 }
 
+int brio_insphere_rescaled(const brio_filter *f, const double *const row[5]) {
+    double permanent = insphere_permanent(row[0], row[1], row[2], row[3], row[4], f->weighted);
+    brio_near_one r;
+    if (!brio_floor_matters(permanent, f->insphere_floor)) return 2;
+    if (!brio_bring_near_one(row, 5, f->weighted, WEIGHT_MOST, &r)) return 2;
+    const double *const p[5] = {r.row[0], r.row[1], r.row[2], r.row[3], r.row[4]};
+    double det = brio_insphere_estimate(p[0], p[1], p[2], p[3], p[4], f->weighted);
+    permanent = insphere_permanent(p[0], p[1], p[2], p[3], p[4], f->weighted);
+    brio_magnitude magnitude = {permanent, insphere_floor(1, r.most_weight)};
+    if (fabs(det) > INSPHERE_BOUND * permanent + magnitude.floor) return det > 0 ? 1 : -1;
+    return brio_insphere_double_double(p, f->weighted, magnitude);
+}
+
 int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d,
                             const double *e) {
     if (f->lattice) return 0;
@@ -144,8 +192,17 @@ int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, co
     const double *const row[5] = {a, b, c, d, e};
     brio_magnitude magnitude = {permanent, f->insphere_floor};
     int sign = f->coarse ? 2 : brio_insphere_double_double(row, f->weighted, magnitude);
-    return sign != 2 ? sign : brio_insphere_exact(a, b, c, d, e, f->weighted);
+    return sign != 2 ? sign : brio_insphere_late(f, row);
 }
+
+int brio_insphere_late(brio_filter *f, const double *const row[5]) {
+    int sign = f->coarse ? 2 : brio_insphere_rescaled(f, row);
+    if (sign != 2) return sign;
+    f->exact++;
+    return brio_insphere_exact(row[0], row[1], row[2], row[3], row[4], f->weighted);
+}
+
+/* --- power distances --- */
 
 static double power(const double *x, const double *p, double *magnitude) {
     double dx = x[0] - p[0], dy = x[1] - p[1], dz = x[2] - p[2], square = dx * dx + dy * dy + dz * dz;

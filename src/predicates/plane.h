@@ -27,6 +27,7 @@ typedef struct {
     bool lattice;                          /* stage 1 has no rounding errors: an estimate of 0 is exact */
     uint8_t key[3];                        /* the numbers of a record in their lexicographic order */
     uint64_t unsettled;                    /* number of calls that went beyond stage 2 */
+    uint64_t exact;                        /* number of these that reached stages 4 and 5 */
 } brio_plane_filter;
 
 /** Sets the bounds for records whose numbers differ by at most extent[0..3] in u, v, rest and weight. general = false
@@ -43,6 +44,10 @@ int brio_incircle_unsettled(brio_plane_filter *f, const double *a, const double 
 /** Return the sign by stage 3, or 2 if double-doubles do not decide it.   permanent, floor  as in predicates.h. */
 int brio_orient2d_double_double(const double *a, const double *b, const double *c, double permanent, double floor);
 int brio_incircle_double_double(const double *const row[4], double permanent, double floor);
+
+/** Return the sign by stages 2 and 3 on scaled records, or 2, as in predicates.h. */
+int brio_orient2d_rescaled(const brio_plane_filter *f, const double *a, const double *b, const double *c);
+int brio_incircle_rescaled(const brio_plane_filter *f, const double *const row[4]);
 
 /** Return the sign by stage 4, or 2 when the points are on no grid that is coarse enough. */
 int brio_orient2d_integer(const double *a, const double *b, const double *c);

@@ -1,5 +1,5 @@
-/* Floating-point stages 1 and 2 of the plane's predicates: error bounds, and the permanents from which they are
- * derived.
+/* Floating-point stages of the plane's predicates: error bounds, the permanents from which they are derived, and stages
+ * 2 and 3 of rows that are scaled where underflow or overflow would count.
  *
  * The permanent of an expression is the expression with every term replaced by its magnitude. With u = 2^-53, the error
  * of an estimate is, in the first order,
@@ -18,15 +18,20 @@ static const double ORIENT_BOUND = 4 * 0x1p-53, INCIRCLE_BOUND = 14 * 0x1p-53;
 /* Chosen: with larger extents, stages 1 to 3 could overflow (polynomials of degree 4, Dekker's splitting). */
 static const double EXTENT_MOST = 1e55, WEIGHT_MOST = 1e110;
 
+/* Some thirty products may each lose 2^-1074 by underflow; the floor multiplies this by the largest cofactors. */
+static const double FLOOR_UNIT = 0x1p-1060;
+
+static double incircle_floor(double most, double w) {
+    return FLOOR_UNIT * (1 + most) * (1 + most) * (1 + most * most + w);
+}
+
 void brio_plane_filter_set(brio_plane_filter *f, const double extent[4], bool general) {
     double x = extent[0], y = extent[1], z = general ? extent[2] : 0, w = general ? extent[3] : 0;
     double most = fmax(x, fmax(y, z));
-    *f = (brio_plane_filter){INFINITY, INFINITY, INFINITY, INFINITY, general, false, {0, 1, 2}, 0};
+    *f = (brio_plane_filter){INFINITY, INFINITY, INFINITY, INFINITY, general, false, {0, 1, 2}, 0, 0};
     if (!(most <= EXTENT_MOST && w <= WEIGHT_MOST)) return;
-    /* some thirty products may each lose 2^-1074 by underflow; the floors multiply this by the largest cofactors */
-    double unit = 0x1p-1060;
-    f->orient_floor = unit;
-    f->incircle_floor = unit * (1 + most) * (1 + most) * (1 + most * most + w);
+    f->orient_floor = FLOOR_UNIT;
+    f->incircle_floor = incircle_floor(most, w);
     /* orient2d has 2 products, incircle 3 minors times a lift; 1.001 covers the rounding of the bound */
     f->orient_static = 1.001 * ORIENT_BOUND * 2 * x * y + f->orient_floor;
     f->incircle_static = 1.001 * INCIRCLE_BOUND * 6 * x * y * (x * x + y * y + z * z + w) + f->incircle_floor;
@@ -82,14 +87,34 @@ void brio_plane_filter_for(brio_plane_filter *f, const double (*record)[4], size
     if (f->lattice) f->orient_static = f->incircle_static = 0;
 }
 
+static double orient2d_with_permanent(const double *a, const double *b, const double *c, double *permanent) {
+    double first = (b[0] - a[0]) * (c[1] - a[1]), second = (b[1] - a[1]) * (c[0] - a[0]);
+    *permanent = fabs(first) + fabs(second);
+    return first - second;
+}
+
+int brio_orient2d_rescaled(const brio_plane_filter *f, const double *a, const double *b, const double *c) {
+    double u[3][4] = {{a[0], a[1]}, {b[0], b[1]}, {c[0], c[1]}}, permanent;
+    const double *const row[3] = {u[0], u[1], u[2]};
+    brio_near_one r;
+    orient2d_with_permanent(a, b, c, &permanent);
+    if (!brio_floor_matters(permanent, f->orient_floor)) return 2;
+    if (!brio_bring_near_one(row, 3, false, 0, &r)) return 2;
+    double det = orient2d_with_permanent(r.row[0], r.row[1], r.row[2], &permanent);
+    if (fabs(det) > ORIENT_BOUND * permanent + FLOOR_UNIT) return det > 0 ? 1 : -1;
+    return brio_orient2d_double_double(r.row[0], r.row[1], r.row[2], permanent, FLOOR_UNIT);
+}
+
 int brio_orient2d_unsettled(brio_plane_filter *f, const double *a, const double *b, const double *c) {
     if (f->lattice) return 0;
-    double first = (b[0] - a[0]) * (c[1] - a[1]), second = (b[1] - a[1]) * (c[0] - a[0]);
-    double permanent = fabs(first) + fabs(second), det = first - second;
+    double permanent, det = orient2d_with_permanent(a, b, c, &permanent);
     if (fabs(det) > ORIENT_BOUND * permanent + f->orient_floor) return det > 0 ? 1 : -1;
     f->unsettled++;
     int sign = brio_orient2d_double_double(a, b, c, permanent, f->orient_floor);
-    return sign != 2 ? sign : brio_orient2d_exact(a, b, c);
+    if (sign == 2) sign = brio_orient2d_rescaled(f, a, b, c);
+    if (sign != 2) return sign;
+    f->exact++;
+    return brio_orient2d_exact(a, b, c);
 }
 
 static double incircle_permanent(const double *a, const double *b, const double *c, const double *e, bool general) {
@@ -107,6 +132,18 @@ static double incircle_permanent(const double *a, const double *b, const double 
     return sum;
 }
 
+int brio_incircle_rescaled(const brio_plane_filter *f, const double *const row[4]) {
+    double permanent = incircle_permanent(row[0], row[1], row[2], row[3], f->general);
+    brio_near_one r;
+    if (!brio_floor_matters(permanent, f->incircle_floor)) return 2;
+    if (!brio_bring_near_one(row, 4, f->general, WEIGHT_MOST, &r)) return 2;
+    const double *const p[4] = {r.row[0], r.row[1], r.row[2], r.row[3]};
+    double det = brio_incircle_estimate(p[0], p[1], p[2], p[3], f->general), floor = incircle_floor(1, r.most_weight);
+    permanent = incircle_permanent(p[0], p[1], p[2], p[3], f->general);
+    if (fabs(det) > INCIRCLE_BOUND * permanent + floor) return det > 0 ? 1 : -1;
+    return brio_incircle_double_double(p, permanent, floor);
+}
+
 int brio_incircle_unsettled(brio_plane_filter *f, const double *a, const double *b, const double *c, const double *e) {
     if (f->lattice) return 0;
     double det = brio_incircle_estimate(a, b, c, e, f->general);
@@ -115,7 +152,10 @@ int brio_incircle_unsettled(brio_plane_filter *f, const double *a, const double 
     f->unsettled++;
     const double *const row[4] = {a, b, c, e};
     int sign = brio_incircle_double_double(row, permanent, f->incircle_floor);
-    return sign != 2 ? sign : brio_incircle_exact(a, b, c, e);
+    if (sign == 2) sign = brio_incircle_rescaled(f, row);
+    if (sign != 2) return sign;
+    f->exact++;
+    return brio_incircle_exact(a, b, c, e);
 }
 
 int brio_incircle_tie(brio_plane_filter *f, const double *a, const double *b, const double *c, const double *e) {

@@ -8,7 +8,9 @@
  *   5. dyadic numbers, exact for every finite double.
  * Coarse point sets skip stage 3; on a lattice stage 1 decides (brio_filter). brio_power_compare has stages 2, 3 and 5.
  * Stages 1 to 3 assume that nothing overflows and that underflow costs less than `floor`. brio_filter_set turns these
- * stages off for point sets where this could fail.
+ * stages off for point sets where this could fail. After stage 3, calls that underflow or overflow left open run stages
+ * 2 and 3 once more, on their rows times a power of two: else far too large or too small a unit would make each call
+ * exact.
  *
  * Sign conventions: orient3d(a,b,c,d) = sign det [b-a, c-a, d-a]; insphere > 0 for e inside the sphere of a positive
  * tetrahedron. With weights, a point is inside when its power distance to the orthosphere is less than its weight, that
@@ -32,6 +34,7 @@ typedef struct {
     bool lattice;       /* stage 1 has no rounding errors: an estimate of 0 is exact */
     bool coarse;        /* stage 4 decides every call, faster than stage 3 */
     uint64_t unsettled; /* number of calls that went beyond stage 2 */
+    uint64_t exact;     /* number of these that reached stages 4 and 5 */
 } brio_filter;
 
 /** Sets the bounds for points whose coordinates differ by at most extent[0..2] in x, y, z. The weights of the points
@@ -45,6 +48,15 @@ void brio_filter_for(brio_filter *f, const double (*record)[4], size_t num_recor
 int brio_orient3d_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d);
 int brio_insphere_unsettled(brio_filter *f, const double *a, const double *b, const double *c, const double *d,
                             const double *e);
+
+/** Return the sign by what comes after stage 3, for calls that are counted as unsettled. */
+int brio_orient3d_late(brio_filter *f, const double *a, const double *b, const double *c, const double *d);
+int brio_insphere_late(brio_filter *f, const double *const row[5]);
+
+/** Return the sign by stages 2 and 3 on the rows times the power of two that brings them near 1; 2 if these do not
+ *  decide it, or where neither underflow nor overflow counts. */
+int brio_orient3d_rescaled(const brio_filter *f, const double *a, const double *b, const double *c, const double *d);
+int brio_insphere_rescaled(const brio_filter *f, const double *const row[5]);
 
 /** Return the sign by stages 4 and 5. */
 int brio_orient3d_exact(const double *a, const double *b, const double *c, const double *d);

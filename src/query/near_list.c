@@ -96,39 +96,54 @@ static bool find_bound(const brio_near_list *l, double *bound) {
     return false;
 }
 
-/* Returns whether fewer than `room` listed points at the bound come before the point at `place`. Among duplicates the
- * lower place comes first. */
-static bool has_place(const brio_near_list *l, uint32_t place, size_t room) {
-    const double *point = l->point[place];
-    size_t before = 0;
-    for (size_t i = 0; i < l->size; i++) {
-        if (l->near[i].square != l->bound) continue;
-        const double *other = l->point[l->near[i].place];
-        before += brio_is_before(other, point, 0) || (!brio_is_before(point, other, 0) && l->near[i].place < place);
+/* Returns whether the point at place a comes before that at place b. Among duplicates the lower place comes first. */
+static bool comes_before(brio_near_list *l, uint32_t a, uint32_t b) {
+    const double *p = l->point[a], *q = l->point[b];
+    l->compared++;
+    return brio_is_before(p, q, 0) || (!brio_is_before(q, p, 0) && a < b);
+}
+
+/* Returns the one of `count` places that k of them come before, by Hoare's method. Reorders the places. */
+static uint32_t select_place(brio_near_list *l, uint32_t *place, ptrdiff_t count, ptrdiff_t k) {
+    ptrdiff_t first = 0, last = count - 1;
+    assert(0 <= k && k < count);
+    while (first < last) {
+        uint32_t pivot = place[first + (last - first) / 2];
+        ptrdiff_t i = first, j = last;
+        while (i <= j) {
+            while (comes_before(l, place[i], pivot)) i++;
+            while (comes_before(l, pivot, place[j])) j--;
+            if (i > j) break;
+            uint32_t spare = place[i];
+            place[i++] = place[j], place[j--] = spare;
+        }
+        if (k <= j)
+            last = j;
+        else if (k >= i)
+            first = i;
+        else
+            break;
     }
-    return before < room;
+    return place[k];
 }
 
-/* Sets the bits of the entries at the bound that have no place, where `less` points are nearer than the bound. */
-static void mark_out(const brio_near_list *l, size_t less, uint64_t *out) {
-    for (size_t i = 0; i < l->size; i++)
-        if (l->near[i].square == l->bound && !has_place(l, l->near[i].place, l->wanted - less))
-            out[i / 64] |= UINT64_C(1) << i % 64;
-}
-
-/* Finds the bound by selection, and keeps the points within it that have a place. */
+/* Finds the bound by selection, and keeps the points within it that have a place: of those at the bound the first. */
 static void keep_by_place(brio_near_list *l) {
     assert(l->wanted <= l->size && l->size <= BRIO_NEAR_ROOM);
     double square[BRIO_NEAR_ROOM];
-    size_t kept = 0, less = 0, within = 0;
+    uint32_t at_bound[BRIO_NEAR_ROOM];
+    size_t kept = 0, less = 0, ties = 0;
     for (size_t i = 0; i < l->size; i++) square[i] = l->near[i].square;
     l->bound = select_least(square, l->size, l->wanted - 1);
-    for (size_t i = 0; i < l->size; i++) within += l->near[i].square <= l->bound, less += l->near[i].square < l->bound;
-    uint64_t out[(BRIO_NEAR_ROOM + 63) / 64] = {0}; /* bits of list entries to drop */
-    if (within > l->wanted) mark_out(l, less, out);
     for (size_t i = 0; i < l->size; i++) {
-        l->near[kept] = l->near[i];
-        kept += l->near[i].square <= l->bound && !(out[i / 64] >> i % 64 & 1);
+        at_bound[ties] = l->near[i].place;
+        less += l->near[i].square < l->bound, ties += l->near[i].square == l->bound;
+    }
+    uint32_t last = select_place(l, at_bound, (ptrdiff_t)ties, (ptrdiff_t)(l->wanted - less) - 1);
+    for (size_t i = 0; i < l->size; i++) {
+        const brio_near_point now = l->near[i];
+        l->near[kept] = now;
+        kept += now.square < l->bound || (now.square == l->bound && !comes_before(l, last, now.place));
     }
     l->size = kept;
     assert(kept == l->wanted);

@@ -14,7 +14,8 @@ typedef struct {
     double p[3];           /* the points nearest to this position are wanted */
     brio_near_point *near; /* BRIO_NEAR_ROOM entries, in the order in which the search met them */
     size_t size, wanted;
-    double bound; /* square of a distance; no farther point is among the nearest */
+    double bound;    /* square of a distance; no farther point is among the nearest */
+    size_t compared; /* pairs of points at the bound that were compared: what ties cost */
 } brio_near_list;
 
 static inline brio_near_list brio_near_list_for(const double (*point)[3], const double *p, size_t wanted,
@@ -34,7 +35,7 @@ static inline bool brio_is_before(const double *a, const double *b, int axis) {
 
 /** Keeps the nearest `wanted` points of a list that has as many, in the list's order. Sets the bound to the distance of
  *  the last of them. Among points at the bound the lexicographically first ones are kept, among duplicates those of the
- *  lowest places. */
+ *  lowest places. Takes time in proportion to the list's length, also where all distances are equal. */
 void brio_keep_nearest(brio_near_list *l);
 
 /** Lists the points begin to end - 1, at most BRIO_TREE_LEAF, that are within the bound. A point beyond the bound is
@@ -49,6 +50,15 @@ static inline void brio_offer_points(brio_near_list *l, size_t begin, size_t end
         l->size += square <= l->bound;
     }
 }
+
+/** Returns whether no other point changes the list: `wanted` points are where the search is. Others there would only
+ *  replace duplicates, and a search that met all of n duplicates would take n steps. */
+static inline bool brio_is_settled(const brio_near_list *l) {
+    return l->bound == 0 && l->size >= l->wanted;
+}
+
+/** Lists the points of a tree that are within the bound, and any number of others. */
+void brio_offer_tree(brio_near_list *l, const brio_point_tree *tree);
 
 /** Sorts points by distance, then lexicographically. */
 void brio_sort_near_list(const double (*point)[3], brio_near_point *near, size_t count);

@@ -5,8 +5,8 @@
  * are sorted. So the tree does not depend on the order of the input.
  *
  * A query lists the points it meets that are not farther than its bound (near_list.h). It enters the far half of a
- * range only when the cut is within the bound. Of a range of duplicates it lists as many as are wanted: else a query
- * among n duplicates would meet them all.
+ * range only when the cut is within the bound. Of a range of duplicates it lists as many as are wanted, and it ends
+ * when it has as many where it is: else a query among n duplicates would meet them all.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977.
@@ -137,55 +137,53 @@ void brio_point_tree_free(brio_context *ctx, brio_point_tree *tree) {
 
 /* --- queries --- */
 
-typedef struct {
-    const brio_point_tree *tree;
-    brio_near_list list;
-} query;
-
 /* Lists the first duplicates of a range: those behind them come after them. */
-static void look_at_duplicates(query *q, size_t begin, size_t end) {
-    if (end - begin > q->list.wanted) end = begin + q->list.wanted;
-    for (; begin + LEAF < end; begin += LEAF) brio_offer_points(&q->list, begin, begin + LEAF);
-    brio_offer_points(&q->list, begin, end);
+static void look_at_duplicates(brio_near_list *l, size_t begin, size_t end) {
+    if (end - begin > l->wanted) end = begin + l->wanted;
+    for (; begin + LEAF < end; begin += LEAF) brio_offer_points(l, begin, begin + LEAF);
+    brio_offer_points(l, begin, end);
 }
 
 /* Lists points of a range. */
-static void look(query *q, size_t begin, size_t end) {
-    brio_near_list *l = &q->list;
+static void look(brio_near_list *l, const brio_point_tree *t, size_t begin, size_t end) {
+    if (brio_is_settled(l)) return;
     if (end - begin <= LEAF) {
         brio_offer_points(l, begin, end);
         return;
     }
-    const brio_point_tree *t = q->tree;
     size_t middle = begin + (end - begin) / 2;
     if (t->axis[middle] == DUPLICATES) {
-        look_at_duplicates(q, begin, end);
+        look_at_duplicates(l, begin, end);
         return;
     }
     assert(t->axis[middle] < 3);
     double across = l->p[t->axis[middle]] - t->point[middle][t->axis[middle]];
     if (across < 0)
-        look(q, begin, middle);
+        look(l, t, begin, middle);
     else
-        look(q, middle + 1, end);
+        look(l, t, middle + 1, end);
     if (isinf(l->bound) && l->size >= l->wanted) brio_keep_nearest(l); /* the points that remain are usually farther */
     if (across * across > l->bound) return;
     brio_offer_points(l, middle, middle + 1);
     if (across < 0)
-        look(q, middle + 1, end);
+        look(l, t, middle + 1, end);
     else
-        look(q, begin, middle);
+        look(l, t, begin, middle);
+}
+
+void brio_offer_tree(brio_near_list *l, const brio_point_tree *tree) {
+    look(l, tree, 0, tree->count);
 }
 
 size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, double bound,
                            brio_near_point *near) {
-    query q = {tree, brio_near_list_for((const double(*)[3])tree->point, p, wanted, near)};
+    brio_near_list l = brio_near_list_for((const double(*)[3])tree->point, p, wanted, near);
     assert(0 < wanted && wanted <= BRIO_MOST_NEAR && !(bound < 0));
-    q.list.bound = bound;
-    look(&q, 0, tree->count);
-    if (q.list.size > wanted) brio_keep_nearest(&q.list);
-    assert(q.list.size <= wanted);
-    return q.list.size;
+    l.bound = bound;
+    brio_offer_tree(&l, tree);
+    if (l.size > wanted) brio_keep_nearest(&l);
+    assert(l.size <= wanted);
+    return l.size;
 }
 
 static double nearest_in(const brio_point_tree *t, const double *p, size_t begin, size_t end, double best) {

@@ -74,7 +74,7 @@ static double square_of_box(const brio_box *b, const double *p) {
 /* Lists the points of a box and of the boxes below it. */
 static void enter(const brio_point_boxes *b, int level, size_t i, brio_near_list *l) {
     assert(0 <= level && level < b->levels && b->first[level] + i < b->first[level + 1]);
-    if (square_of_box(&b->box[b->first[level] + i], l->p) > l->bound) return;
+    if (brio_is_settled(l) || square_of_box(&b->box[b->first[level] + i], l->p) > l->bound) return;
     if (level == 0) {
         brio_offer_points(l, i * RUN, end_of_run(b, i));
         return;

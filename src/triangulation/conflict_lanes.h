@@ -125,6 +125,21 @@ static inline lanes permanent(const corners *c, const rows *r, const bool weight
     return choose(r->infinite, all(6.01) * box, all(24.01) * box * largest(lift));
 }
 
+/* Returns the permanent of each lane. The bound above is far too large for one vertex far from the others. */
+static inline lanes close_permanent(const corners *c, const rows *r, const bool weighted) {
+    lanes x[4], y[4], z[4], lift[4];
+    for (int s = 0; s < 4; s++) {
+        x[s] = magnitude(r->x[s]), y[s] = magnitude(r->y[s]), z[s] = magnitude(r->z[s]);
+        lift[s] = square_length(x[s], y[s], z[s]);
+        if (weighted) lift[s] += magnitude(c->v[s][3] - c->e[3]);
+    }
+    lift[3] = choose(r->infinite, all(1), lift[3]);
+    lanes ab = x[0] * y[1] + x[1] * y[0], bc = x[1] * y[2] + x[2] * y[1], cd = x[2] * y[3] + x[3] * y[2];
+    lanes da = x[3] * y[0] + x[0] * y[3], ac = x[0] * y[2] + x[2] * y[0], bd = x[1] * y[3] + x[3] * y[1];
+    return lift[0] * (z[1] * cd + z[2] * bd + z[3] * bc) + lift[1] * (z[2] * da + z[3] * ac + z[0] * cd) +
+           lift[2] * (z[3] * ab + z[0] * bd + z[1] * da) + lift[3] * (z[0] * bc + z[1] * ac + z[2] * ab);
+}
+
 /* --- pairs of doubles ---
  *
  * Loose ones (lane_pairs.h): the low part may grow, which so few operations can afford. Let P be the permanent of an
@@ -216,11 +231,12 @@ static __attribute__((noinline)) unsigned settle(const brio_tetrahedra *t, brio_
     f->unsettled += (uint64_t)__builtin_popcount(~known & ALL_LANES);
     if (!f->coarse) {
         lanes floor = choose(r.infinite, all(f->orient_floor), all(f->insphere_floor));
-        lanes bound = all(PAIR_UNIT) * permanent(&c, &r, weighted) + floor;
-        mask |= decide(determinant_of_pairs(&c, r.infinite, weighted), bound, &known);
+        lanes det = determinant_of_pairs(&c, r.infinite, weighted);
+        mask |= decide(det, all(PAIR_UNIT) * permanent(&c, &r, weighted) + floor, &known);
+        if (known != ALL_LANES) mask |= decide(det, all(PAIR_UNIT) * close_permanent(&c, &r, weighted) + floor, &known);
     }
     for (int i = 0; i < LANES; i++)
-        if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_exact(t, f, brio_tet_of(facets[i]), p, weighted) << i;
+        if (!(known >> i & 1)) mask |= (unsigned)brio_in_conflict_late(t, f, brio_tet_of(facets[i]), p, weighted) << i;
     return mask;
 }
 

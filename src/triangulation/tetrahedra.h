@@ -97,7 +97,7 @@ static inline bool brio_in_conflict(const brio_tetrahedra *t, brio_filter *f, ui
     return brio_conflict(f, t->record[v[0]], t->record[v[1]], t->record[v[2]], t->record[v[3]], p, weighted);
 }
 
-/* Returns what brio_in_conflict returns, by the exact stage at once: for tests that the inexact stages left open. */
-bool brio_in_conflict_exact(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted);
+/* Returns what brio_in_conflict returns, by the last stages at once: for tests that stages 1 to 3 left open. */
+bool brio_in_conflict_late(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted);
 
 #endif

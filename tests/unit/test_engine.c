@@ -43,35 +43,74 @@ static bool make_batch(brio_rng *rng, const brio_record *record, brio_tetrahedro
     return true;
 }
 
-static void compare(const brio_engine *engine, bool weighted) {
-    static brio_record record[POINTS + 1];
+/* What brio_in_conflict says of a finite tetrahedron, by the exact stages alone. */
+static bool is_in_conflict(const brio_tetrahedra *t, brio_filter *f, uint32_t tet, const double *p, bool weighted) {
+    const uint32_t *v = t->tet[tet].vertex;
+    const double *a = t->record[v[0]], *b = t->record[v[1]], *c = t->record[v[2]], *d = t->record[v[3]];
+    int sign = brio_insphere_exact(a, b, c, d, p, weighted);
+    return (sign ? sign : brio_insphere_tie(f, a, b, c, d, p)) > 0;
+}
+
+/* Compares lanes with the exact stages on tetrahedra of the points. Returns how many tests reached these stages. */
+static uint64_t compare(const brio_engine *engine, brio_record *record, bool weighted) {
     brio_tetrahedron tets[BRIO_BATCH] = {0};
     brio_tetrahedra t = {.tet = tets, .count = BRIO_BATCH, .infinite = POINTS, .record = record};
-    brio_filter filter;
+    brio_filter filter, judge;
     brio_rng rng = brio_rng_new(5);
     uint32_t facets[BRIO_BATCH], p;
     int compared = 0, wrong = 0;
-    cospherical_points(3, record);
-    for (int i = 0; i < POINTS; i++) record[i][3] = weighted ? 7 : 0;
     record[POINTS][3] = INFINITY;
     brio_filter_for(&filter, (const brio_record *)record, POINTS, weighted);
+    judge = filter;
     for (uint32_t i = 0; i < BRIO_BATCH; i++) facets[i] = brio_facet_of(i, 0);
     for (int trial = 0; trial < TRIALS; trial++) {
         if (!make_batch(&rng, record, tets, &p)) continue;
         unsigned found = engine->conflicts(&t, &filter, facets, BRIO_BATCH, record[p]);
         for (uint32_t i = 0; i < BRIO_BATCH; i++)
-            wrong += (found >> i & 1) != brio_in_conflict_exact(&t, &filter, i, record[p], weighted);
+            wrong += (found >> i & 1) != is_in_conflict(&t, &judge, i, record[p], weighted);
         compared++;
     }
     EXPECT(wrong == 0, "%d of %d", wrong, compared * BRIO_BATCH);
     EXPECT(compared > TRIALS / 3, "%d batches", compared);
+    return filter.exact;
 }
 
 static void exactly_cospherical_points_are_ties_in_lanes_too(void) {
+    static brio_record record[POINTS + 1];
+    cospherical_points(3, record);
     for (int weighted = 0; weighted < 2; weighted++) {
+        for (int i = 0; i < POINTS; i++) record[i][3] = weighted ? 7 : 0;
         for (int set = 0; set < BRIO_INSTRUCTION_SETS; set++)
-            if (use_set(set)) compare(brio_engine_choose(weighted), weighted);
+            if (use_set(set)) compare(brio_engine_choose(weighted), record, weighted);
     }
+}
+
+/* Writes points on a sphere, one in 16 of them 2^30 times as far out; all of them times 2^exponent, and weights of no
+ * consequence times the square of that. */
+static void points_with_far_ones(uint64_t seed, int exponent, brio_record *record) {
+    static double p[3 * POINTS];
+    sphere_points(seed, POINTS, p);
+    for (int i = 0; i < POINTS; i++) {
+        for (int k = 0; k < 3; k++) record[i][k] = ldexp(p[3 * i + k], exponent + (i % 16 == 0 ? 30 : 0));
+        record[i][3] = ldexp(i % 5, 2 * exponent - 30);
+    }
+}
+
+/* Vertices far from the others, and units in which products overflow or vanish, once made each test exact. */
+static void neither_far_vertices_nor_far_units_make_tests_exact(void) {
+    static brio_record record[POINTS + 1];
+    static const int EXPONENTS[] = {0, 300, 500, 990, -300, -500, -1000};
+    for (size_t e = 0; e < sizeof EXPONENTS / sizeof *EXPONENTS; e++)
+        for (int weighted = 0; weighted < 2; weighted++) {
+            if (weighted && (EXPONENTS[e] > 500 || EXPONENTS[e] < -500)) continue; /* no doubles hold the weights */
+            points_with_far_ones(e, EXPONENTS[e], record);
+            for (int set = 0; set < BRIO_INSTRUCTION_SETS; set++) {
+                if (!use_set(set)) continue;
+                uint64_t exact = compare(brio_engine_choose(weighted), record, weighted);
+                EXPECT(exact < BRIO_BATCH * TRIALS / 1000, "2^%d, weighted %d: %llu tests", EXPONENTS[e], weighted,
+                       (unsigned long long)exact);
+            }
+        }
 }
 
 /* --- slacks of tetrahedra --- */
@@ -266,6 +305,7 @@ static void neighbours_of_higher_number_are_asked(void) {
 
 SUITE(test_engine) {
     RUN(exactly_cospherical_points_are_ties_in_lanes_too);
+    RUN(neither_far_vertices_nor_far_units_make_tests_exact);
     RUN(no_move_within_the_slack_breaks_a_star);
     RUN(neighbours_of_higher_number_are_asked);
     RUN(a_lift_that_is_no_number_is_not_sound);

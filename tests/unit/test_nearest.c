@@ -101,7 +101,45 @@ static void lists_keep_the_nearest_whatever_the_distances(void) {
     }
 }
 
+/* Full lists of points at one distance: as many places decide as there are points, not as there are pairs of them. */
+static void ties_are_kept_in_linear_time(void) {
+    static double p[BRIO_NEAR_ROOM][3];
+    brio_near_point near[BRIO_NEAR_ROOM];
+    for (size_t i = 0; i < BRIO_NEAR_ROOM; i++)
+        for (int k = 0; k < 3; k++) p[i][k] = i % 3 == (size_t)k ? i % 2 ? 1 : -1 : 0;
+    brio_near_list l = brio_near_list_for((const double(*)[3])p, (double[3]){0, 0, 0}, BRIO_MOST_NEAR, near);
+    for (size_t i = 0; i < BRIO_NEAR_ROOM; i++) near[l.size++] = (brio_near_point){1, (uint32_t)i};
+    brio_keep_nearest(&l);
+    EXPECT(l.size == BRIO_MOST_NEAR && 0 < l.compared && l.compared <= 8 * BRIO_NEAR_ROOM, "%zu pairs", l.compared);
+}
+
+/* Among 60,000 points at 60 positions, a query takes comparisons in proportion to the points wanted. */
+static void points_at_few_positions_take_few_comparisons(void) {
+    enum { POSITIONS = 60, TIMES = 1000 };
+    static double p[POSITIONS * TIMES][3];
+    brio_context *ctx = new_context();
+    brio_near_point near[BRIO_NEAR_ROOM];
+    brio_point_tree tree;
+    clustered_points(1, POSITIONS, *p);
+    for (size_t i = POSITIONS; i < POSITIONS * TIMES; i++) memcpy(p[i], p[i % POSITIONS], sizeof *p);
+    EXPECT(brio_point_tree_new(ctx, *p, POSITIONS * TIMES, &tree) == BRIO_OK);
+    for (size_t wanted = 1; wanted <= BRIO_MOST_NEAR; wanted *= 2) {
+        size_t compared = 0;
+        for (size_t q = 0; q < POSITIONS; q++) {
+            brio_near_list l = brio_near_list_for((const double(*)[3])tree.point, p[q], wanted, near);
+            brio_offer_tree(&l, &tree);
+            EXPECT(l.size >= wanted, "%zu of %zu", l.size, wanted);
+            compared += l.compared;
+        }
+        EXPECT(compared <= POSITIONS * (16 * wanted + 32), "%zu wanted: %zu pairs", wanted, compared);
+    }
+    brio_point_tree_free(ctx, &tree);
+    brio_context_free(ctx);
+}
+
 SUITE(test_nearest) {
+    RUN(ties_are_kept_in_linear_time);
+    RUN(points_at_few_positions_take_few_comparisons);
     RUN(nearest_points_are_the_first_of_all);
     RUN(lists_keep_the_nearest_whatever_the_distances);
     return harness_end();

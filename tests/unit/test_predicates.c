@@ -2,6 +2,7 @@
  * separated powers of two, and the stages against each other. */
 #include "base/rng.h"
 #include "harness.h"
+#include "predicates/plane.h"
 #include "predicates/predicates.h"
 #include <string.h>
 
@@ -171,6 +172,57 @@ static void integers_agree_with_dyadic_numbers(void) {
     EXPECT(answered > 50000 && zeros > 15000, "%d answered, %d zeros", answered, zeros);
 }
 
+/* Stages on scaled rows against the exact stage, in units of 2^exponent. Where the unit is ordinary they decline. */
+static void scaled_rows_agree_with_exact_signs(void) {
+    static const int EXPONENTS[] = {-1065, -1000, -400, 0, 100, 400, 1000};
+    for (size_t e = 0; e < sizeof EXPONENTS / sizeof *EXPONENTS; e++) {
+        int declined = 0, left = 0, unit = EXPONENTS[e];
+        bool ordinary = unit == 0 || unit == 100, huge = abs(unit) > 500;
+        for (uint64_t trial = 0; trial < 2000; trial++) {
+            brio_rng rng = brio_rng_new(trial + 77);
+            bool weighted = trial % 2 && !huge;
+            double p[5][4], u[4][4], far = ldexp(1, unit);
+            for (int i = 0; i < 5; i++) {
+                for (int k = 0; k < 3; k++) p[i][k] = ldexp(brio_rng_double(&rng) - 0.5, unit);
+                p[i][3] = weighted ? ldexp(brio_rng_double(&rng), 2 * unit) : 0;
+            }
+            if (trial % 4 == 3)
+                for (int k = 0; k < 3; k++) p[4][k] = p[1][k] / 2 + p[2][k] / 2; /* almost on a line */
+            brio_filter f;
+            brio_filter_set(&f, (double[]){far, far, far}, weighted ? far * far : 0, weighted);
+            const double *const row[5] = {p[0], p[1], p[2], p[3], p[4]};
+            int sphere = brio_insphere_exact(p[0], p[1], p[2], p[3], p[4], weighted);
+            int orient = brio_orient3d_exact(p[0], p[1], p[2], p[3]);
+            EXPECT(brio_insphere_sign(&f, p[0], p[1], p[2], p[3], p[4], weighted) == sphere, "2^%d", unit);
+            EXPECT(brio_orient3d_sign(&f, p[0], p[1], p[2], p[3]) == orient, "2^%d", unit);
+            int scaled = brio_insphere_rescaled(&f, row);
+            EXPECT(scaled == 2 || scaled == sphere, "2^%d: %d, not %d", unit, scaled, sphere);
+            declined += scaled == 2;
+            scaled = brio_orient3d_rescaled(&f, p[0], p[1], p[2], p[3]);
+            EXPECT(scaled == 2 || scaled == orient, "2^%d: %d, not %d", unit, scaled, orient);
+            declined += scaled == 2;
+            brio_plane_filter g;
+            brio_plane_filter_set(&g, (double[]){far, far, far, weighted ? far * far : 0}, weighted);
+            memcpy(u, p, sizeof u);
+            if (!weighted)
+                for (int i = 0; i < 4; i++) u[i][2] = 0;
+            const double *const place[4] = {u[0], u[1], u[2], u[3]};
+            int circle = brio_incircle_exact(u[0], u[1], u[2], u[3]), turn = brio_orient2d_exact(u[0], u[1], u[2]);
+            EXPECT(brio_incircle_sign(&g, u[0], u[1], u[2], u[3], weighted) == circle, "2^%d", unit);
+            EXPECT(brio_orient2d_sign(&g, u[0], u[1], u[2]) == turn, "2^%d", unit);
+            scaled = brio_incircle_rescaled(&g, place);
+            EXPECT(scaled == 2 || scaled == circle, "2^%d: %d, not %d", unit, scaled, circle);
+            declined += scaled == 2;
+            scaled = brio_orient2d_rescaled(&g, u[0], u[1], u[2]);
+            EXPECT(scaled == 2 || scaled == turn, "2^%d: %d, not %d", unit, scaled, turn);
+            declined += scaled == 2;
+            left += f.exact + g.exact > 0;
+        }
+        EXPECT(ordinary ? declined == 4 * 2000 : declined <= 2000, "2^%d: %d declined", unit, declined);
+        EXPECT(left <= 2, "2^%d: %d exact", unit, left);
+    }
+}
+
 static void extreme_doubles_are_exact(void) {
     const double tiny = 0x1p-1074, huge = 0x1p1023;
     double o[3] = {0, 0, 0}, x[3] = {huge, 0, 0}, y[3] = {0, tiny, 0}, z[3] = {0, 0, 1}, m[3] = {huge, tiny, 0};
@@ -198,6 +250,7 @@ SUITE(test_predicates) {
     RUN(random_small_integers_at_every_scale);
     RUN(stages_agree_near_a_sphere);
     RUN(integers_agree_with_dyadic_numbers);
+    RUN(scaled_rows_agree_with_exact_signs);
     RUN(extreme_doubles_are_exact);
     RUN(weights_move_the_boundary);
     return harness_end();
