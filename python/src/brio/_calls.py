@@ -7,10 +7,20 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import Floats
-from .errors import NotFiniteError
+from ._arrays import Floats, as_number, as_path
+from .errors import ArgumentError, NotFiniteError
 
 Progress = Callable[[str, float], Any]
+Limits = tuple[bytes | None, int] | None  # the folder of scratch files, and the most bytes, 0 for no limit; of one call
+
+
+def as_limits(scratch: Any, max_memory: Any) -> Limits:
+    """Takes a folder for scratch files and a number of bytes, which may both be None."""
+    most = 0.0 if max_memory is None else as_number(max_memory, "max_memory")
+    if max_memory is not None and not 1 <= most < 2**63:
+        raise ArgumentError(f"max_memory: a number of bytes, at least 1, is wanted, not {max_memory!r}")
+    folder = None if scratch is None else as_path(scratch, "scratch", "a folder")
+    return (folder, int(most)) if folder is not None or most else None
 
 
 class _Line:
@@ -46,19 +56,20 @@ def _bar() -> _Line | _Bar:
 
 
 class reporting:
-    """Shows a bar during the call if `progress` is True; a function is called as it is."""
+    """Shows a bar during the call if `progress` is True; a function is called as it is. Gives what the module takes."""
 
-    __slots__ = ("progress", "bar")
+    __slots__ = ("progress", "limits", "bar")
 
-    def __init__(self, progress: bool | Progress | None) -> None:
+    def __init__(self, progress: bool | Progress | None, limits: Limits = None) -> None:
         self.progress = progress
+        self.limits = limits
         self.bar: _Line | _Bar | None = None
 
-    def __enter__(self) -> Progress | None:
+    def __enter__(self) -> Any:
         if self.progress is True:
             self.bar = _bar()
-            return self.bar
-        return self.progress or None
+        told = self.bar or self.progress or None
+        return told if self.limits is None else (told, *self.limits)
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
@@ -75,9 +86,9 @@ def name_guilty(error: NotFiniteError, points: Floats, weights: Floats | None = 
 
 
 def of_points(function: Callable[..., Any], points: Floats, weights: Floats | None, threads: int,
-              progress: bool | Progress | None) -> Any:
-    """Calls function(points, weights, threads, progress)."""
-    with reporting(progress) as report:
+              progress: bool | Progress | None, limits: Limits = None) -> Any:
+    """Calls function(points, weights, threads, report)."""
+    with reporting(progress, limits) as report:
         try:
             return function(points, weights, threads, report)
         except NotFiniteError as error:

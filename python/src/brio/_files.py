@@ -52,7 +52,8 @@ class Conversion:
     largest_tile: int = 0
 
 
-def _columns(columns: str | Sequence[str | None] | None) -> str | None:
+def as_columns(columns: str | Sequence[str | None] | None) -> str | None:
+    """The names of columns as the library takes them."""
     if columns is None:
         return None
     if isinstance(columns, str):
@@ -108,7 +109,7 @@ def read(path: Path, *, format: str | None = None, columns: str | Sequence[str |
     """
     name = None if format is None else as_text(format, "format")
     with reporting(progress) as report:
-        mesh: Mesh = Mesh._of(_native.read(as_path(path), name, _columns(columns), threads, report))
+        mesh: Mesh = Mesh._of(_native.read(as_path(path), name, as_columns(columns), threads, report))
     return mesh
 
 
@@ -172,7 +173,7 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     merges, distance = (merge, 0.0) if isinstance(merge, bool) else (True, as_number(merge, "merge"))
     with reporting(progress) as report:
         choice = neighbours, as_number(factor, "factor"), as_number(thin, "thin"), merges, distance
-        facts = _native.convert(as_path(source), as_path(target), _columns(columns),
+        facts = _native.convert(as_path(source), as_path(target), as_columns(columns),
                                 (ascii, float32, compress, comment), corners, choice, divides, threads, report)
     return Conversion(**facts)
 
