@@ -50,7 +50,7 @@ typedef struct {
     module_state *state;
     pooled_context *context;
     brio_context *ctx;
-    PyObject *progress; /* a callable, or None */
+    PyObject *progress;  /* a callable, or None */
     const char *scratch; /* the folder of this call, or NULL */
     size_t max_memory;   /* of this call; 0: no limit but the machine's */
     PyThreadState *thread;

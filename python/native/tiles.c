@@ -376,10 +376,10 @@ static int take_faces(const brio_faces_part *part, uint32_t tile, void *user) {
     const taker *to = user;
     PyEval_RestoreThread(to->c->thread);
     module_state *state = to->c->state;
-    PyObject *arguments = Py_BuildValue("INNN", (unsigned)tile,
-                                        array_copy(state, layout_of(part->points, 'd', part->num_vertices, 3)),
-                                        array_copy(state, layout_of(part->index, 'L', part->num_vertices, 0)),
-                                        array_copy(state, layout_of(part->faces, 'I', part->num_faces, 3)));
+    PyObject *arguments =
+        Py_BuildValue("INNN", (unsigned)tile, array_copy(state, layout_of(part->points, 'd', part->num_vertices, 3)),
+                      array_copy(state, layout_of(part->index, 'L', part->num_vertices, 0)),
+                      array_copy(state, layout_of(part->faces, 'I', part->num_faces, 3)));
     int stop = hand_over(to, arguments);
     to->c->thread = PyEval_SaveThread();
     return stop;

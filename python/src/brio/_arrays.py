@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .errors import ArgumentError
 
 Floats = NDArray[np.float64]
-
+MOST_TILES = 65536
 
 _MOST_EXACT = 2**53  # all integers up to here are doubles
 

@@ -1,5 +1,6 @@
 """Calls of the module of C: progress, and the indices of guilty points."""
 
+import os
 import sys
 from collections.abc import Callable
 from types import TracebackType
@@ -10,17 +11,19 @@ import numpy as np
 from ._arrays import Floats, as_number, as_path
 from .errors import ArgumentError, NotFiniteError
 
+Path = str | os.PathLike[str]
 Progress = Callable[[str, float], Any]
-Limits = tuple[bytes | None, int] | None  # the folder of scratch files, and the most bytes, 0 for no limit; of one call
+Limits = tuple[Path | None, float | None]  # the folder of scratch files, and the most bytes; of one call
+UNLIMITED: Limits = (None, None)
 
 
-def as_limits(scratch: Any, max_memory: Any) -> Limits:
-    """Takes a folder for scratch files and a number of bytes, which may both be None."""
+def _as_limits(limits: Limits) -> tuple[bytes | None, int]:
+    """Limits as the module takes them."""
+    scratch, max_memory = limits
     most = 0.0 if max_memory is None else as_number(max_memory, "max_memory")
     if max_memory is not None and not 1 <= most < 2**63:
         raise ArgumentError(f"max_memory: a number of bytes, at least 1, is wanted, not {max_memory!r}")
-    folder = None if scratch is None else as_path(scratch, "scratch", "a folder")
-    return (folder, int(most)) if folder is not None or most else None
+    return None if scratch is None else as_path(scratch, "scratch", "a folder"), int(most)
 
 
 class _Line:
@@ -60,9 +63,9 @@ class reporting:
 
     __slots__ = ("progress", "limits", "bar")
 
-    def __init__(self, progress: bool | Progress | None, limits: Limits = None) -> None:
+    def __init__(self, progress: bool | Progress | None, limits: Limits = UNLIMITED) -> None:
         self.progress = progress
-        self.limits = limits
+        self.limits = None if limits == UNLIMITED else _as_limits(limits)
         self.bar: _Line | _Bar | None = None
 
     def __enter__(self) -> Any:
@@ -86,7 +89,7 @@ def name_guilty(error: NotFiniteError, points: Floats, weights: Floats | None = 
 
 
 def of_points(function: Callable[..., Any], points: Floats, weights: Floats | None, threads: int,
-              progress: bool | Progress | None, limits: Limits = None) -> Any:
+              progress: bool | Progress | None, limits: Limits = UNLIMITED) -> Any:
     """Calls function(points, weights, threads, report)."""
     with reporting(progress, limits) as report:
         try:

@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._arrays import Floats, as_array, as_box, as_count, as_number, as_path, as_rows, as_text, as_weights, frozen
-from ._calls import Progress, as_limits, name_guilty, reporting
-from ._files import Path, as_columns
+from ._arrays import MOST_TILES, Floats, as_array, as_box, as_count, as_number, as_path, as_rows, as_text, as_weights, frozen
+from ._calls import Path, Progress, name_guilty, reporting
+from ._files import as_columns
 from .errors import ArgumentError, NotFiniteError
 
 _BLOCK = 65536  # points at a time: as brio reads files
-_MOST = 65536
 _STARS = {False: 0, "ordered-faces": 1, True: 2, "ordered": 3}
 
 
@@ -141,14 +140,15 @@ class TiledDelaunay:
 
     def __init__(self, points: Any = None, weights: Any = None, *, scratch: Path, tiles: int = 8,
                  stars: bool | str = False, key: int = 0, threads: int = 0, progress: bool | Progress | None = None,
-                 max_memory: int | None = None) -> None:
+                 max_memory: float | None = None) -> None:
         if isinstance(stars, bool | str) and stars in _STARS:
             kept = _STARS[stars]
         else:
             raise ArgumentError(f"stars: one of {', '.join(map(repr, _STARS))}, not {stars!r}")
         self.threads, self.progress = threads, progress
-        self.tiles = as_count(tiles, "tiles", 1, _MOST)
-        self._limits, self._last = as_limits(None, max_memory), None
+        self.tiles = as_count(tiles, "tiles", 1, MOST_TILES)
+        self._limits = None, max_memory
+        self._last: dict[str, Any] | None = None
         folder, number = as_path(scratch, "scratch", "a folder"), as_count(key, "key", most=2**64 - 1)
         with reporting(progress, self._limits) as report:
             self._handle = _native.tiles_new(folder, self.tiles, kept, number, threads, report)
@@ -185,9 +185,8 @@ class TiledDelaunay:
         try:
             _native.tiles_add(self._handle, rows, weights, self.threads, report)
         except NotFiniteError as error:
-            first = error.indices[0]
             name_guilty(error, rows, weights)
-            error.indices += first - error.indices[0]
+            error.indices += self._facts["points"] - error.indices[0]  # those before the first are there
             raise
 
     def read(self, path: Path, *, format: str | None = None, columns: str | Sequence[str | None] | None = None,
