@@ -34,8 +34,12 @@ static void free_part(void *object) {
     free(p);
 }
 
+static void leave(tiled *d) {
+    __atomic_store_n(&d->busy, 0, __ATOMIC_RELEASE);
+}
+
 static tiled *refuse(tiled *d, module_state *state, const char *why) {
-    if (d) __atomic_store_n(&d->busy, 0, __ATOMIC_RELEASE);
+    leave(d);
     raise_argument(state, PyUnicode_FromString(why));
     return NULL;
 }
@@ -48,18 +52,13 @@ static tiled *enter(module_state *state, PyObject *object) {
         PyErr_SetString(PyExc_RuntimeError, "another call of this triangulation is not at its end");
         return NULL;
     }
-    if (!d->t) return refuse(d, state, "the tiles are closed");
-    if (d->process != process_now()) return refuse(d, state, "the tiles belong to the process that forked this one");
-    return d;
-}
-
-static void leave(tiled *d) {
-    __atomic_store_n(&d->busy, 0, __ATOMIC_RELEASE);
+    return d->t ? d : refuse(d, state, "the tiles are closed");
 }
 
 /* Begins a call of the object, which ends with `end`. Returns the object, or NULL with an exception set. */
 static tiled *begin(call *c, module_state *state, PyObject *object, int threads, PyObject *progress) {
     tiled *d = enter(state, object);
+    if (d && d->process != process_now()) return refuse(d, state, "the tiles are of the process that forked this one");
     if (d && call_begin_reserved(c, state, d->context, threads, progress)) {
         leave(d);
         return NULL;

@@ -153,12 +153,19 @@ class TiledDelaunay:
         with reporting(progress, self._limits) as report:
             self._handle = _native.tiles_new(folder, self.tiles, kept, number, threads, report)
         self._end = weakref.finalize(self, _native.tiles_close, self._handle)
-        if points is not None:
-            if not self.has_points:
-                self.add(points, weights)
-            self.run()
-        elif weights is not None:
+        try:
+            self._begin(points, weights)
+        except BaseException:  # its traceback keeps this object, but the files go at once
+            self._end()
+            raise
+
+    def _begin(self, points: Any, weights: Any) -> None:
+        if points is None and weights is not None:
             raise ArgumentError("weights: there are no points; they come with the points")
+        if points is not None and not self.has_points:
+            self.add(points, weights)
+        if points is not None:
+            self.run()
 
     def _call(self, function: Callable[..., Any], *arguments: Any) -> Any:
         with reporting(self.progress, self._limits) as report:
