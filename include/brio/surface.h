@@ -210,9 +210,9 @@ struct brio_surface_options {
     /* COCONE: N > 1 is the super co-cone. It triangulates the points in about N pieces, one after the other, and
      * matches the surfaces at the seams; on dense points the triangles are the same. */
     size_t pieces;
-    /* All but OFFSET, and not with `pieces`: NULL, or receives how the surface came to be at its samples, owned by the
-     * caller (brio_explanation_free); NULL on failure. Of more samples than `explained` (0: 5,000) an even choice.
-     * Takes 700 bytes a point more, and 4 kB an explained sample. */
+    /* This and what follows came later. All but OFFSET, and not with `pieces`: NULL, or receives how the surface came
+     * to be at its samples, owned by the caller (brio_explanation_free); NULL on failure. Of more samples than
+     * `explained` (0: 5,000) an even choice. Takes 700 bytes a point more, and 4 kB an explained sample. */
     brio_explanation **explanation;
     size_t explained;
     /* LABELED: NULL, or how the triangulations are made in tiles (brio/tiles.h): a folder, and how many; neither

@@ -1,8 +1,9 @@
 """interrupt.py WORK ...: by how much processor time calls outlast a signal, in the worst of two moments. WORK: delaunay, plane,
-labeled-delaunay, power-crust, voronoi, alpha, locate, natural, natural2. It is an error if a call is not interrupted."""
+labeled-delaunay, power-crust, voronoi, alpha, locate, natural, natural2, tiles, cells-in-tiles. It is an error if a call is not interrupted."""
 
 import signal
 import sys
+import tempfile
 import time
 
 import brio
@@ -20,6 +21,12 @@ def prepare(work):
         ball = rng.normal(size=(100_000, 3))
         ball /= np.linalg.norm(ball, axis=1)[:, None]
         return lambda: brio.reconstruct(ball, work, threads=1)
+    if work == "tiles":
+        many = rng.random((1_000_000, 3))
+        return lambda: brio.TiledDelaunay(many, scratch=tempfile.gettempdir(), tiles=4, threads=1)
+    if work == "cells-in-tiles":
+        tri = brio.TiledDelaunay(rng.random((100_000, 3)), scratch=tempfile.gettempdir(), tiles=4, stars=True)
+        return lambda: tri.cells(len)
     d = 2 if work in ("plane", "natural2") else 3
     queries, tri = rng.random((2_000_000, d)), brio.Delaunay(rng.random((1000, d)))
     if work == "plane":

@@ -56,6 +56,16 @@ PyObject *array_new(module_state *state, PyObject *base, layout shown) {
     return (PyObject *)a;
 }
 
+PyObject *array_copy(module_state *state, layout shown) {
+    Py_ssize_t row = shown.item * (shown.ndim > 1 ? shown.shape[1] : 1), rows = shown.shape[0];
+    PyObject *bytes = PyBytes_FromStringAndSize(shown.data, rows * row), *copy = NULL;
+    if (!bytes) return NULL;
+    shown.data = PyBytes_AsString(bytes);
+    copy = array_new(state, bytes, shown);
+    Py_DECREF(bytes);
+    return copy;
+}
+
 static int is_contiguous(const layout *shown) {
     Py_ssize_t stride = shown->item;
     for (int k = shown->ndim - 1; k >= 0; k--) {

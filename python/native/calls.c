@@ -14,30 +14,50 @@ static const double LOOK = 0.02;
 
 /* --- contexts --- */
 
-static pooled_context *take_idle(module_state *state) {
+static int is_idle(const pooled_context *context, int empty) {
+    return !context->busy && !context->reserved && !(empty && brio_context_memory(context->ctx));
+}
+
+static pooled_context *take_idle(module_state *state, int empty) {
     PyThread_acquire_lock(state->lock, WAIT_LOCK);
     pooled_context *context = state->contexts;
-    while (context && context->busy) context = context->next;
+    while (context && !is_idle(context, empty)) context = context->next;
     if (context) context->busy = 1;
     PyThread_release_lock(state->lock);
     return context;
 }
 
-pooled_context *context_take(module_state *state) {
-    pooled_context *context = take_idle(state);
-    if (context) return context;
-    context = calloc(1, sizeof *context);
+/* Makes a context that is busy. */
+static pooled_context *context_new(module_state *state, int reserved) {
+    pooled_context *context = calloc(1, sizeof *context);
     if (!context || brio_context_new(NULL, &context->ctx) != BRIO_OK) {
         free(context);
         PyErr_NoMemory();
         return NULL;
     }
     context->busy = 1;
+    context->reserved = reserved;
     PyThread_acquire_lock(state->lock, WAIT_LOCK);
     context->next = state->contexts;
     state->contexts = context;
     PyThread_release_lock(state->lock);
     return context;
+}
+
+pooled_context *context_take(module_state *state, int empty) {
+    pooled_context *context = take_idle(state, empty);
+    return context ? context : context_new(state, 0);
+}
+
+/* Takes a reserved context, once what is being freed in it is freed. */
+static void context_enter(module_state *state, pooled_context *context) {
+    for (int taken = 0; !taken;) {
+        PyThread_acquire_lock(state->lock, WAIT_LOCK);
+        taken = !context->busy;
+        context->busy = 1;
+        PyThread_release_lock(state->lock);
+        if (!taken) PyEval_RestoreThread(PyEval_SaveThread());
+    }
 }
 
 static void record_free(record *r) {
@@ -95,19 +115,54 @@ static int look(const char *stage, double fraction, void *user) {
     return stop;
 }
 
-int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
-    if (progress != Py_None && !PyCallable_Check(progress)) {
-        PyErr_SetString(PyExc_TypeError, "progress must be a function of the stage and of the share that is done");
-        return -1;
-    }
-    if (threads < 0)
-        return raise_argument(state, PyUnicode_FromFormat("threads: 0 or more are wanted, not %d", threads));
-    *c = (call){.state = state, .progress = progress, .looked = seconds_now()};
-    if (!(c->context = context_take(state))) return -1;
+/* Reads progress, or a tuple of progress and limits. Returns 0 or -1 with an exception set. */
+static int read_limits(call *c, PyObject *progress) {
+    PyObject *folder = Py_None;
+    Py_ssize_t most = 0;
+    c->progress = progress;
+    if (PyTuple_Check(progress) && !PyArg_ParseTuple(progress, "OOn", &c->progress, &folder, &most)) return -1;
+    if (folder != Py_None && !(c->scratch = PyBytes_AsString(folder))) return -1;
+    c->max_memory = (size_t)most;
+    if (c->progress == Py_None || PyCallable_Check(c->progress)) return 0;
+    PyErr_SetString(PyExc_TypeError, "progress must be a function of the stage and of the share that is done");
+    return -1;
+}
+
+/* Sets what a context has for one call. Returns 0; or -1 with an exception set, and the call has ended. */
+static int prepare(call *c, int threads) {
     c->ctx = c->context->ctx;
     brio_context_set_threads(c->ctx, threads);
     brio_context_set_progress(c->ctx, look, c);
-    return 0;
+    if (c->max_memory) brio_context_set_memory_limit(c->ctx, c->max_memory);
+    brio_status status = c->scratch ? brio_context_set_scratch(c->ctx, c->scratch) : BRIO_OK;
+    return status == BRIO_OK ? 0 : call_end(c, status);
+}
+
+/* Reads how a call is to be made. Returns 0 or -1 with an exception set. */
+static int read_call(call *c, module_state *state, int threads, PyObject *progress) {
+    *c = (call){.state = state, .looked = seconds_now()};
+    if (read_limits(c, progress)) return -1;
+    if (threads >= 0) return 0;
+    return raise_argument(state, PyUnicode_FromFormat("threads: 0 or more are wanted, not %d", threads));
+}
+
+int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
+    if (read_call(c, state, threads, progress)) return -1;
+    if (!(c->context = context_take(state, c->max_memory != 0))) return -1;
+    return prepare(c, threads);
+}
+
+int call_begin_reserving(call *c, module_state *state, int threads, PyObject *progress) {
+    if (read_call(c, state, threads, progress)) return -1;
+    if (!(c->context = context_new(state, 1))) return -1;
+    return prepare(c, threads);
+}
+
+int call_begin_reserved(call *c, module_state *state, pooled_context *reserved, int threads, PyObject *progress) {
+    if (read_call(c, state, threads, progress)) return -1;
+    context_enter(state, reserved);
+    c->context = reserved;
+    return prepare(c, threads);
 }
 
 int call_begin_in(call *c, module_state *state, brio_context *own, int threads, PyObject *progress) {
@@ -157,6 +212,8 @@ int call_end(call *c, brio_status status) {
         raise(c->state, &failure, sentence_of(c));
     }
     brio_context_set_progress(c->ctx, NULL, NULL);
+    if (c->max_memory) brio_context_set_memory_limit(c->context->ctx, 0);
+    if (c->scratch) (void)brio_context_set_scratch(c->context->ctx, NULL);
     context_give(c->state, c->context);
     return failed ? -1 : 0;
 }

@@ -5,9 +5,9 @@ void cells_release(void *cells) {
     brio_cells_free(cells);
 }
 
-/* An array that may be absent, as None. */
+/* An array that may be absent, as None; a copy if it has no owner. */
 static PyObject *maybe(module_state *state, PyObject *owner, const void *data, layout shown) {
-    if (data) return array_new(state, owner, shown);
+    if (data) return owner ? array_new(state, owner, shown) : array_copy(state, shown);
     Py_RETURN_NONE;
 }
 

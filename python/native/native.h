@@ -19,10 +19,11 @@ typedef struct record record;
 
 /** A context with its lock. A call takes an idle context, or makes one; objects stay with the context that made them.
  *  I1  `busy`, `pending` and `next` change under module_state.lock only. `busy` is the context's lock.
- *  I2  An object is freed by who holds `busy`: by its handle, or, where a call holds it, at the end of that call. */
+ *  I2  An object is freed by who holds `busy`: by its handle, or, where a call holds it, at the end of that call.
+ *  I3  `reserved` changes while `busy` is held. Then no other call takes the context: an object has it for itself. */
 typedef struct pooled_context {
     brio_context *ctx;
-    int busy;
+    int busy, reserved;
     record *pending; /* objects to be freed */
     struct pooled_context *next;
 } pooled_context;
@@ -36,8 +37,8 @@ typedef struct {
 
 module_state *state_of(PyObject *module);
 
-/** Takes an idle context. Returns NULL with an exception set. */
-pooled_context *context_take(module_state *state);
+/** Takes an idle context.   empty  whether it is to hold no object.   Returns NULL with an exception set. */
+pooled_context *context_take(module_state *state, int empty);
 /** Gives it back, and frees what became garbage meanwhile. */
 void context_give(module_state *state, pooled_context *context);
 /** Frees the contexts when the module goes. */
@@ -49,13 +50,22 @@ typedef struct {
     module_state *state;
     pooled_context *context;
     brio_context *ctx;
-    PyObject *progress; /* a callable, or None */
+    PyObject *progress;  /* a callable, or None */
+    const char *scratch; /* the folder of this call, or NULL */
+    size_t max_memory;   /* of this call; 0: no limit but the machine's */
     PyThreadState *thread;
     double looked; /* when it last looked for signals, in seconds */
 } call;
 
-/** Begins a call: takes a context, sets its threads and its progress. Returns 0 or -1 with an exception set. */
+/** Begins a call: takes a context, sets its threads and its progress. Returns 0 or -1 with an exception set.
+ *  progress  a callable or None; of a call with limits a tuple of that, a folder for scratch files, as bytes, or None,
+ *            and the most bytes that the call may hold, or 0. The caller keeps it until the end of the call. */
 int call_begin(call *c, module_state *state, int threads, PyObject *progress);
+/** Begins a call in a new context, which is reserved for what is made. Who frees that sets `reserved` to 0; a call that
+ *  makes nothing does so before its end. */
+int call_begin_reserving(call *c, module_state *state, int threads, PyObject *progress);
+/** Begins a call in a reserved context, in which there is no other call. */
+int call_begin_reserved(call *c, module_state *state, pooled_context *reserved, int threads, PyObject *progress);
 /** Begins a call with a context that an object has for itself, and that no other call has now. */
 int call_begin_in(call *c, module_state *state, brio_context *own, int threads, PyObject *progress);
 /** Runs `expression`, which uses c.ctx, without the interpreter's lock. */
@@ -88,6 +98,8 @@ int is_of_format(const Py_buffer *view, char wanted);
 
 /** Makes an object with a read-only buffer that keeps `base` alive; numpy.asarray makes an array of it. */
 PyObject *array_new(module_state *state, PyObject *base, layout shown);
+/** Makes such an object of a copy of what is shown, one row after the other. */
+PyObject *array_copy(module_state *state, layout shown);
 /** The layouts that occur: #n, or #n by columns, one after the other. */
 layout layout_of(const void *data, char format, size_t rows, size_t columns);
 extern PyType_Spec array_spec;
@@ -135,7 +147,9 @@ typedef enum {
     KIND_PERIODIC_ALPHA,
     KIND_PERIODIC_LOCATOR,
     KIND_MESH,
-    KIND_DYNAMIC
+    KIND_DYNAMIC,
+    KIND_TILES,
+    KIND_TILE_PART
 } kind;
 
 /** An object and the context that frees it. */
@@ -162,7 +176,8 @@ void *handle_object(module_state *state, PyObject *object, kind kind);
 int handle_has_points(module_state *state, PyObject *object, const input *points, const input *weights);
 extern PyType_Spec handle_spec;
 
-/** Returns a dict of the arrays of cells, which keep `owner` alive. */
+/** Returns a dict of the arrays of cells, which keep `owner` alive; None in place of those that were not asked for. An
+ *  owner of NULL: they are copies. */
 PyObject *cells_views(module_state *state, PyObject *owner, const brio_cells *c);
 void cells_release(void *cells);
 
@@ -176,6 +191,6 @@ void alpha_release(void *complex);
 
 extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
     mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[],
-    dynamic_methods[];
+    dynamic_methods[], tiles_methods[];
 
 #endif

@@ -4,7 +4,7 @@
 
 /* --- options: read from a dict, by name --- */
 
-typedef enum { INT, DOUBLE, SIZE, SEED } option_type;
+typedef enum { INT, DOUBLE, SIZE, COUNT, SEED } option_type;
 
 typedef struct {
     const char *name;
@@ -19,6 +19,13 @@ static int as_int(PyObject *value) {
     return (int)number;
 }
 
+/* Returns a uint32_t; sets OverflowError if the value is beyond these. */
+static uint32_t as_uint(PyObject *value) {
+    size_t number = PyLong_AsSize_t(value);
+    if (number > UINT32_MAX && !PyErr_Occurred()) PyErr_SetNone(PyExc_OverflowError);
+    return (uint32_t)number;
+}
+
 static void set_option(const option *o, PyObject *value) {
     switch (o->type) {
     case INT:
@@ -30,6 +37,9 @@ static void set_option(const option *o, PyObject *value) {
     case SIZE:
         *(size_t *)o->field = PyLong_AsSize_t(value);
         break;
+    case COUNT:
+        *(uint32_t *)o->field = as_uint(value);
+        break;
     case SEED:
         *(uint64_t *)o->field = PyLong_AsUnsignedLongLong(value);
         break;
@@ -38,9 +48,9 @@ static void set_option(const option *o, PyObject *value) {
 
 /* Makes an ArgumentError of the exception that a value of an option raised. Returns -1. */
 static int raise_option(module_state *state, const option *o, PyObject *value) {
-    static const char *const wanted[] = {"a whole number or a truth value is wanted", "a number is wanted",
-                                         "a whole number of at least 0 is wanted",
-                                         "a whole number from 0 to 2^64 - 1 is wanted"};
+    static const char *const wanted[] = {
+        "a whole number or a truth value is wanted", "a number is wanted", "a whole number of at least 0 is wanted",
+        "a whole number from 0 to 2^32 - 1 is wanted", "a whole number from 0 to 2^64 - 1 is wanted"};
     PyErr_Clear();
     return raise_argument(state, PyUnicode_FromFormat("%s: %s, not %R", o->name, wanted[o->type], value));
 }
@@ -160,9 +170,13 @@ static void close_evidence(evidence_input *e) {
     input_close(&e->origins);
 }
 
-/* Makes the surface. Its property "sample" goes to an array, where one is given, and not to the interpreter. */
-static brio_status make_surface(brio_context *ctx, const surface_call *s, brio_surface_options *o, const experiment *e,
-                                uint32_t *samples, brio_mesh **mesh, brio_surface_stats *stats) {
+/* Makes the surface. Its property "sample" goes to an array, where one is given, and not to the interpreter.
+ * tiles  how many triangulate, in the folder of the call; 0: none. */
+static brio_status make_surface(const call *c, const surface_call *s, brio_surface_options *o, const experiment *e,
+                                uint32_t tiles, uint32_t *samples, brio_mesh **mesh, brio_surface_stats *stats) {
+    brio_context *ctx = c->ctx;
+    const brio_tiles_options in_tiles = {.size = sizeof in_tiles, .scratch = c->scratch, .tiles = tiles};
+    if (tiles) o->tiles = &in_tiles;
     brio_laboratory *lab;
     brio_status status = begin_experiment(ctx, e, &o->poles, &lab);
     if (status == BRIO_OK) status = brio_surface(ctx, s->p.data, s->p.rows, o, mesh, stats);
@@ -178,17 +192,17 @@ static brio_status make_surface(brio_context *ctx, const surface_call *s, brio_s
 /* Makes a dict of what the surface is worth, by the names that the command line's report has. */
 static PyObject *report_of(const brio_surface_stats *s) {
     static const char *const by[] = {"guess", "normals", "scanner", "evidence"};
-#define COUNT(name) #name, (Py_ssize_t)s->name
+#define FACT(name) #name, (Py_ssize_t)s->name
     PyObject *bridges = Py_BuildValue("{s:n,s:d,s:d,s:(ddd)}", "number", (Py_ssize_t)s->bridges, "area_share",
                                       s->bridge_share, "largest_radius", s->bridge_radius, "largest_centre",
                                       s->bridge_centre[0], s->bridge_centre[1], s->bridge_centre[2]);
     PyObject *report =
         Py_BuildValue("{s:d,s:N,s:d,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:n,s:N,s:d,s:d,s:s}", "noise", s->noise, "smoothed",
-                      PyBool_FromLong((long)s->smoothed), "rounding", s->rounding, COUNT(unused), COUNT(undecided),
-                      COUNT(specks), COUNT(relabeled), COUNT(handles), COUNT(strays), COUNT(holes), COUNT(left_out),
+                      PyBool_FromLong((long)s->smoothed), "rounding", s->rounding, FACT(unused), FACT(undecided),
+                      FACT(specks), FACT(relabeled), FACT(handles), FACT(strays), FACT(holes), FACT(left_out),
                       "bridges", bridges, "far_area_percent", 100 * s->far_share, "uncertain_share", s->uncertain_share,
                       "orientation", by[s->evidence & 3]);
-#undef COUNT
+#undef FACT
     const struct {
         const char *name;
         size_t told;
@@ -238,7 +252,8 @@ static PyObject *surface(PyObject *module, PyObject *args) {
     brio_mesh *mesh = NULL;
     PyObject *result = NULL;
     int triangulate = 0;
-    brio_surface_options o = {0};
+    brio_surface_options o = {.size = sizeof o};
+    uint32_t tiles = 0;
     experiment tried = {0, 0};
     const surface_option all[] = {{{"seed", SEED, &o.seed}, NULL},
                                   {{"noise", INT, &o.noise}, "noise"},
@@ -254,6 +269,7 @@ static PyObject *surface(PyObject *module, PyObject *args) {
                                   {{"boundaries", INT, &o.boundaries}, "boundaries"},
                                   {{"density", INT, &o.density}, "density"},
                                   {{"pieces", SIZE, &o.pieces}, "pieces"},
+                                  {{"tiles", COUNT, &tiles}, "tiles"},
                                   {{"extraction", INT, &tried.extraction}, "pieces"},
                                   {{NULL, INT, NULL}, NULL}};
     option table[sizeof all / sizeof *all];
@@ -271,7 +287,7 @@ static PyObject *surface(PyObject *module, PyObject *args) {
         o.normals = own ? s.out.data : NULL;
         if (e.taken.normals || e.taken.origins) o.evidence = &e.taken;
         RUN_SURFACE(table, (o.polygons = brio_surface_method_has(o.method, "polygons") && !triangulate && !o.simplify,
-                            make_surface(c.ctx, &s, &o, &tried, own ? NULL : s.out.data, &mesh, &stats)));
+                            make_surface(&c, &s, &o, &tried, tiles, own ? NULL : s.out.data, &mesh, &stats)));
     }
     close_evidence(&e);
     close_surface_call(&s);

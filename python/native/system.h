@@ -7,6 +7,9 @@
 /* Returns the seconds since some moment, by a clock that nobody sets. */
 double seconds_now(void);
 
+/* Returns the number of this process. */
+long process_now(void);
+
 /* Memory for a copy: of large ones in large pages, where the system has them, since clearing small ones costs more than
  * copying. Returns NULL if there is none. */
 void *place_new(size_t bytes);

@@ -10,6 +10,10 @@ double seconds_now(void) {
     return (double)count.QuadPart / (double)second.QuadPart;
 }
 
+long process_now(void) {
+    return (long)GetCurrentProcessId();
+}
+
 void *place_new(size_t bytes) {
     return malloc(bytes + 1);
 }

@@ -13,10 +13,12 @@ from conftest import PYTHON
 posix = pytest.mark.skipif(os.name == "nt", reason="Windows has no fork, no timers by signals, no module resource")
 
 HOSTILE = r"""
-import random, sys, warnings
+import random, sys, tempfile, warnings
 import numpy as np
 import brio
 from brio import _native
+
+folder = tempfile.TemporaryDirectory()
 
 warnings.simplefilter("ignore")
 draw = random.Random(int(sys.argv[1]))
@@ -66,6 +68,8 @@ def objects():
            brio.NaturalNeighbourInterpolator(p, p), brio.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])]
     if p.shape[1] == 3:
         out.append(brio.alpha_complex(p))
+        out.append(brio.TiledDelaunay(p, scratch=folder.name, tiles=3, stars=True))
+        out.append(out[-1].part(0))
     return out
 
 
@@ -296,7 +300,7 @@ INTERRUPT = pathlib.Path(__file__).parent.parent / "bench" / "interrupt.py"
 
 @posix
 @pytest.mark.parametrize("work", ["delaunay", "plane", "labeled-delaunay", "power-crust", "voronoi", "alpha", "locate",
-                                  "natural", "natural2"])
+                                  "natural", "natural2", "tiles", "cells-in-tiles"])
 def test_interrupt(alone, work):
     """A signal ends a call, wherever in the call it comes. How soon: docs/measured/python.md."""
     assert alone(INTERRUPT.read_text(), work).startswith(work)

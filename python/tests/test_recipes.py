@@ -1,4 +1,4 @@
-"""The recipes of docs/python/space-that-repeats.md run, each by itself, and print what stands there."""
+"""The recipes of pages in docs/python run, each by itself, and print what stands there."""
 
 import contextlib
 import io
@@ -7,12 +7,13 @@ import re
 
 import pytest
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/python/space-that-repeats.md"
-RECIPES = re.findall(r"^## ([^\n]*)\n(?:(?!^## ).)*?```python\n(.*?)```\n\n```text\n(.*?)```", PAGE.read_text("utf-8"), re.S | re.M)
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "docs/python"
+PAGES = "\n".join((FOLDER / name).read_text("utf-8") for name in ("space-that-repeats.md", "more-than-memory.md"))
+RECIPES = re.findall(r"^## ([^\n]*)\n(?:(?!^## ).)*?```python\n(.*?)```\n\n```text\n(.*?)```", PAGES, re.S | re.M)
 
 
 def test_every_recipe_is_found():
-    assert len(RECIPES) == PAGE.read_text("utf-8").count("\n## ")
+    assert len(RECIPES) == PAGES.count("\n## ")
 
 
 @pytest.mark.parametrize("name, code, said", RECIPES, ids=[recipe[0] for recipe in RECIPES])

@@ -14,6 +14,7 @@ from ._periodic import PeriodicAlphaComplex, PeriodicAlphaShape, PeriodicDelauna
 from ._points import outliers, thin
 from ._reconstruct import BallUnion, Surface, ball_union, medial_axis, offset, oriented_normals, reconstruct
 from ._spherical import SphericalVoronoi
+from ._tiled import TiledDelaunay, TileFaces, TilePart
 from ._version import __version__
 from ._view import Page, Picture, picture, view
 from ._voronoi import Voronoi
@@ -24,7 +25,7 @@ __all__ = [
     "DynamicDelaunay", "PeriodicDynamicDelaunay",
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "Page", "PeriodicAlphaComplex",
     "PeriodicAlphaShape", "PeriodicDelaunay", "PeriodicVoronoi", "Picture",
-    "SphericalVoronoi", "Surface",
+    "SphericalVoronoi", "Surface", "TileFaces", "TilePart", "TiledDelaunay",
     "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
     "offset", "oriented_normals", "outliers", "picture", "read", "reconstruct", "simplify", "spanning_tree", "thin", "view", "write",
     *errors.__all__,

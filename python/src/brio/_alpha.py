@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._arrays import Floats, as_number, frozen
-from ._calls import Progress, reporting
+from ._calls import Path, Progress, reporting
 from ._delaunay import Delaunay
 from ._mesh import Mesh
 from .errors import ArgumentError, NoAnswerError
@@ -35,7 +35,7 @@ class AlphaComplex:
         if not isinstance(tri, Delaunay):
             raise ArgumentError(f"tri: a brio.Delaunay is wanted, not {type(tri).__name__}")
         self._tri = tri = tri._as_it_is()
-        with reporting(tri.progress) as report:
+        with reporting(tri.progress, tri._limits) as report:
             views = _native.alpha_values(tri._handle, tri.points, tri.weights, tri.threads, report)
         self.points, self.weights, self._complex, self.ndim = tri.points, tri.weights, views["complex"], tri.ndim
         self.simplices: list[NDArray[np.uint32]] = [np.asarray(view) for view in views["simplices"]]
@@ -104,13 +104,15 @@ class AlphaComplex:
 
 
 def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0, progress: bool | Progress | None = None,
-                  cell: Any = None, periodic: Any = True) -> Any:
+                  scratch: Path | None = None, max_memory: float | None = None, cell: Any = None, periodic: Any = True) -> Any:
     """Computes the alpha filtration of points in the plane or in space or, with weights, the weighted one.
 
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3)
     weights : array_like, shape (n,), optional
+    threads, progress, scratch, max_memory
+        As for Delaunay.
     cell, periodic
         Of points in space that repeats: as of PeriodicDelaunay.
 
@@ -130,11 +132,12 @@ def alpha_complex(points: Any, weights: Any = None, *, threads: int = 0, progres
     if cell is not None:
         from ._periodic import PeriodicAlphaComplex, PeriodicDelaunay
 
-        tri = PeriodicDelaunay(points, weights, cell=cell, periodic=periodic, threads=threads, progress=progress)
+        tri = PeriodicDelaunay(points, weights, cell=cell, periodic=periodic, threads=threads, progress=progress,
+                               scratch=scratch, max_memory=max_memory)
         return PeriodicAlphaComplex(tri, threads=threads, progress=progress)
     if periodic is not True:
         raise ArgumentError("periodic: there is no cell, whose vectors it names")
-    return AlphaComplex(Delaunay(points, weights, threads=threads, progress=progress))
+    return AlphaComplex(Delaunay(points, weights, threads=threads, progress=progress, scratch=scratch, max_memory=max_memory))
 
 
 class AlphaShape(Mesh):
@@ -148,7 +151,7 @@ class AlphaShape(Mesh):
     points : array_like, shape (n, 2) or (n, 3)
     alpha : float, optional
         A squared radius; the default is the least one of a single solid (in the plane, region) that has all vertices.
-    weights, threads, progress
+    weights, threads, progress, scratch, max_memory
         As for Delaunay.
     cell, periodic
         Of points in space that repeats: the result is a PeriodicAlphaShape.
@@ -184,8 +187,10 @@ class AlphaShape(Mesh):
         return complex.shape(complex.auto_alpha() if alpha is None else alpha)
 
     def __init__(self, points: Any, alpha: float | None = None, weights: Any = None, *, threads: int = 0,
-                 progress: bool | Progress | None = None, cell: None = None, periodic: Any = True) -> None:
-        complex = alpha_complex(points, weights, threads=threads, progress=progress, cell=cell, periodic=periodic)
+                 progress: bool | Progress | None = None, scratch: Path | None = None, max_memory: float | None = None,
+                 cell: None = None, periodic: Any = True) -> None:
+        complex = alpha_complex(points, weights, threads=threads, progress=progress, scratch=scratch, max_memory=max_memory,
+                                cell=cell, periodic=periodic)
         made = complex.shape(complex.auto_alpha() if alpha is None else alpha)
         self._take(made._handle)
         self.alpha, self.counts, self.complex = made.alpha, made.counts, complex

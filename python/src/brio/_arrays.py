@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .errors import ArgumentError
 
 Floats = NDArray[np.float64]
-
+MOST_TILES = 65536
 
 _MOST_EXACT = 2**53  # all integers up to here are doubles
 
@@ -129,15 +129,15 @@ def as_text(value: Any, name: str) -> str:
     return value
 
 
-def as_path(path: Any) -> bytes:
+def as_path(path: Any, name: str = "path", what: str = "a file") -> bytes:
     """Takes a path as the system has it."""
     try:
-        name = os.fsencode(path)
+        taken = os.fsencode(path)
     except (TypeError, UnicodeEncodeError) as error:
-        raise ArgumentError(f"path: the name of a file is wanted, not {path!r}") from error
-    if b"\0" in name:
-        raise ArgumentError(f"path: a name without the character 0 is wanted, not {path!r}")
-    return name
+        raise ArgumentError(f"{name}: the name of {what} is wanted, not {path!r}") from error
+    if b"\0" in taken:
+        raise ArgumentError(f"{name}: a name without the character 0 is wanted, not {path!r}")
+    return taken
 
 
 def as_queries(xi: Any, columns: int) -> tuple[Floats, tuple[int, ...]]:

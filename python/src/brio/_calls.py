@@ -1,5 +1,6 @@
 """Calls of the module of C: progress, and the indices of guilty points."""
 
+import os
 import sys
 from collections.abc import Callable
 from types import TracebackType
@@ -7,10 +8,22 @@ from typing import Any
 
 import numpy as np
 
-from ._arrays import Floats
-from .errors import NotFiniteError
+from ._arrays import Floats, as_number, as_path
+from .errors import ArgumentError, NotFiniteError
 
+Path = str | os.PathLike[str]
 Progress = Callable[[str, float], Any]
+Limits = tuple[Path | None, float | None]  # the folder of scratch files, and the most bytes; of one call
+UNLIMITED: Limits = (None, None)
+
+
+def _as_limits(limits: Limits) -> tuple[bytes | None, int]:
+    """Limits as the module takes them."""
+    scratch, max_memory = limits
+    most = 0.0 if max_memory is None else as_number(max_memory, "max_memory")
+    if max_memory is not None and not 1 <= most < 2**63:
+        raise ArgumentError(f"max_memory: a number of bytes, at least 1, is wanted, not {max_memory!r}")
+    return None if scratch is None else as_path(scratch, "scratch", "a folder"), int(most)
 
 
 class _Line:
@@ -46,19 +59,20 @@ def _bar() -> _Line | _Bar:
 
 
 class reporting:
-    """Shows a bar during the call if `progress` is True; a function is called as it is."""
+    """Shows a bar during the call if `progress` is True; a function is called as it is. Gives what the module takes."""
 
-    __slots__ = ("progress", "bar")
+    __slots__ = ("progress", "limits", "bar")
 
-    def __init__(self, progress: bool | Progress | None) -> None:
+    def __init__(self, progress: bool | Progress | None, limits: Limits = UNLIMITED) -> None:
         self.progress = progress
+        self.limits = None if limits == UNLIMITED else _as_limits(limits)
         self.bar: _Line | _Bar | None = None
 
-    def __enter__(self) -> Progress | None:
+    def __enter__(self) -> Any:
         if self.progress is True:
             self.bar = _bar()
-            return self.bar
-        return self.progress or None
+        told = self.bar or self.progress or None
+        return told if self.limits is None else (told, *self.limits)
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
                  trace: TracebackType | None) -> None:
@@ -75,9 +89,9 @@ def name_guilty(error: NotFiniteError, points: Floats, weights: Floats | None = 
 
 
 def of_points(function: Callable[..., Any], points: Floats, weights: Floats | None, threads: int,
-              progress: bool | Progress | None) -> Any:
-    """Calls function(points, weights, threads, progress)."""
-    with reporting(progress) as report:
+              progress: bool | Progress | None, limits: Limits = UNLIMITED) -> Any:
+    """Calls function(points, weights, threads, report)."""
+    with reporting(progress, limits) as report:
         try:
             return function(points, weights, threads, report)
         except NotFiniteError as error:

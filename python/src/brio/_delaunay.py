@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from . import _calls, _geometry, _native
 from ._arrays import Floats, as_number, as_queries, as_rows, as_weights, frozen
-from ._calls import Progress, reporting
+from ._calls import UNLIMITED, Limits, Path, Progress, reporting
 from ._scaled import shifted
 from ._scipy import other_class
 from ._tolerance import STANDARD, border, core, find_within
@@ -44,6 +44,12 @@ class Delaunay:
     progress : bool or callable, optional
         True shows a bar (of tqdm, where it is installed). A function is called with the name of the stage and the share
         that is done, up to 50 times a second; if it returns something true, the work ends with CancelledError.
+    scratch : str or path, optional
+        A folder: large arrays are in files there, which have no names, in place of memory; also those of what is computed
+        later. ``brio.TiledDelaunay`` is for points that do not fit in memory themselves.
+    max_memory : int, optional
+        The most bytes that a call of the library may hold, its result included: OutOfMemoryError beyond. What is in
+        `scratch` and numpy's arrays do not count.
     cell : array_like, optional
         Makes a PeriodicDelaunay, of space that repeats; `periodic` and `radii` go with it.
     incremental : bool
@@ -96,6 +102,7 @@ class Delaunay:
     points: Floats
     weights: Floats | None
     _handle: Any
+    _limits: Limits = UNLIMITED
 
     def __new__(cls, points: Any, weights: Any = None, *, fallback: str | None = None, **options: Any) -> Any:
         if options.get("cell") is not None:
@@ -112,9 +119,10 @@ class Delaunay:
         return object.__new__(cls)
 
     def __init__(self, points: Any, weights: Any = None, *, threads: int = 0, progress: bool | Progress | None = None,
-                 furthest_site: bool = False, incremental: bool = False, qhull_options: str | bytes | None = None,
-                 fallback: str | None = None) -> None:
+                 scratch: Path | None = None, max_memory: float | None = None, furthest_site: bool = False,
+                 incremental: bool = False, qhull_options: str | bytes | None = None, fallback: str | None = None) -> None:
         rows = as_rows(points, "points", (2, 3))
+        self._limits = scratch, max_memory
         self.threads = threads
         self.progress = progress
         self._closed = False
@@ -122,8 +130,8 @@ class Delaunay:
 
     def _build(self, points: Floats, weights: Floats | None) -> None:
         function = _native.delaunay if points.shape[1] == 3 else _native.delaunay2
-        handle = _calls.of_points(function, points, weights, self.threads, self.progress)
-        kept = {"threads": self.threads, "progress": self.progress, "_closed": self._closed}
+        handle = _calls.of_points(function, points, weights, self.threads, self.progress, self._limits)
+        kept = {"threads": self.threads, "progress": self.progress, "_limits": self._limits, "_closed": self._closed}
         self.__dict__ = dict(kept, points=points, weights=weights, _handle=handle)  # at once: other threads may read
 
     # --- sizes ---
@@ -279,7 +287,7 @@ class Delaunay:
         >>> import brio
         >>> brio.Delaunay([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]).verify()
         """
-        with reporting(self.progress) as report:
+        with reporting(self.progress, self._limits) as report:
             _native.triangulation_verify(self._handle, self.points, self.weights, self.threads, report)
 
     # --- queries ---
@@ -288,7 +296,7 @@ class Delaunay:
     def _locator(self) -> Any:
         if self.ndim == 2:
             return _native.locator2(self._handle, self.points, self.weights)
-        with reporting(self.progress) as report:
+        with reporting(self.progress, self._limits) as report:
             return _native.locator(self._handle, self.points, self.weights, self.threads, report)
 
     def find_simplex(self, xi: Any, bruteforce: bool = False, tol: float | None = None) -> NDArray[Any]:
@@ -388,10 +396,12 @@ class Delaunay:
         self._closed = True
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"points": self.points, "weights": self.weights, "threads": self.threads, "_closed": self._closed}
+        return {"points": self.points, "weights": self.weights, "threads": self.threads, "_limits": self._limits,
+                "_closed": self._closed}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.threads, self.progress, self._closed = state["threads"], None, state["_closed"]
+        self._limits = state.get("_limits", UNLIMITED)
         self._build(state["points"], state["weights"])
 
     def __getnewargs__(self) -> tuple[Any, ...]:

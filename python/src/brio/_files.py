@@ -1,17 +1,14 @@
 """Files, and what this build of the library reads and writes."""
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from . import _native
-from ._arrays import as_box, as_count, as_number, as_path, as_text
-from ._calls import Progress, reporting
+from ._arrays import MOST_TILES, as_box, as_count, as_number, as_path, as_text
+from ._calls import Path, Progress, reporting
 from ._mesh import Mesh
 from .errors import ArgumentError
-
-Path = str | os.PathLike[str]
 
 
 @dataclass(frozen=True)
@@ -52,7 +49,8 @@ class Conversion:
     largest_tile: int = 0
 
 
-def _columns(columns: str | Sequence[str | None] | None) -> str | None:
+def as_columns(columns: str | Sequence[str | None] | None) -> str | None:
+    """The names of columns as the library takes them."""
     if columns is None:
         return None
     if isinstance(columns, str):
@@ -68,7 +66,7 @@ def _columns(columns: str | Sequence[str | None] | None) -> str | None:
 
 
 def read(path: Path, *, format: str | None = None, columns: str | Sequence[str | None] | None = None, threads: int = 0,
-         progress: bool | Progress | None = None) -> Mesh:
+         progress: bool | Progress | None = None, scratch: Path | None = None, max_memory: float | None = None) -> Mesh:
     """Reads a file of points or of a mesh: PLY, XYZ, OBJ, OFF, VTU, LAS, LAZ, PCD, STL, NPY and others.
 
     Parameters
@@ -81,6 +79,8 @@ def read(path: Path, *, format: str | None = None, columns: str | Sequence[str |
         The names of the columns of a text of points, in their order: "x", "y" and "z" have to be there; None or "-"
         leaves a column out, as it happens to columns behind the last name. "x,y,z,-,nx" says the same. The default is the
         file's line of names or, without one, that the first three are the coordinates.
+    threads, progress, scratch, max_memory
+        As for Delaunay. The mesh has its arrays in `scratch` then.
 
     Returns
     -------
@@ -107,8 +107,8 @@ def read(path: Path, *, format: str | None = None, columns: str | Sequence[str |
     [[1.0, 2.0, 3.0]]
     """
     name = None if format is None else as_text(format, "format")
-    with reporting(progress) as report:
-        mesh: Mesh = Mesh._of(_native.read(as_path(path), name, _columns(columns), threads, report))
+    with reporting(progress, (scratch, max_memory)) as report:
+        mesh: Mesh = Mesh._of(_native.read(as_path(path), name, as_columns(columns), threads, report))
     return mesh
 
 
@@ -167,12 +167,12 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     """
     corners = None if box is None else as_box(box, 3)
     comment = None if comment is None else as_text(comment, "comment")
-    divides = as_count(tiles, "tiles", most=65536), b"" if scratch is None else as_path(scratch)
+    divides = as_count(tiles, "tiles", most=MOST_TILES), b"" if scratch is None else as_path(scratch, "scratch", "a folder")
     neighbours = as_count(outliers, "outliers", most=63)
     merges, distance = (merge, 0.0) if isinstance(merge, bool) else (True, as_number(merge, "merge"))
     with reporting(progress) as report:
         choice = neighbours, as_number(factor, "factor"), as_number(thin, "thin"), merges, distance
-        facts = _native.convert(as_path(source), as_path(target), _columns(columns),
+        facts = _native.convert(as_path(source), as_path(target), as_columns(columns),
                                 (ascii, float32, compress, comment), corners, choice, divides, threads, report)
     return Conversion(**facts)
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from . import _calls, _native
 from ._arrays import Floats, as_rows, freeze_all, frozen
-from ._calls import Progress
+from ._calls import Limits, Path, Progress
 from ._scaled import aligned, cross, difference, product, run_sums, shifted, split, total, units
 from ._scipy import other_class
 from .errors import NoAnswerError
@@ -25,7 +25,7 @@ class ConvexHull:
     Parameters
     ----------
     points : array_like, shape (n, 2) or (n, 3)
-    threads, progress, incremental, qhull_options, fallback
+    threads, progress, scratch, max_memory, incremental, qhull_options, fallback
         As for Delaunay.
 
     Attributes
@@ -70,7 +70,9 @@ class ConvexHull:
         return object.__new__(cls) if other is None else other
 
     def __init__(self, points: Any, *, incremental: bool = False, qhull_options: str | bytes | None = None,
-                 threads: int = 0, progress: bool | Progress | None = None, fallback: str | None = None) -> None:
+                 threads: int = 0, progress: bool | Progress | None = None, scratch: Path | None = None,
+                 max_memory: float | None = None, fallback: str | None = None) -> None:
+        self._limits: Limits = (scratch, max_memory)
         self.threads, self.progress, self._closed = threads, progress, False
         self.good = None
         self._build(as_rows(points, "points", (2, 3)))
@@ -83,7 +85,7 @@ class ConvexHull:
         def hull(p: Floats, w: None, threads: int, report: Any) -> Any:
             return _native.convex_hull(p, {"polygons": 1}, 0.0, samples, threads, report)
 
-        views = _native.mesh_views(_calls.of_points(hull, space, None, self.threads, self.progress))
+        views = _native.mesh_views(_calls.of_points(hull, space, None, self.threads, self.progress, self._limits))
         offsets = np.asarray(views["face_offsets"]).astype(np.int64)
         corners = samples[np.asarray(views["face_vertices"])].astype(np.int32)
         if len(offsets) < (2 if d == 2 else 5):
@@ -173,7 +175,8 @@ class ConvexHull:
         if self._closed:
             raise RuntimeError("the hull is closed: it takes no more points")
         both = np.concatenate([self.points, as_rows(points, "points", (self.ndim,))])
-        bigger = ConvexHull(both, threads=self.threads, progress=self.progress)
+        bigger = ConvexHull(both, threads=self.threads, progress=self.progress, scratch=self._limits[0],
+                            max_memory=self._limits[1])
         self.__dict__ = bigger.__dict__  # at once: other threads may read
 
     def close(self) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from . import _calls, _native
 from ._arrays import Floats, as_box, as_floats, as_number, as_queries, as_rows, as_weights, freeze_all, frozen
-from ._calls import Progress
+from ._calls import UNLIMITED, Limits, Path, Progress
 from ._mesh import Mesh
 from .errors import ArgumentError, CheckError
 
@@ -68,7 +68,7 @@ class PeriodicDelaunay:
         The directions that repeat, such as "xy": those of the first and the second vector.
     radii : array_like, shape (n,), optional
         In place of weights: their square roots.
-    threads, progress
+    threads, progress, scratch, max_memory
         As for Delaunay.
 
     Attributes
@@ -98,8 +98,12 @@ class PeriodicDelaunay:
     (6, 8)
     """
 
+    _limits: Limits = UNLIMITED
+
     def __init__(self, points: Any, weights: Any = None, *, cell: Any, periodic: Any = True, radii: Any = None,
-                 threads: int = 0, progress: bool | Progress | None = None) -> None:
+                 threads: int = 0, progress: bool | Progress | None = None, scratch: Path | None = None,
+                 max_memory: float | None = None) -> None:
+        self._limits = scratch, max_memory
         self.points = as_rows(points, "points", (3,))
         self.weights = as_weights_or_radii(weights, radii, len(self.points))
         self.periodic = as_periodic(periodic)
@@ -110,7 +114,7 @@ class PeriodicDelaunay:
         def build(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
             return _native.periodic(p, w, vectors, unused, threads, report)
 
-        self._show(_calls.of_points(build, self.points, self.weights, threads, progress))
+        self._show(_calls.of_points(build, self.points, self.weights, threads, progress, self._limits))
 
     def _show(self, handle: Any) -> None:
         """Takes what a handle has."""
@@ -255,7 +259,7 @@ class PeriodicVoronoi:
 
     Parameters
     ----------
-    points, weights, cell, periodic, radii, threads, progress
+    points, weights, cell, periodic, radii, threads, progress, scratch, max_memory
         As for PeriodicDelaunay.
     box : array_like, shape (2, 3) or (6,), optional
         Clips the cells along coordinates in which no vector of the cell goes anywhere, such as z of a slab.
@@ -287,9 +291,10 @@ class PeriodicVoronoi:
     """
 
     def __init__(self, points: Any, weights: Any = None, *, cell: Any, periodic: Any = True, radii: Any = None, box: Any = None,
-                 vertices: bool = False, threads: int = 0, progress: bool | Progress | None = None) -> None:
+                 vertices: bool = False, threads: int = 0, progress: bool | Progress | None = None,
+                 scratch: Path | None = None, max_memory: float | None = None) -> None:
         self.delaunay = PeriodicDelaunay(points, weights, cell=cell, periodic=periodic, radii=radii, threads=threads,
-                                         progress=progress)
+                                         progress=progress, scratch=scratch, max_memory=max_memory)
         self._walls = None if box is None else as_box(box, 3)
         self._threads = threads
         c = self._compute(vertices, not vertices, progress)
@@ -313,7 +318,7 @@ class PeriodicVoronoi:
 
     def _compute(self, vertices: bool, quick: bool, progress: bool | Progress | None) -> dict[str, Any]:
         """Computes the cells; `quick`: volumes and neighbours alone."""
-        with _calls.reporting(progress) as report:
+        with _calls.reporting(progress, self.delaunay._limits) as report:
             raw = _native.periodic_cells(self.delaunay._handle, self._walls, int(vertices), int(quick), self._threads, report)
         return {name: part if isinstance(part, float) or part is None else np.asarray(part) for name, part in raw.items()}
 
@@ -402,7 +407,7 @@ class PeriodicAlphaComplex:
         if not isinstance(tri, PeriodicDelaunay):
             raise ArgumentError(f"tri: a brio.Delaunay with a cell is wanted, not {type(tri).__name__}")
         self.tri = tri
-        with _calls.reporting(progress) as report:
+        with _calls.reporting(progress, tri._limits) as report:
             views = _native.periodic_alpha(tri._handle, threads, report)
         self._complex = views["complex"]
         images = np.asarray(views["images"])

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from . import _calls, _native
 from ._arrays import Floats, as_count, as_rows
-from ._calls import Progress
+from ._calls import Path, Progress
 
 
 def _rows(points: Any) -> Floats:
@@ -24,7 +24,8 @@ def nearest(points: Floats, queries: Floats, threads: int, progress: bool | Prog
     return out
 
 
-def thin(points: Any, spacing: float, *, threads: int = 0, progress: bool | Progress | None = None) -> NDArray[np.bool_]:
+def thin(points: Any, spacing: float, *, threads: int = 0, progress: bool | Progress | None = None,
+         scratch: Path | None = None, max_memory: float | None = None) -> NDArray[np.bool_]:
     """Chooses points that are at least `spacing` from each other, such that every other point is nearer to a chosen one.
 
     The choice depends on the set of positions and the spacing alone, not on the order of the points.
@@ -34,6 +35,8 @@ def thin(points: Any, spacing: float, *, threads: int = 0, progress: bool | Prog
     points : array_like, shape (n, 3), or Mesh
     spacing : float
         In the unit of the points; greater than 0.
+    threads, progress, scratch, max_memory
+        As for Delaunay.
 
     Returns
     -------
@@ -52,12 +55,13 @@ def thin(points: Any, spacing: float, *, threads: int = 0, progress: bool | Prog
     def call(p: Floats, w: None, t: int, report: Any) -> None:
         _native.thin(p, spacing, out, t, report)
 
-    _calls.of_points(call, rows, None, threads, progress)
+    _calls.of_points(call, rows, None, threads, progress, (scratch, max_memory))
     return out
 
 
 def outliers(points: Any, neighbours: int = 12, *, factor: float = 3.0, threads: int = 0,
-             progress: bool | Progress | None = None) -> NDArray[np.bool_]:
+             progress: bool | Progress | None = None, scratch: Path | None = None,
+             max_memory: float | None = None) -> NDArray[np.bool_]:
     """Finds stray points: those whose mean distance to their nearest points is large by the measure of these points.
 
     Where points become sparse by and by none is an outlier. More than `neighbours` stray points that are close together
@@ -71,6 +75,8 @@ def outliers(points: Any, neighbours: int = 12, *, factor: float = 3.0, threads:
     factor : float
         An outlier is more than so many times as far from its nearest points as the lower quartile of these points are
         from theirs; 1 or more.
+    threads, progress, scratch, max_memory
+        As for Delaunay.
 
     Returns
     -------
@@ -91,5 +97,5 @@ def outliers(points: Any, neighbours: int = 12, *, factor: float = 3.0, threads:
     def call(p: Floats, w: None, t: int, report: Any) -> None:
         _native.outliers(p, count, factor, out, t, report)
 
-    _calls.of_points(call, rows, None, threads, progress)
+    _calls.of_points(call, rows, None, threads, progress, (scratch, max_memory))
     return out

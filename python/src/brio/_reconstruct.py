@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import Floats, as_number, as_rows, frozen
-from ._calls import Progress, reporting
+from ._arrays import MOST_TILES, Floats, as_count, as_number, as_rows, frozen
+from ._calls import Limits, Path, Progress, reporting
 from ._mesh import Mesh
 from ._points import nearest
 from ._properties import Properties, as_properties, carry
@@ -66,11 +66,11 @@ def _options(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _run(function: Any, points: Floats, options: dict[str, Any], number: float, out: NDArray[Any] | None, threads: int,
-         progress: bool | Progress | None) -> Surface:
+         progress: bool | Progress | None, limits: Limits) -> Surface:
     def call(p: Floats, w: None, t: int, report: Any) -> Any:
         return function(p, _options(options), number, out, t, report)
 
-    made = _calls.of_points(call, points, None, threads, progress)
+    made = _calls.of_points(call, points, None, threads, progress, limits)
     handle, report = made if isinstance(made, tuple) else (made, {})
     surface: Surface = Surface._of(handle)
     surface.points, surface.report = points, report
@@ -78,8 +78,9 @@ def _run(function: Any, points: Floats, options: dict[str, Any], number: float, 
 
 
 def _surface(method: _Method, points: Floats, options: dict[str, Any], distance: float, out: NDArray[Any] | None,
-             threads: int, progress: bool | Progress | None) -> Surface:
-    surface = _run(_native.surface, points, {**options, "method": method.number}, distance, out, threads, progress)
+             threads: int, progress: bool | Progress | None, limits: Limits) -> Surface:
+    chosen = {**options, "method": method.number}
+    surface = _run(_native.surface, points, chosen, distance, out, threads, progress, limits)
     if "confidence" not in method.options:  # the report judges what such a method did
         surface.report = {}
     return surface
@@ -129,7 +130,7 @@ def _holes(method: _Method, options: dict[str, Any]) -> dict[str, Any]:
 
 def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any = None, origins: Any = None,
                 attributes: dict[str, Any] | None = None, threads: int = 0, progress: bool | Progress | None = None,
-                **options: Any) -> Surface:
+                scratch: Path | None = None, max_memory: float | None = None, **options: Any) -> Surface:
     """Reconstructs a surface from samples of it.
 
     Parameters
@@ -137,9 +138,10 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     points : array_like, shape (n, 3), or Mesh
     method : str
         "labeled-delaunay" (default): a manifold, oriented surface of triangles of the samples; options `noise`
-        ("auto", "keep", "smooth"), `open`, `confidence`, `simplify`, `seed`. `open`: "auto" (default) leaves holes open
+        ("auto", "keep", "smooth"), `open`, `confidence`, `simplify`, `seed`, `tiles`. `open`: "auto" (default) leaves holes open
         where the samples end, 0 closes all, K > 0 leaves those open whose radii are over K spacings. `confidence`: unless it
-        is 0, vertices and faces have the property `confidence`.
+        is 0, vertices and faces have the property `confidence`. `tiles`, with `scratch`: the triangulations are made in
+        that many tiles, for the same surface in less memory.
         "power-crust": closed, manifold, oriented, of polygons; options `noise`, `open`, `sharp`, `sampling_density`,
         `labeling`, `triangulate`, `simplify`, `seed`.
         "cocone": triangles of the samples, maybe open; options `theta`, `boundaries`, `density`, `pieces`,
@@ -154,6 +156,8 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     attributes : dict of arrays, optional
         Each with one row a point; carried to the vertices as properties. Those of a Mesh are carried anyway. A vertex that
         is no sample has the attributes of the nearest one. A name that the surface has becomes input_NAME.
+    threads, progress, scratch, max_memory
+        As for Delaunay.
 
     Returns
     -------
@@ -177,7 +181,9 @@ def reconstruct(points: Any, method: str = "labeled-delaunay", *, normals: Any =
     samples = None if which.traits & _OWN_VERTICES else np.empty(len(rows), np.uint32)
     if "confidence" in which.options:
         options = {"confidence": 1, **options}
-    surface = _surface(which, rows, options, 0.0, samples, threads, progress)
+    if as_count(options.get("tiles", 0), "tiles", most=MOST_TILES) and scratch is None:
+        raise ArgumentError("tiles: scratch is wanted, too, the folder where they are")
+    surface = _surface(which, rows, options, 0.0, samples, threads, progress, (scratch, max_memory))
     if samples is not None:
         surface.samples = frozen(samples[: len(surface.vertices)].astype(np.int64))
     _carry(surface, carried, threads)
@@ -194,12 +200,13 @@ def _carry(surface: Surface, attributes: Properties, threads: int) -> None:
 
 
 def oriented_normals(points: Any, method: str = "labeled-delaunay", *, threads: int = 0,
-                     progress: bool | Progress | None = None, **options: Any) -> Floats:
+                     progress: bool | Progress | None = None, scratch: Path | None = None, max_memory: float | None = None,
+                     **options: Any) -> Floats:
     """Finds the unit normals of samples, which point out of the surface through them.
 
     Parameters
     ----------
-    points, method, options
+    points, method, threads, progress, scratch, max_memory, options
         As for reconstruct.
 
     Returns
@@ -220,11 +227,12 @@ def oriented_normals(points: Any, method: str = "labeled-delaunay", *, threads: 
     normals = np.empty((len(rows), 3))
     which = _method(method)
     if which.traits & _OWN_VERTICES:
-        _surface(which, rows, options, 0.0, normals, threads, progress)
+        _surface(which, rows, options, 0.0, normals, threads, progress, (scratch, max_memory))
         return normals
-    surface = reconstruct(rows, method, threads=threads, progress=progress, **options)
+    surface = reconstruct(rows, method, threads=threads, progress=progress, scratch=scratch, max_memory=max_memory, **options)
     samples = None if surface.samples is None else surface.samples.astype(np.uint32)
-    _native.point_normals(rows, surface._handle, samples, normals, threads, None)
+    with reporting(None, (scratch, max_memory)) as report:
+        _native.point_normals(rows, surface._handle, samples, normals, threads, report)
     return normals
 
 
@@ -233,16 +241,17 @@ def _is_solid(points: Any, options: dict[str, Any]) -> bool:
     return isinstance(points, Mesh) and len(points.face_offsets) > 1 and "labeling" not in options
 
 
-def _of_mesh(mesh: Mesh, call: Any, progress: bool | Progress | None) -> Surface:
+def _of_mesh(mesh: Mesh, call: Any, progress: bool | Progress | None, limits: Limits) -> Surface:
     """What a function of the module makes of a closed mesh."""
-    with reporting(progress) as report:
+    with reporting(progress, limits) as report:
         surface: Surface = Surface._of(call(mesh._copy({}), report))
     surface.points, surface.report = mesh.vertices, {}
     return surface
 
 
 def offset(points: Any, distance: float, *, error: float | None = None, threads: int = 0,
-           progress: bool | Progress | None = None, **options: Any) -> Surface:
+           progress: bool | Progress | None = None, scratch: Path | None = None, max_memory: float | None = None,
+           **options: Any) -> Surface:
     """Computes the surface at `distance` outside a closed mesh, or outside the power crust of samples; inside for a negative
     distance.
 
@@ -256,6 +265,8 @@ def offset(points: Any, distance: float, *, error: float | None = None, threads:
         In the unit of the points.
     error : float, optional
         Of a mesh with faces; a hundredth of the distance if it is not given.
+    threads, progress, scratch, max_memory
+        As for Delaunay.
     options
         Of points: those of "power-crust" without `open`. With `labeling` a mesh goes by its points.
 
@@ -278,17 +289,17 @@ def offset(points: Any, distance: float, *, error: float | None = None, threads:
     >>> bool(abs(far - 1.5).max() < 0.05)
     True
     """
-    far = as_number(distance, "distance")
+    far, limits = as_number(distance, "distance"), (scratch, max_memory)
     if _is_solid(points, options):
         if options:
             raise ArgumentError(f"{', '.join(options)}: for points, and this mesh has faces, which count")
         most = 0.0 if error is None else as_number(error, "error")
-        return _of_mesh(points, lambda m, report: _native.mesh_offset(m, far, most, threads, report), progress)
+        return _of_mesh(points, lambda m, report: _native.mesh_offset(m, far, most, threads, report), progress, limits)
     if error is not None:
         raise ArgumentError("error: for closed meshes; the error of an offset of points is that of the points")
     rows, _ = _split(points)
     method = next(method for method in _TABLE if method.traits & _AT_DISTANCE)
-    return _surface(method, rows, options, far, None, threads, progress)
+    return _surface(method, rows, options, far, None, threads, progress, limits)
 
 
 class BallUnion(Surface):
@@ -356,7 +367,8 @@ def ball_union(centres: Any, radii: Any, *, error: float = 0.0, threads: int = 0
 
 
 def medial_axis(points: Any, *, method: str = "power-shape", sides: str = "inner", spacing: float | None = None,
-                threads: int = 0, progress: bool | Progress | None = None, **options: Any) -> Surface:
+                threads: int = 0, progress: bool | Progress | None = None, scratch: Path | None = None,
+                max_memory: float | None = None, **options: Any) -> Surface:
     """Approximates the medial axis of a closed mesh, or of a sampled surface.
 
     A mesh with faces says itself what is inside, and its faces are sampled.
@@ -370,6 +382,8 @@ def medial_axis(points: Any, *, method: str = "power-shape", sides: str = "inner
     spacing : float, optional
         Of a mesh with faces: no place of a face is farther from a sample. A hundredth of the diagonal of its box if it is
         not given.
+    threads, progress, scratch, max_memory
+        As for Delaunay.
     options
         `scale`, `redundancy` and `scale_axis` simplify the power shape; `theta` and `rho` are of "voronoi"; `noise`, `labeling`, `sharp`, `sampling_density`, `seed`. With `labeling` a mesh
         goes by its points.
@@ -402,8 +416,9 @@ def medial_axis(points: Any, *, method: str = "power-shape", sides: str = "inner
         else:
             wide = as_number(spacing, "spacing")
         chosen = _options(options)
-        return _of_mesh(points, lambda m, report: _native.mesh_shape(m, wide, chosen, threads, report), progress)
+        return _of_mesh(points, lambda m, report: _native.mesh_shape(m, wide, chosen, threads, report), progress,
+                        (scratch, max_memory))
     if spacing is not None:
         raise ArgumentError("spacing: for closed meshes; points are samples already")
     rows, _ = _split(points)
-    return _run(_native.power_shape, rows, options, 0.0, None, threads, progress)
+    return _run(_native.power_shape, rows, options, 0.0, None, threads, progress, (scratch, max_memory))

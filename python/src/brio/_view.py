@@ -13,8 +13,7 @@ from typing import Any
 
 from . import _native
 from ._arrays import as_count, as_path, as_rows, as_text
-from ._calls import Progress, reporting
-from ._files import Path
+from ._calls import Path, Progress, reporting
 from ._shown import mesh_of
 from .errors import ArgumentError
 

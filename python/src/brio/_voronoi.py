@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from . import _calls, _native
 from ._arrays import Floats, as_box, as_rows, as_weights, freeze_all, frozen
-from ._calls import Progress
+from ._calls import Limits, Path, Progress
 from ._delaunay import Delaunay
 from ._scaled import cross, difference, run_sums, shifted
 from ._scipy import other_class, qhull_words
@@ -38,7 +38,7 @@ class Voronoi:
         Low and high corner of a box that clips the cells.
     cell : array_like, optional
         Makes a PeriodicVoronoi, of space that repeats; `periodic`, `radii` and `vertices` go with it.
-    threads, progress, incremental, furthest_site, qhull_options, fallback
+    threads, progress, scratch, max_memory, incremental, furthest_site, qhull_options, fallback
         As for Delaunay.
 
     Attributes
@@ -87,9 +87,11 @@ class Voronoi:
         return object.__new__(cls) if other is None else other
 
     def __init__(self, points: Any, weights: Any = None, *, box: Any = None, threads: int = 0,
-                 progress: bool | Progress | None = None, furthest_site: bool = False, incremental: bool = False,
-                 qhull_options: str | bytes | None = None, fallback: str | None = None) -> None:
+                 progress: bool | Progress | None = None, scratch: Path | None = None, max_memory: float | None = None,
+                 furthest_site: bool = False, incremental: bool = False, qhull_options: str | bytes | None = None,
+                 fallback: str | None = None) -> None:
         rows = as_rows(points, "points", (2, 3))
+        self._limits: Limits = (scratch, max_memory)
         self.threads, self.progress, self.furthest_site, self._closed = threads, progress, False, False
         self._empty = 1 if qhull_options is None or "Qz" in qhull_words(qhull_options) else 0
         self.box: Floats | None = None
@@ -105,10 +107,16 @@ class Voronoi:
         build(points, weights)
         freeze_all(self.__dict__)
 
+    def _triangulated(self, points: Floats, weights: Floats | None) -> Delaunay:
+        scratch, max_memory = self._limits
+        tri: Delaunay = Delaunay(points, weights, threads=self.threads, progress=self.progress, scratch=scratch,
+                                 max_memory=max_memory)
+        return tri
+
     # --- in the plane: the dual of the triangulation ---
 
     def _build_plane(self, points: Floats, weights: Floats | None) -> None:
-        tri = Delaunay(points, weights, threads=self.threads, progress=self.progress)
+        tri = self._triangulated(points, weights)
         if tri.facts["dimension"] < 2:
             raise NoAnswerError("points on a line have no Voronoi vertices")
         raw = {name: np.asarray(part) for name, part in _native.voronoi2(tri._handle, points, weights).items()}
@@ -166,12 +174,12 @@ class Voronoi:
 
     def _cells_of(self, points: Floats, weights: Floats | None, box: Floats | None) -> tuple[Delaunay, dict[str, Any]]:
         """Returns a triangulation of points in space and the library's cells."""
-        tri = Delaunay(points, weights, threads=self.threads, progress=self.progress)
+        tri = self._triangulated(points, weights)
 
         def cells(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
             return _native.cells(tri._handle, p, w, box, None, threads, report)
 
-        raw = _calls.of_points(cells, points, weights, self.threads, self.progress)
+        raw = _calls.of_points(cells, points, weights, self.threads, self.progress, self._limits)
         return tri, {name: part if isinstance(part, float) else np.asarray(part) for name, part in raw.items()}
 
     def _build_space(self, points: Floats, weights: Floats | None) -> None:
@@ -263,7 +271,7 @@ class Voronoi:
             raise ArgumentError("either all points have weights, or none has")
         both = None if added is None or self.weights is None else np.concatenate([self.weights, added])
         bigger = object.__new__(Voronoi)
-        for name in ("threads", "progress", "furthest_site", "_closed", "_empty", "box"):
+        for name in ("threads", "progress", "_limits", "furthest_site", "_closed", "_empty", "box"):
             setattr(bigger, name, getattr(self, name))
         bigger._build(np.concatenate([self.points, rows]), both)
         self.__dict__ = bigger.__dict__  # at once: other threads may read
