@@ -384,10 +384,14 @@ static int finish(job *j, brio_status status) {
         cli_fact_text(&r->facts, "error", cli_message(r, status));
         cli_fact_integer(&r->facts, "exit", code);
     }
-    if (r->common.json)
+    if (r->common.json) {
+        cli_notes_report(&r->facts, "warnings", &r->warnings);
+        if (status != BRIO_OK) cli_notes_report(&r->facts, "hints", &r->hints);
         cli_json_write(stdout, &r->facts, r->command->name);
-    else if (status == BRIO_OK && !r->common.quiet)
-        cli_text_write(stdout, &r->facts, r->command->name, r->common.verbose);
+    } else if (status == BRIO_OK && !r->common.quiet) {
+        FILE *out = cli_goes_to_stdout(r->common.output) ? stderr : stdout; /* the output is there */
+        cli_text_write(out, &r->facts, r->command->name, r->common.verbose);
+    }
     if (!r->common.quiet) cli_notes_print(stderr, "warning", &r->warnings);
     if (status != BRIO_OK) {
         print_sentence(r, status);

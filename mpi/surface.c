@@ -1,6 +1,7 @@
 /* brio-mpi surface: rank 0 runs the command `surface` of brio, in whose context all ranks triangulate and cut. */
 #include "cli/run/commands.h"
 #include "cli/run/interrupt.h"
+#include "cli/steps/hints.h"
 #include "mpi/job.h"
 
 static void report(job *j, const brio_team_facts *t) {
@@ -25,6 +26,7 @@ static brio_status lead(job *j, const brio_transport *t, const brio_ranks_option
     if (status == BRIO_OK) report(j, brio_ranks_led(team));
     if (status != BRIO_OK && cli_interrupted()) status = cli_fail(r, BRIO_ERR_CANCELLED, "interrupted");
     if (status != BRIO_OK) cli_keep_failure(r, status);
+    cli_name_input(r, status);
     char sentence[sizeof r->message];
     snprintf(sentence, sizeof sentence, "%s", r->message);
     r->message[0] = 0; /* from now on that of all */

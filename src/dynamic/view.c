@@ -138,7 +138,7 @@ brio_status brio_live_snapshot(brio_context *ctx, const brio_dynamic *d, const b
         }
     }
     BRIO_TRY(brio_look(ctx, live));
-    brio_adopted from = {tet, live, vertex_of};
+    brio_adopted from = {.tet = tet, .count = live, .vertex_of = vertex_of};
     status = brio_delaunay_adopt(ctx, &(brio_input){list->point, list->weight, list->count}, &from, out);
 done:
     brio_release(ctx, place);

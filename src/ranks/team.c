@@ -171,17 +171,18 @@ static brio_status say(brio_team_of_ranks *t, word w) {
 }
 
 /* Makes a triangulation on rank 0. */
-static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points,
+static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points, uint64_t seed,
                         brio_triangulation **out) {
     brio_team_of_ranks *t = user;
+    const brio_delaunay_options of_one = {.size = sizeof of_one, .seed = seed};
     brio_status status = BRIO_OK;
     brio_tiles_stats facts = {0};
     at_rank_0 own = {.points = points, .num_points = num_points, .rows.ctx = ctx};
     *out = NULL;
     BRIO_TRY(say(t, (word){TRIANGULATE, num_points}));
     BRIO_TRY(work_together(t, &own, &facts));
-    status = facts.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, NULL, out)
-                                 : brio_gather_end(&own.rows, points, num_points, facts.duplicates, out);
+    status = facts.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, &of_one, out)
+                                 : brio_gather_end(&own.rows, points, num_points, facts.duplicates, seed, out);
 done:
     brio_gather_free(&own.rows);
     brio_release(ctx, own.first);

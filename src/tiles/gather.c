@@ -153,7 +153,7 @@ done:
     return status;
 }
 
-brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_points, uint64_t duplicates,
+brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_points, uint64_t duplicates, uint64_t seed,
                             brio_triangulation **out) {
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
@@ -166,7 +166,7 @@ brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_poi
     BRIO_TRY(BRIO_ALLOC(ctx, vertex_of, num_points));
     BRIO_TRY(name_vertices(ctx, points, num_points, duplicates, vertex_of));
     status = brio_delaunay_adopt(ctx, &(brio_input){points, NULL, num_points},
-                                 &(brio_adopted){g->tet, g->count, vertex_of}, out);
+                                 &(brio_adopted){g->tet, g->count, vertex_of, seed}, out);
 done:
     brio_release(ctx, vertex_of);
     return status;
@@ -191,7 +191,8 @@ done:
     return status;
 }
 
-brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out) {
+brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, uint64_t seed,
+                              brio_triangulation **out) {
     brio_context *ctx = t->ctx;
     brio_status status = BRIO_OK;
     uint64_t *first = NULL;
@@ -200,7 +201,7 @@ brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_po
     for (uint32_t i = 0; i < t->num_tiles; i++) first[i + 1] = first[i] + t->tile[i].tetrahedra;
     BRIO_TRY(brio_gather_new(ctx, first, t->num_tiles, t->stats.hull_facets, &g));
     for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(take_tile(&g, t, i));
-    status = brio_gather_end(&g, points, num_points, t->stats.duplicates, out);
+    status = brio_gather_end(&g, points, num_points, t->stats.duplicates, seed, out);
 done:
     brio_gather_free(&g);
     brio_release(ctx, first);
@@ -218,16 +219,17 @@ static brio_status run_in_memory(brio_tiles *t) {
 }
 
 /* Triangulates points in tiles. */
-static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points,
+static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points, uint64_t seed,
                         brio_triangulation **out) {
+    const brio_delaunay_options of_one = {.size = sizeof of_one, .seed = seed};
     brio_status status = BRIO_OK;
     brio_tiles *t = NULL;
     *out = NULL;
     BRIO_TRY(brio_tiles_new(ctx, user, &t));
     BRIO_TRY(brio_tiles_add(ctx, t, points, NULL, num_points));
     BRIO_TRY(run_in_memory(t));
-    status = t->stats.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, NULL, out)
-                                    : brio_tiles_gather(t, points, num_points, out);
+    status = t->stats.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, &of_one, out)
+                                    : brio_tiles_gather(t, points, num_points, seed, out);
 done:
     brio_tiles_free(t);
     return status;

@@ -319,16 +319,17 @@ brio_gather_row brio_gather_row_of(const brio_tile_part *part, const brio_tile_n
 /** Takes a row of a tile's part. Rows may come in any order. */
 void brio_gather_take(brio_gather *g, uint32_t tile, uint64_t row, const brio_gather_row *tetrahedron);
 
-/** Makes what brio_delaunay makes of the points, once all parts are here.
+/** Makes what brio_delaunay makes of the points with this seed, once all parts are here.
  *  points  num_points by 3, by the indices of the parts.   duplicates  points at the position of another one.
  *  Cost: sorts the tetrahedra, in files where the context has a scratch folder.
  *  Returns what brio_delaunay returns. */
-brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_points, uint64_t duplicates,
+brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_points, uint64_t duplicates, uint64_t seed,
                             brio_triangulation **out);
 
-/** Makes what brio_delaunay makes of the points of all tiles of one process, whose dimension is 3.
+/** Makes what brio_delaunay makes with this seed of the points of all tiles of one process, whose dimension is 3.
  *  points  num_points by 3: those that were added.   Returns what brio_delaunay returns. */
-brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out);
+brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, uint64_t seed,
+                              brio_triangulation **out);
 
 /** Lets a context's triangulations be made in tiles.
  *  options  kept: neither stars nor a key.   Returns BRIO_OK, BRIO_ERR_ARGUMENT. */

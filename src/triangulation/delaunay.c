@@ -299,7 +299,7 @@ brio_status brio_triangulate(brio_context *ctx, const double *points, size_t num
                              brio_triangulation **out) {
     const struct brio_triangulator *by = ctx->triangulator;
     brio_delaunay_options o = {.size = sizeof o, .seed = seed};
-    return by ? by->make(by->user, ctx, points, num_points, out)
+    return by ? by->make(by->user, ctx, points, num_points, seed, out)
               : brio_delaunay(ctx, points, NULL, num_points, &o, out);
 }
 
@@ -345,7 +345,7 @@ done:
 
 brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, const brio_adopted *from,
                                 brio_triangulation **out) {
-    brio_delaunay_options o = {0};
+    brio_delaunay_options o = {.seed = from->seed};
     brio_store *store = NULL;
     brio_inserter *ins = NULL;
     brio_status status = BRIO_OK;

@@ -41,10 +41,11 @@ typedef struct {
     const brio_tetrahedron *tet; /* vertices are indices of points, or BRIO_INFINITE in slot 3 */
     size_t count;
     const uint32_t *vertex_of; /* of a vertex: itself; of a duplicate: its vertex; of others: any vertex */
+    uint64_t seed;             /* of brio_delaunay, on which the order of its tetrahedra depends; 0: the default */
 } brio_adopted;
 
-/** Makes what brio_delaunay makes of these points, with defaults, equal in every byte of its tetrahedra and
- *  representatives, without inserting a point.
+/** Makes what brio_delaunay makes of these points, with this seed and defaults, equal in every byte of its tetrahedra
+ *  and representatives, without inserting a point.
  *  Returns what brio_delaunay returns. */
 brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, const brio_adopted *from,
                                 brio_triangulation **out);
@@ -54,8 +55,8 @@ brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, cons
 typedef struct brio_triangulator {
     void *user;
     /** Makes what brio_delaunay makes of points without weights. What its statistics say of the way there may differ.
-     *  points  num_points by 3, finite.   Returns what brio_delaunay returns. */
-    brio_status (*make)(void *user, brio_context *ctx, const double *points, size_t num_points,
+     *  points  num_points by 3, finite.   seed  of brio_delaunay.   Returns what brio_delaunay returns. */
+    brio_status (*make)(void *user, brio_context *ctx, const double *points, size_t num_points, uint64_t seed,
                         brio_triangulation **out);
 } brio_triangulator;
 

@@ -158,6 +158,24 @@ class Mpi(MpiCase):
             result = self.mpi(2, *arguments, check=False, command="surface")
             self.assertIn(text, result.stderr)
             self.assertEqual(facts_of(result)["exit"], code, result.stderr)
+            if code == 3:
+                self.assertIn("plane.xyz: ", result.stderr)
+                self.assertIn("--plane xy", " ".join(facts_of(result)["hints"]))
+
+    def test_reports_of_ranks_had_no_warnings(self):
+        path = self.rows("few.xyz", [[x % 5, x * 7 % 11, x * x % 13] for x in range(60)])
+        said = [self.one(path, "-o", self.folder / "one.ply", command="surface"),
+                self.mpi(2, path, "-o", self.folder / "one.ply", command="surface")]
+        self.assertTrue(said[0]["warnings"])
+        self.assertEqual(said[0]["warnings"], said[1]["warnings"])
+
+    def test_a_report_stood_behind_a_surface_on_standard_output(self):
+        path, one = self.generate("sphere", 300), self.folder / "one.ply"
+        self.one(path, "-o", one, command="surface")
+        line = self.line(2, path, "-o", "-", "--format", "ply", command="surface")[:-1]  # no JSON
+        result = subprocess.run(line, capture_output=True, timeout=300, check=True)
+        self.assertEqual(result.stdout, one.read_bytes())
+        self.assertIn(b"triangulations", result.stderr)
 
     def test_wrong_calls_for_cells(self):
         path = self.generate("cube", 300)

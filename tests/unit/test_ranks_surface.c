@@ -10,7 +10,7 @@ typedef struct {
     size_t n;
     int ranks;
     uint32_t tiles;
-    uint64_t seed;
+    uint64_t seed; /* of the messages' order, and of the surface */
     bool scratch;  /* the arrays of the surface are in files */
     int poor;      /* the rank whose memory ends, or -1 */
     size_t memory; /* that it has */
@@ -29,7 +29,7 @@ typedef struct {
 
 /* Reconstructs the surface on rank 0. */
 static brio_status lead(member *m, const brio_transport *t, const brio_ranks_options *o) {
-    const brio_surface_options options = {.size = sizeof options};
+    const brio_surface_options options = {.size = sizeof options, .seed = m->plan->seed};
     brio_team_of_ranks *team;
     brio_status status = brio_ranks_lead(m->ctx, t, o, &team);
     EXPECT(status == BRIO_OK, "%s", brio_message(m->ctx));
@@ -93,7 +93,7 @@ static void drop(member *m) {
 static brio_team_facts compare(const plan *p, int kind) {
     brio_context *ctx = new_context();
     brio_mesh *whole = NULL;
-    const brio_surface_options options = {.size = sizeof options};
+    const brio_surface_options options = {.size = sizeof options, .seed = p->seed};
     brio_status expected = brio_surface(ctx, points, p->n, &options, &whole, NULL);
     member m = run_ranks(p);
     EXPECT(m.status == expected, "kind %d, %d ranks, %zu points: %s", kind, p->ranks, p->n, m.sentence);

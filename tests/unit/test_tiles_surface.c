@@ -26,13 +26,14 @@ static void compare_triangulations(const brio_triangulation *a, const brio_trian
            "kind %d, %u tiles, %zu points", kind, tiles, n);
 }
 
-static void gather_and_compare(brio_context *ctx, const brio_triangulation *whole, size_t n, int kind, uint32_t tiles) {
+static void gather_and_compare(brio_context *ctx, const brio_triangulation *whole, size_t n, int kind, uint32_t tiles,
+                               uint64_t seed) {
     brio_tiles_options o = {.size = sizeof o, .scratch = folder, .tiles = tiles};
     brio_tiles *t = NULL;
     brio_triangulation *gathered = NULL;
     EXPECT(brio_tiles_new(ctx, &o, &t) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_tiles_add(ctx, t, points, NULL, n) == BRIO_OK && brio_tiles_run(ctx, t) == BRIO_OK);
-    brio_status status = brio_tiles_gather(t, points, n, &gathered);
+    brio_status status = brio_tiles_gather(t, points, n, seed, &gathered);
     EXPECT(status == BRIO_OK, "kind %d, %u tiles, %zu points: %s", kind, tiles, n, brio_message(ctx));
     if (status == BRIO_OK) compare_triangulations(whole, gathered, n, kind, tiles);
     brio_triangulation_free(gathered);
@@ -48,8 +49,9 @@ static void parts_make_the_triangulation_of_all_points(void) {
         size_t n = make_points(trial, 4 + brio_rng_below(&rng, (uint32_t)most), kind);
         uint32_t tiles = trial % 7 ? 1 + brio_rng_below(&rng, 12) : 64;
         brio_triangulation *whole = NULL;
-        EXPECT(brio_delaunay(ctx, points, NULL, n, NULL, &whole) == BRIO_OK);
-        if (brio_triangulation_stats(whole)->dimension == 3) gather_and_compare(ctx, whole, n, kind, tiles);
+        brio_delaunay_options o = {.size = sizeof o, .seed = trial % 5}; /* which the order depends on */
+        EXPECT(brio_delaunay(ctx, points, NULL, n, &o, &whole) == BRIO_OK);
+        if (brio_triangulation_stats(whole)->dimension == 3) gather_and_compare(ctx, whole, n, kind, tiles, o.seed);
         brio_triangulation_free(whole);
     }
     EXPECT(files_left() == 0);
@@ -98,6 +100,17 @@ static void surfaces_have_the_bits_of_one_process(void) {
         EXPECT((ctx->scratch != NULL) == (trial % 2 == 1)); /* tiles do without it, and leave it as it was */
     }
     EXPECT(files_left() == 0);
+    brio_context_free(ctx);
+}
+
+/* Tiles made the triangulation of the default seed, so that some surfaces were others. */
+static void tiles_have_the_seed_of_the_surface(void) {
+    brio_context *ctx = new_context();
+    for (uint64_t seed = 0; seed < 8; seed++) {
+        brio_surface_options options = {.size = sizeof options, .seed = seed};
+        compare_surfaces(ctx, make_points(seed, 200, 4), 4, 3, &options);
+        compare_surfaces(ctx, make_points(seed, 200, 8), 8, 3, &options); /* in a plane */
+    }
     brio_context_free(ctx);
 }
 
@@ -211,6 +224,7 @@ SUITE(test_tiles_surface) {
     EXPECT(mkdir(folder, 0700) == 0);
     RUN(parts_make_the_triangulation_of_all_points);
     RUN(surfaces_have_the_bits_of_one_process);
+    RUN(tiles_have_the_seed_of_the_surface);
     RUN(points_without_a_solid_have_the_same_sentence);
     RUN(what_tiles_have_not_is_refused);
     RUN(shares_of_tiles_that_are_too_large_are_refused_before_the_work);
