@@ -191,6 +191,6 @@ void alpha_release(void *complex);
 
 extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
     mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[],
-    dynamic_methods[], tiles_methods[];
+    dynamic_methods[], tiles_methods[], estimate_methods[];
 
 #endif
