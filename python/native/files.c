@@ -12,17 +12,27 @@ static int read_format(module_state *state, const char *name, brio_format *forma
                                                       name));
 }
 
-/* read(path, format or None, columns or None, threads, progress): a mesh. The path is bytes. */
+int read_reading_options(module_state *state, PyObject *tuple, brio_read_options *o) {
+    const char *format;
+    if (!PyTuple_Check(tuple)) {
+        PyErr_SetString(PyExc_TypeError, "options of reading in a tuple are wanted");
+        return -1;
+    }
+    if (!PyArg_ParseTuple(tuple, "zzpp", &format, &o->columns, &o->drop_invalid, &o->salvage)) return -1;
+    return read_format(state, format, &o->format);
+}
+
+/* read(path, options of reading, threads, progress): a mesh. The path is bytes. */
 static PyObject *read_mesh(PyObject *module, PyObject *args) {
-    PyObject *progress;
+    PyObject *options, *progress;
     brio_read_options o = {0};
-    const char *path, *format;
+    const char *path;
     int threads;
     call c;
     brio_status status;
     brio_mesh *made = NULL;
-    if (!PyArg_ParseTuple(args, "yzziO", &path, &format, &o.columns, &threads, &progress)) return NULL;
-    if (read_format(state_of(module), format, &o.format)) return NULL;
+    if (!PyArg_ParseTuple(args, "yOiO", &path, &options, &threads, &progress)) return NULL;
+    if (read_reading_options(state_of(module), options, &o)) return NULL;
     if (call_begin(&c, state_of(module), threads, progress)) return NULL;
     CALL(c, status, brio_read(c.ctx, path, &o, &made));
     return call_end_with_mesh(&c, status, made);
@@ -87,14 +97,15 @@ static PyObject *conversion_dict(const brio_convert_stats *s, const losses *l) {
 #define COUNT(name) #name, (unsigned long long)s->name
     return Py_BuildValue("{s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:K,s:N,s:N}", COUNT(points_read), COUNT(points),
                          COUNT(faces), COUNT(tetrahedra), COUNT(edges), COUNT(outliers), COUNT(thinned), COUNT(merged),
-                         COUNT(degenerate), COUNT(tiles), COUNT(largest_tile), "streamed", PyBool_FromLong(s->streamed), "lost", lost);
+                         COUNT(degenerate), COUNT(tiles), COUNT(largest_tile), "streamed", PyBool_FromLong(s->streamed),
+                         "lost", lost);
 #undef COUNT
 }
 
-/* convert(from, to, columns or None, write options, box or None, (neighbours, factor, thin, merge, distance),
+/* convert(from, to, options of reading, write options, box or None, (neighbours, factor, thin, merge, distance),
  * (tiles, scratch or ""), threads, progress): a dict. */
 static PyObject *convert(PyObject *module, PyObject *args) {
-    PyObject *options, *box, *progress, *result = NULL;
+    PyObject *reading, *options, *box, *progress, *result = NULL;
     brio_read_options in = {0};
     brio_write_options out = {0};
     brio_outliers_options outliers = {0};
@@ -105,10 +116,10 @@ static PyObject *convert(PyObject *module, PyObject *args) {
     call c;
     input corners = {.held = 0};
     losses lost = {NULL, 0, 0};
-    if (!PyArg_ParseTuple(args, "yyzO!O(iddpd)(Iy)iO", &from, &to, &in.columns, &PyTuple_Type, &options, &box,
-                          &o.drop_outliers, &outliers.factor, &o.thin, &o.merge, &o.merge_distance, &o.tiles,
-                          &scratch, &threads, &progress) ||
-        read_write_options(options, &out))
+    if (!PyArg_ParseTuple(args, "yyOO!O(iddpd)(Iy)iO", &from, &to, &reading, &PyTuple_Type, &options, &box,
+                          &o.drop_outliers, &outliers.factor, &o.thin, &o.merge, &o.merge_distance, &o.tiles, &scratch,
+                          &threads, &progress) ||
+        read_reading_options(state_of(module), reading, &in) || read_write_options(options, &out))
         return NULL;
     o.scratch = *scratch ? scratch : NULL;
     o.from = &in, o.to = &out, o.outliers = &outliers, o.lost = lose, o.lost_user = &lost;
@@ -198,10 +209,11 @@ static PyObject *write_picture(PyObject *module, PyObject *args) {
 }
 
 PyMethodDef files_methods[] = {
-    {"read", read_mesh, METH_VARARGS, "read(path, format, columns, threads, progress): a mesh."},
+    {"read", read_mesh, METH_VARARGS,
+     "read(path, (format, columns, drop_invalid, salvage), threads, progress): a mesh."},
     {"write", write_mesh, METH_VARARGS, "write(path, mesh, (ascii, float32, compress, comment), threads, progress)"},
     {"convert", convert, METH_VARARGS,
-     "convert(from, to, columns, write options, box, (neighbours, factor, thin, merge, distance), "
+     "convert(from, to, options of reading, write options, box, (neighbours, factor, thin, merge, distance), "
      "(tiles, scratch), threads, progress)"},
     {"write_page", write_page, METH_VARARGS, "write_page(path, layers, options, threads, progress)"},
     {"write_picture", write_picture, METH_VARARGS, "write_picture(path, layers, options, look, threads, progress)"},

@@ -56,7 +56,7 @@ static PyMethodDef methods[] = {
 static int add_all(PyObject *module) {
     PyMethodDef *all[] = {methods,       delaunay_methods, locate_methods,  plane_methods,  dual_methods,
                           cells_methods, mesh_methods,     files_methods,   points_methods, surface_methods,
-                          alpha_methods, periodic_methods, dynamic_methods, tiles_methods};
+                          alpha_methods, periodic_methods, dynamic_methods, tiles_methods,  estimate_methods};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         if (PyModule_AddFunctions(module, all[k])) return -1;
     return PyModule_AddStringConstant(module, "version", brio_version());

@@ -187,10 +187,14 @@ PyObject *alpha_views(module_state *state, PyObject *owner, const brio_alpha_com
 /** Frees a complex that lies in a block of malloc. */
 void alpha_release(void *complex);
 
+/** Reads options of reading: format or None, columns or None, drop_invalid, salvage. Returns 0 or -1 with an exception set;
+ *  the tuple keeps the texts. */
+int read_reading_options(module_state *state, PyObject *tuple, brio_read_options *o);
+
 /* --- the functions of the module, by file --- */
 
 extern PyMethodDef delaunay_methods[], locate_methods[], plane_methods[], dual_methods[], cells_methods[],
     mesh_methods[], files_methods[], points_methods[], surface_methods[], alpha_methods[], periodic_methods[],
-    dynamic_methods[], tiles_methods[];
+    dynamic_methods[], tiles_methods[], estimate_methods[];
 
 #endif

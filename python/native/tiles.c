@@ -168,20 +168,16 @@ static brio_status read_into(intake *in, const char *path, const brio_read_optio
     return in->status != BRIO_OK ? in->status : status;
 }
 
-/* tiles_read(object, path, format or None, columns or None, weights or None, threads, progress) */
+/* tiles_read(object, path, options of reading, weights or None, threads, progress) */
 static PyObject *tiles_read(PyObject *module, PyObject *args) {
-    PyObject *object, *progress;
-    const char *path, *format;
+    PyObject *object, *options, *progress;
+    const char *path;
     brio_read_options o = {0};
     intake in = {.status = BRIO_OK};
     int threads;
     call c;
-    if (!PyArg_ParseTuple(args, "OyzzziO", &object, &path, &format, &o.columns, &in.weights, &threads, &progress))
-        return NULL;
-    if (format && !(o.format = brio_format_of(format))) {
-        raise_argument(state_of(module), PyUnicode_FromFormat("format: '%s' is not known", format));
-        return NULL;
-    }
+    if (!PyArg_ParseTuple(args, "OyOziO", &object, &path, &options, &in.weights, &threads, &progress)) return NULL;
+    if (read_reading_options(state_of(module), options, &o)) return NULL;
     tiled *d = begin(&c, state_of(module), object, threads, progress);
     if (!d) return NULL;
     in.ctx = c.ctx, in.t = d->t;
@@ -411,7 +407,7 @@ PyMethodDef tiles_methods[] = {
     {"tiles_new", tiles_new, METH_VARARGS, "tiles_new(scratch, tiles, stars, key, threads, progress)"},
     {"tiles_close", tiles_close, METH_O, "tiles_close(t): removes its files."},
     {"tiles_add", tiles_add, METH_VARARGS, "tiles_add(t, points, weights, threads, progress)"},
-    {"tiles_read", tiles_read, METH_VARARGS, "tiles_read(t, path, format, columns, weights, threads, progress)"},
+    {"tiles_read", tiles_read, METH_VARARGS, "tiles_read(t, path, options of reading, weights, threads, progress)"},
     {"tiles_run", tiles_run, METH_VARARGS, "tiles_run(t, threads, progress)"},
     {"tiles_facts", tiles_facts, METH_O, "tiles_facts(t): a dict."},
     {"tiles_checksum", tiles_checksum, METH_VARARGS, "tiles_checksum(t, threads, progress)"},

@@ -30,3 +30,26 @@ def test_tiles_that_are_refused(tmp_path, target, options):
     with pytest.raises(brio.ArgumentError):
         brio.convert(tmp_path / "in.ply", tmp_path / target, **options)
     assert [path.name for path in tmp_path.iterdir()] == ["in.ply"]
+
+
+def test_points_that_are_not_whole(tmp_path):
+    """drop_invalid and salvage, wherever a file is read."""
+    points = np.random.default_rng(2).random((50, 3))
+    bad, short = tmp_path / "bad.xyz", tmp_path / "short.npy"
+    np.savetxt(bad, np.where(np.arange(150).reshape(-1, 3) == 30, np.nan, points))
+    np.save(short, points)
+    short.write_bytes(short.read_bytes()[:-24 * 7 - 5])
+    for path, option, kind, left in ((bad, "drop_invalid", brio.NotFiniteError, np.delete(points, 10, axis=0)),
+                                     (short, "salvage", brio.FormatError, points[:42])):
+        with pytest.raises(kind):
+            brio.read(path)
+        with pytest.raises(kind):
+            brio.convert(path, tmp_path / "out.ply")
+        with brio.TiledDelaunay(scratch=tmp_path) as tri, pytest.raises(kind):
+            tri.read(path)
+        assert np.array_equal(brio.read(path, **{option: True}).vertices, left)
+        assert brio.convert(path, tmp_path / "out.ply", **{option: True}).points == len(left)
+        with brio.TiledDelaunay(scratch=tmp_path) as tri:
+            tri.read(path, **{option: True})
+            tri.run()
+            assert tri.checksum == brio.Delaunay(left).checksum

@@ -73,9 +73,37 @@ def test_refusals(name, folder):
             MAKERS[name](limits)
 
 
+@pytest.mark.parametrize("make, options", [
+    (brio.Delaunay, {}), (brio.Delaunay, {"cell": [1, 1, 1]}), (lambda p, **o: brio.Delaunay(p[:, :2], **o), None),
+    (brio.reconstruct, {"method": "labeled-delaunay"}), (brio.reconstruct, {"method": "power-crust"}),
+    (brio.reconstruct, {"method": "cocone"}), (brio.reconstruct, {"method": "cocone", "pieces": 4}),
+    (brio.reconstruct, {"method": "tight-cocone"})])
+def test_estimates(make, options):
+    """What is estimated is enough, and what is estimated over the limit is refused before the work."""
+    points = np.concatenate([BALL] + [BALL * (2 + k) for k in range(4)])
+    need = brio.estimate_memory(points[:, :2] if options is None else points, **(options or {}))
+    heard = []
+    with pytest.raises(brio.OutOfMemoryError, match="about .* MiB needed, over the limit of .* MiB"):
+        make(points, max_memory=need - 1, progress=lambda *said: heard.append(said), **(options or {}))
+    assert heard == []
+    make(points, max_memory=1.15 * need, **(options or {}))
+
+
+def test_estimates_refuse(folder):
+    for call in (lambda: brio.estimate_memory(CLOUD, method="x"), lambda: brio.estimate_memory(CLOUD, pieces=3),
+                 lambda: brio.estimate_memory(CLOUD, CLOUD[:, 0], method="cocone"), lambda: brio.estimate_memory([[1.0]]),
+                 lambda: brio.estimate_memory(CLOUD[:, :2], cell=[1, 1, 1]), lambda: brio.estimate_memory(CLOUD[:, :2], method="cocone"),
+                 lambda: brio.estimate_memory(CLOUD, [1.0]), lambda: brio.estimate_memory(CLOUD, threads=-1)):
+        with pytest.raises(brio.ArgumentError):
+            call()
+    with pytest.raises(brio.NotFiniteError) as caught:
+        brio.Delaunay([[0, 0, 0], [np.nan, 0, 0]], max_memory=1e9)
+    assert caught.value.indices.tolist() == [1]
+
+
 def test_files_take_the_place_of_memory(folder):
     """What a limit refuses has room in files, and so has what is computed later."""
-    with pytest.raises(brio.OutOfMemoryError, match="limit 6000000"):
+    with pytest.raises(brio.OutOfMemoryError, match=r"about 6.\d MiB needed, over the limit of 5.7 MiB"):
         brio.Delaunay(LARGE, max_memory=6e6, threads=1)
     tri = brio.Delaunay(LARGE, scratch=folder, max_memory=6e6, threads=1)
     assert tri.checksum == brio.Delaunay(LARGE).checksum
@@ -98,10 +126,10 @@ def test_neither_outlives_its_call(folder):
     for limits in ({"max_memory": 1000}, {"scratch": folder}, {"scratch": folder / "none"}):
         for _ in range(3):
             try:
-                brio.Delaunay(CLOUD, **limits)
+                brio.outliers(CLOUD, **limits)
             except (brio.OutOfMemoryError, brio.OpenError):
                 pass
-            assert brio.Delaunay(LARGE).nsimplex > 0
+            assert brio.outliers(LARGE).sum() == 0
     kept = [brio.Delaunay(LARGE) for _ in range(3)]  # what others hold does not count
     assert brio.Delaunay(CLOUD[:100], max_memory=1.5e6).nsimplex > 0 and len(kept) == 3
 
@@ -111,16 +139,16 @@ def test_each_thread_has_its_own(folder):
 
     def work(most):
         try:
-            outcomes[most] = brio.Delaunay(LARGE, max_memory=most, threads=1).nsimplex
+            outcomes[most] = len(brio.outliers(LARGE, max_memory=most, threads=1))
         except brio.OutOfMemoryError as error:
             outcomes[most] = "limit %d" % most in str(error)
 
-    threads = [threading.Thread(target=work, args=(most,)) for most in (10**5, 10**6, 3 * 10**6, 10**9)]
+    threads = [threading.Thread(target=work, args=(most,)) for most in (10**4, 10**5, 5 * 10**5, 10**9)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
-    assert [outcomes[most] for most in (10**5, 10**6, 3 * 10**6)] == [True] * 3 and outcomes[10**9] > 1e5
+    assert [outcomes[most] for most in (10**4, 10**5, 5 * 10**5)] == [True] * 3 and outcomes[10**9] == len(LARGE)
 
 
 @pytest.mark.parametrize("tiles", [1, 3])

@@ -12,7 +12,7 @@ from ._interpolate import LinearNDInterpolator, NaturalNeighbourInterpolator, gr
 from ._mesh import Certificate, Coverage, Distance, Mesh, simplify
 from ._periodic import PeriodicAlphaComplex, PeriodicAlphaShape, PeriodicDelaunay, PeriodicVoronoi
 from ._points import outliers, thin
-from ._reconstruct import BallUnion, Surface, ball_union, medial_axis, offset, oriented_normals, reconstruct
+from ._reconstruct import BallUnion, Surface, ball_union, estimate_memory, medial_axis, offset, oriented_normals, reconstruct
 from ._spherical import SphericalVoronoi
 from ._tiled import TiledDelaunay, TileFaces, TilePart
 from ._version import __version__
@@ -26,7 +26,7 @@ __all__ = [
     "HalfspaceIntersection", "LinearNDInterpolator", "Mesh", "NaturalNeighbourInterpolator", "Page", "PeriodicAlphaComplex",
     "PeriodicAlphaShape", "PeriodicDelaunay", "PeriodicVoronoi", "Picture",
     "SphericalVoronoi", "Surface", "TileFaces", "TilePart", "TiledDelaunay",
-    "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "griddata", "medial_axis",
+    "Voronoi", "__version__", "alpha_complex", "ball_union", "build_info", "convert", "curve", "errors", "estimate_memory", "griddata", "medial_axis",
     "offset", "oriented_normals", "outliers", "picture", "read", "reconstruct", "simplify", "spanning_tree", "thin", "view", "write",
     *errors.__all__,
 ]

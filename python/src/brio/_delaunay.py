@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from . import _calls, _geometry, _native
 from ._arrays import Floats, as_number, as_queries, as_rows, as_weights, frozen
 from ._calls import UNLIMITED, Limits, Path, Progress, reporting
+from ._estimate import TRIANGULATION, require_memory
 from ._scaled import shifted
 from ._scipy import other_class
 from ._tolerance import STANDARD, border, core, find_within
@@ -48,8 +49,8 @@ class Delaunay:
         A folder: large arrays are in files there, which have no names, in place of memory; also those of what is computed
         later. ``brio.TiledDelaunay`` is for points that do not fit in memory themselves.
     max_memory : int, optional
-        The most bytes that a call of the library may hold, its result included: OutOfMemoryError beyond. What is in
-        `scratch` and numpy's arrays do not count.
+        The most bytes that a call of the library may hold, its result included: OutOfMemoryError beyond, and without
+        `scratch` before the work if ``brio.estimate_memory`` is. What is in `scratch` and numpy's arrays do not count.
     cell : array_like, optional
         Makes a PeriodicDelaunay, of space that repeats; `periodic` and `radii` go with it.
     incremental : bool
@@ -130,6 +131,7 @@ class Delaunay:
 
     def _build(self, points: Floats, weights: Floats | None) -> None:
         function = _native.delaunay if points.shape[1] == 3 else _native.delaunay2
+        require_memory(points, weights, TRIANGULATION, self.threads, self._limits)
         handle = _calls.of_points(function, points, weights, self.threads, self.progress, self._limits)
         kept = {"threads": self.threads, "progress": self.progress, "_limits": self._limits, "_closed": self._closed}
         self.__dict__ = dict(kept, points=points, weights=weights, _handle=handle)  # at once: other threads may read

@@ -49,8 +49,13 @@ class Conversion:
     largest_tile: int = 0
 
 
-def as_columns(columns: str | Sequence[str | None] | None) -> str | None:
-    """The names of columns as the library takes them."""
+def as_reading(format: str | None, columns: str | Sequence[str | None] | None, drop_invalid: bool,
+               salvage: bool) -> tuple[str | None, str | None, bool, bool]:
+    """Options of reading as the library takes them."""
+    return None if format is None else as_text(format, "format"), _columns(columns), drop_invalid, salvage
+
+
+def _columns(columns: str | Sequence[str | None] | None) -> str | None:
     if columns is None:
         return None
     if isinstance(columns, str):
@@ -65,8 +70,8 @@ def as_columns(columns: str | Sequence[str | None] | None) -> str | None:
     return ",".join(names)
 
 
-def read(path: Path, *, format: str | None = None, columns: str | Sequence[str | None] | None = None, threads: int = 0,
-         progress: bool | Progress | None = None, scratch: Path | None = None, max_memory: float | None = None) -> Mesh:
+def read(path: Path, *, format: str | None = None, columns: str | Sequence[str | None] | None = None,
+         drop_invalid: bool = False, salvage: bool = False, threads: int = 0, progress: bool | Progress | None = None, scratch: Path | None = None, max_memory: float | None = None) -> Mesh:
     """Reads a file of points or of a mesh: PLY, XYZ, OBJ, OFF, VTU, LAS, LAZ, PCD, STL, NPY and others.
 
     Parameters
@@ -79,6 +84,10 @@ def read(path: Path, *, format: str | None = None, columns: str | Sequence[str |
         The names of the columns of a text of points, in their order: "x", "y" and "z" have to be there; None or "-"
         leaves a column out, as it happens to columns behind the last name. "x,y,z,-,nx" says the same. The default is the
         file's line of names or, without one, that the first three are the coordinates.
+    drop_invalid : bool
+        Leaves out points whose coordinates are not finite, and what uses them, instead of refusing the file.
+    salvage : bool
+        Of a file that ends early, keeps the points that are whole.
     threads, progress, scratch, max_memory
         As for Delaunay. The mesh has its arrays in `scratch` then.
 
@@ -106,9 +115,9 @@ def read(path: Path, *, format: str | None = None, columns: str | Sequence[str |
     >>> brio.read(path, format="xyz").vertices.tolist()
     [[1.0, 2.0, 3.0]]
     """
-    name = None if format is None else as_text(format, "format")
+    how = as_reading(format, columns, drop_invalid, salvage)
     with reporting(progress, (scratch, max_memory)) as report:
-        mesh: Mesh = Mesh._of(_native.read(as_path(path), name, as_columns(columns), threads, report))
+        mesh: Mesh = Mesh._of(_native.read(as_path(path), how, threads, report))
     return mesh
 
 
@@ -117,7 +126,8 @@ def write(path: Path, mesh: Any, **options: Any) -> None:
     (mesh if isinstance(mesh, Mesh) else Mesh(mesh)).write(path, **options)
 
 
-def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] | None = None, box: Any = None,
+def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] | None = None,
+            drop_invalid: bool = False, salvage: bool = False, box: Any = None,
             outliers: int = 0, factor: float = 3.0, thin: float = 0.0, merge: bool | float = False, ascii: bool = False, float32: bool = False,
             compress: bool = False, comment: str | None = None, tiles: int = 0, scratch: Path | None = None, threads: int = 0,
             progress: bool | Progress | None = None) -> Conversion:
@@ -129,7 +139,7 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     Parameters
     ----------
     source, target : str or path
-    columns
+    columns, drop_invalid, salvage
         As for read.
     box : array_like, shape (2, 3) or (6,), optional
         The lower corner and the upper one; its border belongs to it.
@@ -172,7 +182,7 @@ def convert(source: Path, target: Path, *, columns: str | Sequence[str | None] |
     merges, distance = (merge, 0.0) if isinstance(merge, bool) else (True, as_number(merge, "merge"))
     with reporting(progress) as report:
         choice = neighbours, as_number(factor, "factor"), as_number(thin, "thin"), merges, distance
-        facts = _native.convert(as_path(source), as_path(target), as_columns(columns),
+        facts = _native.convert(as_path(source), as_path(target), as_reading(None, columns, drop_invalid, salvage),
                                 (ascii, float32, compress, comment), corners, choice, divides, threads, report)
     return Conversion(**facts)
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from . import _calls, _native
 from ._arrays import Floats, as_box, as_floats, as_number, as_queries, as_rows, as_weights, freeze_all, frozen
 from ._calls import UNLIMITED, Limits, Path, Progress
+from ._estimate import TRIANGULATION, require_memory
 from ._mesh import Mesh
 from .errors import ArgumentError, CheckError
 
@@ -114,6 +115,7 @@ class PeriodicDelaunay:
         def build(p: Floats, w: Floats | None, threads: int, report: Any) -> Any:
             return _native.periodic(p, w, vectors, unused, threads, report)
 
+        require_memory(self.points, self.weights, TRIANGULATION, threads, self._limits, vectors, unused)
         self._show(_calls.of_points(build, self.points, self.weights, threads, progress, self._limits))
 
     def _show(self, handle: Any) -> None:

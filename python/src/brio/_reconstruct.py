@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _calls, _native
-from ._arrays import MOST_TILES, Floats, as_count, as_number, as_rows, frozen
+from ._arrays import MOST_TILES, Floats, as_count, as_number, as_rows, as_weights, frozen
 from ._calls import Limits, Path, Progress, reporting
+from ._estimate import TRIANGULATION, Task, estimate, require_memory
 from ._mesh import Mesh
+from ._periodic import as_cell, as_periodic
 from ._points import nearest
 from ._properties import Properties, as_properties, carry
 from .errors import ArgumentError
@@ -80,10 +82,60 @@ def _run(function: Any, points: Floats, options: dict[str, Any], number: float, 
 def _surface(method: _Method, points: Floats, options: dict[str, Any], distance: float, out: NDArray[Any] | None,
              threads: int, progress: bool | Progress | None, limits: Limits) -> Surface:
     chosen = {**options, "method": method.number}
+    require_memory(points, None, _task(method, options), threads, limits)
     surface = _run(_native.surface, points, chosen, distance, out, threads, progress, limits)
     if "confidence" not in method.options:  # the report judges what such a method did
         surface.report = {}
     return surface
+
+
+def _task(method: _Method, options: dict[str, Any]) -> Task:
+    """What is estimated of a method with its options."""
+    wanted = {name: int(options[name]) for name in ("simplify", "triangulate", "pieces") if isinstance(options.get(name), int)}
+    simplify, pieces = int(wanted.get("simplify", 0) != 0), min(max(wanted.get("pieces", 0), 0), 2**31)
+    polygons = int("polygons" in method.options and not simplify and not wanted.get("triangulate", 0))
+    return method.number, polygons, simplify, pieces
+
+
+def estimate_memory(points: Any, weights: Any = None, *, method: str | None = None, cell: Any = None, periodic: Any = True,
+                    threads: int = 0, progress: bool | Progress | None = None, **options: Any) -> int:
+    """Estimates the bytes that the library will hold at its peak, the result included and the points not.
+
+    It is within 15 % for points that are spread evenly, or scanned; others can need more. To make sure, set `max_memory`.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3), or (n, 2) for a triangulation, or Mesh
+    weights : array_like, shape (n,), optional
+    method : str, optional
+        Of ``brio.reconstruct``, whose `options` are taken. None: of ``brio.Delaunay``.
+    cell, periodic
+        As of PeriodicDelaunay.
+    threads, progress
+        As for Delaunay.
+
+    Returns
+    -------
+    int
+
+    Examples
+    --------
+    >>> import brio, numpy as np
+    >>> points = np.random.default_rng(1).random((10_000, 3))
+    >>> brio.estimate_memory(points) < brio.estimate_memory(points, method="labeled-delaunay")
+    True
+    """
+    if method is not None:
+        if weights is not None or cell is not None:
+            raise ArgumentError("method: of a surface, whose samples have neither weights nor a cell")
+        which = _method(method)
+        return estimate(_split(points)[0], None, _task(which, options), threads, progress)
+    if options:
+        raise ArgumentError(f"{', '.join(options)}: of surfaces, and there is no method")
+    rows = points.vertices if isinstance(points, Mesh) else as_rows(points, "points", (2, 3) if cell is None else (3,))
+    unused = tuple(int(not repeats) for repeats in as_periodic(periodic))
+    vectors = None if cell is None else as_cell(cell)
+    return estimate(rows, as_weights(weights, len(rows)), TRIANGULATION, threads, progress, cell=vectors, unused=unused)
 
 
 def _split(points: Any) -> tuple[Floats, Properties]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._arrays import MOST_TILES, Floats, as_array, as_box, as_count, as_number, as_path, as_rows, as_text, as_weights, frozen
 from ._calls import Path, Progress, name_guilty, reporting
-from ._files import as_columns
+from ._files import as_reading
 from .errors import ArgumentError, NotFiniteError
 
 _BLOCK = 65536  # points at a time: as brio reads files
@@ -197,18 +197,18 @@ class TiledDelaunay:
             raise
 
     def read(self, path: Path, *, format: str | None = None, columns: str | Sequence[str | None] | None = None,
-             weights: str | None = None) -> None:
+             drop_invalid: bool = False, salvage: bool = False, weights: str | None = None) -> None:
         """Appends the points of a file; see `docs/formats.md` for those that are never in memory as a whole.
 
         Parameters
         ----------
-        path, format, columns
+        path, format, columns, drop_invalid, salvage
             As of ``brio.read``.
         weights : str, optional
             The property of the points that has their weights.
         """
-        chosen = tuple(None if text is None else as_text(text, name) for name, text in (("format", format), ("weights", weights)))
-        self._call(_native.tiles_read, self._handle, as_path(path), chosen[0], as_columns(columns), chosen[1])
+        how, heavy = as_reading(format, columns, drop_invalid, salvage), None if weights is None else as_text(weights, "weights")
+        self._call(_native.tiles_read, self._handle, as_path(path), how, heavy)
 
     def run(self) -> None:
         """Divides the points into tiles, and triangulates these.
