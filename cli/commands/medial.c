@@ -187,7 +187,7 @@ static brio_status try_plane(run *r, const brio_mesh *input, bool *done) {
         a->simplify || a->scale != 0 || a->redundancy > 0 || a->sampling_density != 0 || a->sharp || a->noise ||
         a->spacing > 0)
         return BRIO_OK;
-    TRY(cli_may_be_flat(r, input, done));
+    TRY(cli_is_flat(r, input, done));
     if (!*done) return BRIO_OK;
     status = cli_planar_shape(r, input, &crust, &shape);
     if (status == BRIO_ERR_NO_ANSWER && cli_failure(r).reason == BRIO_REASON_NOT_FLAT) {

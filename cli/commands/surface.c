@@ -518,13 +518,13 @@ done:
     return status;
 }
 
-/* Tries curves: asked for, or the default of points that may be in a plane.   done  false: they are not. */
+/* Tries curves: asked for, or the default of points in a plane.   done  false: they are not. */
 static brio_status try_curves(run *r, const brio_mesh *points, brio_mesh **result, bool *done) {
     const arguments *a = r->arguments;
     bool asked = method_of(a) == CURVES, crust = method_of(a) == BRIO_SURFACE_POWER_CRUST, flat = asked;
     brio_status status = BRIO_OK;
     *done = false;
-    if (!asked && (a->method == NO_METHOD || crust)) TRY(cli_may_be_flat(r, points, &flat));
+    if (!asked && (a->method == NO_METHOD || crust)) TRY(cli_is_flat(r, points, &flat));
     if (!flat) return BRIO_OK;
     status = crust ? cli_planar_crust(r, points, &a->crust, a->crust.labeling == NO_LABELING, result)
                    : curves(r, points, result);

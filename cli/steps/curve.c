@@ -5,32 +5,42 @@
 #include "cli/steps/properties.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { TRIED = 64 }; /* points that decide at first whether all may be in a plane */
 
-/* Points thicker than this share of their extent are in no plane, whatever the rounding of the points. Chosen. */
-static const double THICK = 1e-3;
+/* THICK: some of the points that are thicker than this share of their extent are in no plane, whatever the rounding of
+ * the points. Chosen. THIN: of brio_curve, for all points. */
+static const double THICK = 1e-3, THIN = 0x1p-20;
 
 /* Bytes of a point during the work. Measured: 219 along a circle. */
 static const double POINT_BYTES = 250;
 
-brio_status cli_may_be_flat(run *r, const brio_mesh *points, bool *flat) {
-    double row[TRIED][3], low[3], high[3], extent = 0;
-    size_t n = points->num_vertices, count = n < TRIED ? n : TRIED;
+/* Sets *flat to whether points are in a plane, up to a share of their extent, and on no line. */
+static brio_status find_flat(run *r, const double *points, size_t count, double share, bool *flat) {
+    double extent = 0;
     brio_plane_frame frame = {0};
+    for (size_t k = 0; k < 3; k++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t i = 0; i < count; i++) {
+            low = fmin(low, points[3 * i + k]);
+            high = fmax(high, points[3 * i + k]);
+        }
+        extent = fmax(extent, high / 2 - low / 2); /* half of it is always finite */
+    }
+    FORWARD(brio_plane_fit(r->ctx, points, count, &frame));
+    *flat = frame.dimension == 2 || (frame.dimension == 3 && frame.thickness / 2 <= share * extent);
+    return BRIO_OK;
+}
+
+brio_status cli_is_flat(run *r, const brio_mesh *points, bool *flat) {
+    double row[TRIED][3];
+    size_t n = points->num_vertices, count = n < TRIED ? n : TRIED;
     *flat = false;
     if (n <= 3) return BRIO_OK;
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < 3; k++) {
-            row[i][k] = points->vertices[3 * (i * n / count) + k];
-            low[k] = i ? fmin(low[k], row[i][k]) : row[i][k];
-            high[k] = i ? fmax(high[k], row[i][k]) : row[i][k];
-            extent = fmax(extent, high[k] / 2 - low[k] / 2);
-        }
-    brio_status status = brio_plane_fit(r->ctx, *row, count, &frame);
-    if (status != BRIO_OK) return status;
-    *flat = frame.dimension == 2 || (frame.dimension == 3 && frame.thickness <= 2 * THICK * extent);
-    return BRIO_OK;
+    for (size_t i = 0; i < count; i++) memcpy(row[i], points->vertices + 3 * (i * n / count), sizeof row[i]);
+    FORWARD(find_flat(r, *row, count, THICK, flat));
+    return *flat ? find_flat(r, points->vertices, n, THIN, flat) : BRIO_OK;
 }
 
 static void report(run *r, const brio_curve_stats *s) {

@@ -4,10 +4,9 @@
 
 #include "cli/steps/power_crust.h"
 
-/** Sets *flat to whether `brio surface` makes curves of these points without being asked: they may be in a plane, are
- *  on no line, and more than three. A few points decide, so that it costs nothing where they are not; brio_curve then
- *  looks at all. */
-brio_status cli_may_be_flat(run *r, const brio_mesh *points, bool *flat);
+/** Sets *flat to whether `brio surface` makes curves of these points without being asked: they are in a plane, as
+ *  brio_curve sees it, on no line, and more than three. All are looked at only where a few are in a plane. */
+brio_status cli_is_flat(run *r, const brio_mesh *points, bool *flat);
 
 /** Refuses an output whose format holds no edges. */
 brio_status cli_require_edges(run *r);

@@ -1,6 +1,7 @@
 """brio surface of points in a plane: curves, against scenes whose truth is known, and what is refused."""
 
 import math
+import random
 import re
 
 from brio_cli import CliTest, main
@@ -145,6 +146,18 @@ class Curves(CliTest):
         self.assertEqual(facts["certificate"]["loops"], 1)
         thick = self.xyz("t.xyz", [(x, y, z + 1e-4 * (i % 3)) for i, (x, y, z) in enumerate(ring)])
         self.assertIn("not in a plane", self.facts("surface", thick, "--curves", "-o", self.path("o.ply"), code=3)["error"])
+
+    def test_points_with_few_of_them_off_a_plane_were_refused_as_curves(self):
+        """Strays leave all points of a sample in one plane, up to their extent; so do low hills."""
+        rng = random.Random(3)
+        ball = [[rng.gauss(0, 1) for _ in range(3)] for _ in range(640)]
+        ball = [[x / sum(y * y for y in p) ** 0.5 for x in p] for p in ball]
+        ball[0], ball[10], ball[20] = [1e6, 0, 0], [0, 1e6, 0], [1e6, 1e6, 3]  # each is in the sample
+        hills = [(x, y, 0.001 * math.sin(x) * math.cos(y)) for x in range(30) for y in range(30)]
+        for name, points in (("ball.xyz", ball), ("hills.xyz", hills)):
+            for options, end in (["--noise", "smooth"], "ply"), (["--simplify"], "vtp"), ([], "off"):
+                facts = self.facts("surface", self.xyz(name, points), *options, "-o", self.path("o." + end))
+                self.assertEqual(facts["method"], "labeled-delaunay")
 
 
 if __name__ == "__main__":
