@@ -474,9 +474,11 @@ int main(int argc, char **argv) {
         status = run_job(&j, argc - 2, argv + 2, &help);
     }
     if (help && j.rank == 0) print_help();
+    if (status == BRIO_ERR_CANCELLED || (status != BRIO_OK && cli_interrupted()))
+        status = cli_fail(&r, BRIO_ERR_CANCELLED, "interrupted"); /* this rank, or another */
     int code = help ? 0 : finish(&j, status);
-    bool broken = j.leaves_others || (j.mpi && brio_mpi_has_failed(j.mpi)); /* others wait for what does not come */
-    if (broken && j.rank) print_sentence(&r, status);                       /* rank 0 may not get to know it */
+    bool broken = j.mpi && brio_mpi_has_failed(j.mpi); /* others wait for what does not come */
+    if (broken && j.rank && status != BRIO_ERR_CANCELLED) print_sentence(&r, status); /* rank 0 may not know it */
     brio_ranks_free(j.ranks);
     free(j.first);
     free(j.a.of_surface);
