@@ -245,6 +245,58 @@ static void the_failure_of_the_leader_ends_all(void) {
     drop(&m);
 }
 
+/* A transport of one rank, which fails after some calls, and is not called again. */
+typedef struct {
+    postman man;
+    size_t calls; /* until it fails */
+    bool failed;
+} brittle;
+
+static bool breaks(brittle *b) {
+    EXPECT(!b->failed, "a transport that failed is called");
+    b->failed = b->calls-- == 0;
+    return b->failed;
+}
+
+static int begin_or_break(void *user, const brio_letter *letters) {
+    brittle *b = user;
+    return breaks(b) ? BRIO_ERR_CANCELLED : post_begin(&b->man, letters);
+}
+
+static int end_or_break(void *user, brio_letter *received) {
+    brittle *b = user;
+    return breaks(b) ? BRIO_ERR_CANCELLED : post_end(&b->man, received);
+}
+
+static void a_transport_that_breaks_anywhere_ends_the_leader(void) {
+    size_t n = make_points(3, 150, 2), calls = 0;
+    bool broken = true;
+    for (; broken; calls += 1 + calls / 16) {
+        static post office;
+        office = (post){.ranks = 1};
+        brittle b = {.man.post = &office, .calls = calls};
+        plan p = {.n = n, .ranks = 1};
+        member m = {.plan = &p, .ctx = new_context()};
+        const brio_transport t = {
+            .size = sizeof t, .ranks = 1, .host = "here", .user = &b, .begin = begin_or_break, .end = end_or_break};
+        const brio_ranks_options o = {.size = sizeof o, .scratch = folder, .tiles = 2};
+        brio_mutex_new(&office.lock);
+        brio_condition_new(&office.changed);
+        brio_status status = lead(&m, &t, &o);
+        broken = b.failed;
+        EXPECT(status == (broken ? BRIO_ERR_CANCELLED : BRIO_OK), "call %zu: %s", calls, brio_message(m.ctx));
+        EXPECT(!broken || !strcmp(brio_message(m.ctx), "rank 0 on here: cancelled while it waited for other ranks"),
+               "call %zu: %s", calls, brio_message(m.ctx));
+        free(b.man.held[0]);
+        for (int i = 0; i < BOXES; i++)
+            if (office.box[i][0][0].full) free(office.box[i][0][0].bytes);
+        brio_condition_free(&office.changed);
+        brio_mutex_free(&office.lock);
+        drop(&m);
+    }
+    EXPECT(calls > 40, "%zu", calls);
+}
+
 static void teams_have_neither_stars_nor_a_key(void) {
     brio_context *ctx = new_context();
     postman man = {0};
@@ -271,6 +323,7 @@ SUITE(test_ranks_surface) {
     RUN(any_allocation_of_any_rank_ends_all);
     RUN(ranks_have_their_own_tiles);
     RUN(the_failure_of_the_leader_ends_all);
+    RUN(a_transport_that_breaks_anywhere_ends_the_leader);
     RUN(teams_have_neither_stars_nor_a_key);
     rmdir(folder);
     return harness_end();
