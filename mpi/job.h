@@ -22,8 +22,7 @@ typedef struct {
     brio_mpi *mpi;
     brio_ranks *ranks;
     int rank, size;
-    bool leaves_others; /* this rank failed where others wait for it, and do not get to know it */
-    uint64_t *first;    /* of each file, the index of its first point */
+    uint64_t *first; /* of each file, the index of its first point */
 } job;
 
 /** Collective. Returns the failure of a rank on all, with its sentence. */

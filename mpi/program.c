@@ -362,9 +362,17 @@ static int threads_of_rank(void) {
     return processors > ranks ? processors / ranks : 1;
 }
 
+/* Asks this rank to stop if another was asked. Returns whether it was. */
 static int stop(void *user) {
-    (void)user;
+    job *j = user;
+    if (brio_mpi_stopped(j->mpi)) cli_interrupt();
     return cli_interrupted();
+}
+
+static int on_progress(const char *stage, double fraction, void *user) {
+    job *j = user;
+    cli_progress_show(&j->r->bar, stage, fraction);
+    return stop(j);
 }
 
 static void print_sentence(run *r, brio_status status) {
@@ -431,19 +439,6 @@ static brio_status begin_job(job *j) {
     return j->rank ? BRIO_OK : check_output(r);
 }
 
-static brio_status run_job(job *j, int argc, char **argv, bool *help) {
-    run *r = j->r;
-    FORWARD(parse(r, &j->a, argc, argv, help)); /* alike on all ranks */
-    if (*help) return BRIO_OK;
-    if (!r->common.threads) r->common.threads = threads_of_rank();
-    if (j->rank) r->common.quiet = true, r->common.progress = false;
-    FORWARD(agree_early(j, begin_job(j)));
-    brio_mpi_set_stop(j->mpi, stop, NULL);
-    cli_opening_facts(r);
-    r->lap = cli_clock();
-    return r->command == &cli_surface ? job_surface(j) : triangulate(j);
-}
-
 /* Takes the options of the command `surface`, with the one method that ranks share. */
 static brio_status take_surface(job *j) {
     void *values = malloc(cli_surface.size);
@@ -452,6 +447,26 @@ static brio_status take_surface(job *j) {
     *method_of(values) = BRIO_SURFACE_LABELED;
     j->r->arguments = j->a.of_surface = values;
     return BRIO_OK;
+}
+
+static brio_status read_command_line(job *j, int argc, char **argv, bool *help) {
+    if (j->r->command == &cli_surface) FORWARD(take_surface(j));
+    return parse(j->r, &j->a, argc, argv, help);
+}
+
+static brio_status run_job(job *j, int argc, char **argv, bool *help) {
+    run *r = j->r;
+    FORWARD(agree_early(j, read_command_line(j, argc, argv, help)));
+    if (*help) return BRIO_OK;
+    int threads = threads_of_rank();
+    if (!r->common.threads) r->common.threads = threads;
+    if (j->rank) r->common.quiet = true, r->common.progress = false;
+    FORWARD(agree_early(j, begin_job(j)));
+    brio_mpi_set_stop(j->mpi, stop, j);
+    brio_context_set_progress(r->ctx, on_progress, j);
+    cli_opening_facts(r);
+    r->lap = cli_clock();
+    return r->command == &cli_surface ? job_surface(j) : triangulate(j);
 }
 
 int main(int argc, char **argv) {
@@ -468,19 +483,19 @@ int main(int argc, char **argv) {
     j.mpi = brio_mpi_new(MPI_COMM_WORLD);
     brio_status status = BRIO_OK;
     if (argc > 1 && !strcmp(argv[1], voronoi.name)) r.command = &voronoi;
-    if (argc > 1 && !strcmp(argv[1], cli_surface.name)) r.command = &cli_surface, status = take_surface(&j);
-    if (status != BRIO_OK) {
-        help = false;
-    } else if (argc < 2 || strcmp(argv[1], r.command->name)) {
+    if (argc > 1 && !strcmp(argv[1], cli_surface.name)) r.command = &cli_surface;
+    if (argc < 2 || strcmp(argv[1], r.command->name)) {
         help = argc > 1 && (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h"));
         if (!help) status = cli_fail(&r, BRIO_ERR_ARGUMENT, "expected 'delaunay', 'surface' or 'voronoi'; see --help");
     } else {
         status = run_job(&j, argc - 2, argv + 2, &help);
     }
     if (help && j.rank == 0) print_help();
+    bool broken = j.mpi && brio_mpi_has_failed(j.mpi); /* others wait for what does not come */
+    if (broken && j.rank) print_sentence(&r, status);  /* rank 0 may not get to know it */
+    if (status == BRIO_ERR_CANCELLED || (status != BRIO_OK && cli_interrupted()))
+        status = cli_fail(&r, BRIO_ERR_CANCELLED, "interrupted"); /* this rank, or another */
     int code = help ? 0 : finish(&j, status);
-    bool broken = j.leaves_others || (j.mpi && brio_mpi_has_failed(j.mpi)); /* others wait for what does not come */
-    if (broken && j.rank) print_sentence(&r, status);                       /* rank 0 may not get to know it */
     brio_ranks_free(j.ranks);
     free(j.first);
     free(j.a.of_surface);

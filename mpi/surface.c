@@ -10,8 +10,10 @@ static void report(job *j, const brio_team_facts *t) {
     cli_fact_integer(f, "count", j->size);
     cli_fact_count(f, "triangulations", t->triangulations);
     cli_fact_count(f, "bytes", t->bytes);
+    cli_fact_count(f, "bytes_received", t->bytes_received);
     cli_fact_count(f, "parts", t->parts);
     cli_fact_count(f, "part_bytes", t->part_bytes);
+    cli_fact_count(f, "part_bytes_received", t->part_bytes_received);
     cli_fact_close(f);
 }
 
@@ -19,10 +21,8 @@ static void report(job *j, const brio_team_facts *t) {
 static brio_status lead(job *j, const brio_transport *t, const brio_ranks_options *o) {
     run *r = j->r;
     brio_team_of_ranks *team;
-    brio_status status = brio_ranks_lead(r->ctx, t, o, &team);
-    j->leaves_others = status != BRIO_OK;
-    FORWARD(status);
-    status = cli_surface.run(r);
+    FORWARD(brio_ranks_lead(r->ctx, t, o, &team));
+    brio_status status = cli_surface.run(r);
     if (status == BRIO_OK) report(j, brio_ranks_led(team));
     if (status != BRIO_OK && cli_interrupted()) status = cli_fail(r, BRIO_ERR_CANCELLED, "interrupted");
     if (status != BRIO_OK) cli_keep_failure(r, status);

@@ -47,6 +47,10 @@ void cli_interrupt_install(void) {
     brio_program_on_stop(on_stop);
 }
 
+void cli_interrupt(void) {
+    __atomic_store_n(&requested, 1, __ATOMIC_RELAXED);
+}
+
 bool cli_interrupted(void) {
     return __atomic_load_n(&requested, __ATOMIC_RELAXED) != 0;
 }

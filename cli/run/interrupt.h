@@ -17,6 +17,9 @@ void cli_interrupt_install(void);
  *  json  whether standard output carries JSON. */
 void cli_interrupt_scratch(const char *folder, bool json);
 
+/** Asks to stop, as the first signal does. */
+void cli_interrupt(void);
+
 /** Returns whether a signal asked to stop. */
 bool cli_interrupted(void);
 

@@ -33,6 +33,9 @@ typedef struct brio_letter {
     int reserved_int;
 } brio_letter;
 
+/** Bytes of a transport's room for each rank. */
+#define BRIO_TRANSPORT_ROOM 128
+
 /** Sends bytes among ranks. In an exchange every rank sends a message to every rank, itself included. Exchanges end in
  *  the order in which they began, and at most two are under way. */
 typedef struct brio_transport {
@@ -41,12 +44,17 @@ typedef struct brio_transport {
     const char *host; /* a name for messages */
     void *user;
     /** Begins an exchange, and does not wait.   messages  one to each rank, in their order; bytes stay until it ends.
-     *  Returns 0, or another number if the transport failed: BRIO_ERR_NO_MEMORY says that there was no memory. The
-     *  transport is not called then any more, and other ranks may wait for this one: the caller must end them. */
+     *  Returns 0, or another number if the transport failed: BRIO_ERR_NO_MEMORY says that there was no memory,
+     *  BRIO_ERR_CANCELLED that the wait was ended. The transport is not called then any more, and other ranks may wait
+     *  for this one: the caller must end them. */
     int (*begin)(void *user, const brio_letter *messages);
     /** Waits until the oldest exchange is complete.   received  one message from each rank, in any order; their bytes
      *  are valid until the next call of `end`. Returns what `begin` returns. */
     int (*end)(void *user, brio_letter *received);
+    /** NULL, or BRIO_TRANSPORT_ROOM bytes for each rank, aligned to 8. In it a rank that has no memory to begin a
+     *  collective function says so to all others. Without room these are not told, and the caller must end them. It is
+     *  used while one of the functions below begins, and not kept: any number of sets of ranks may share it. */
+    void *room;
 } brio_transport;
 
 typedef struct brio_ranks brio_ranks;
@@ -75,7 +83,8 @@ typedef struct brio_ranks_traffic {
 /** Collective. Makes an empty set of points, and a folder in the scratch folder.
  *  transport  copied; what it points to must stay.
  *  out  owned by the caller: brio_ranks_free; NULL on error.
- *  Returns BRIO_OK or, on all ranks, what brio_tiles_new returns on one. */
+ *  Returns BRIO_OK or, on all ranks, what brio_tiles_new returns on one: if the transport has room, or what failed was
+ *  not the first 2 kB of this rank's memory. A transport that is none is BRIO_ERR_ARGUMENT, and others are not told. */
 BRIO_API brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport,
                                     const brio_ranks_options *options, brio_ranks **out);
 
@@ -151,9 +160,10 @@ typedef struct brio_team_of_ranks brio_team_of_ranks;
 typedef struct brio_team_facts {
     size_t size;
     uint64_t triangulations;
-    uint64_t bytes;      /* that rank 0 sent to others while they triangulated */
-    uint64_t parts;      /* of minimum cuts, decided by all ranks */
-    uint64_t part_bytes; /* that rank 0 sent to others for these */
+    uint64_t bytes;                               /* that rank 0 sent to others while they triangulated */
+    uint64_t parts;                               /* of minimum cuts, decided by all ranks */
+    uint64_t part_bytes;                          /* that rank 0 sent to others for these */
+    uint64_t bytes_received, part_bytes_received; /* that came to rank 0 from others meanwhile */
 } brio_team_facts;
 
 /** Has the triangulations and the minimum cuts of surfaces made by all ranks: on rank 0 alone, while all others call
@@ -162,8 +172,8 @@ typedef struct brio_team_facts {
  *  Rank 0 has the points and all other arrays of the surface: in files, if the context has a scratch folder
  *  (brio_context_set_scratch).
  *  options  as in brio_ranks_new, without stars and key.
- *  out  ended by brio_ranks_dismiss, in any case; NULL on error, which other ranks do not get to know: the caller must
- *  end them.
+ *  out  ended by brio_ranks_dismiss, in any case; NULL on error, which ends what other ranks call, if the transport has
+ *  room. Without room other ranks do not get to know it, and the caller must end them.
  *  Memory: of each rank as of brio_ranks_run, and 48 bytes a tetrahedron of a tile. Sent to rank 0: 48 bytes a
  *  tetrahedron. For a cut 40 bytes a tetrahedron are sent from rank 0, and 1 comes back, 17 if the context has no
  *  scratch folder. The parts of at most 64 MiB, or one part, are on their way in each of two exchanges. A part in work
@@ -178,13 +188,15 @@ BRIO_API const brio_team_facts *brio_ranks_led(const brio_team_of_ranks *team);
 /** Ends the team on rank 0, and what others call.
  *  status    what they return: BRIO_OK, or the failure of rank 0, whose sentence is in the context.
  *  sentence  NULL, or the sentence instead.
- *  Returns the status of all ranks. */
+ *  Returns the status of all ranks. The sentence names the rank that failed and its host. After a failure of another
+ *  rank in a cut it is that failure, whatever `status` is: then other ranks have it already. */
 BRIO_API brio_status brio_ranks_dismiss(brio_team_of_ranks *team, brio_status status, const char *sentence);
 
 /** Triangulates and cuts for rank 0 until it dismisses this rank: on all ranks but 0.
  *  options  as those of rank 0; the folder is one of this host.
- *  Returns what rank 0 says, with its sentence; BRIO_ERR_OPEN if the transport failed; or, before there were exchanges,
- *  BRIO_ERR_ARGUMENT or BRIO_ERR_NO_MEMORY, which other ranks do not get to know: the caller must end them. */
+ *  Returns what rank 0 says, with its sentence; or what made the transport fail; or, before there were exchanges,
+ *  BRIO_ERR_ARGUMENT or BRIO_ERR_NO_MEMORY. If the transport has room, rank 0 gets to know that when it first needs
+ *  other ranks, at the latest in brio_ranks_dismiss. Without room nobody does, and the caller must end the others. */
 BRIO_API brio_status brio_ranks_serve(brio_context *ctx, const brio_transport *transport,
                                       const brio_ranks_options *options);
 

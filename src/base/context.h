@@ -49,6 +49,7 @@ struct brio_context {
     const struct brio_triangulator *triangulator; /* triangulation/triangulation.h; NULL: brio_delaunay */
     const struct brio_part_decider *decider;      /* reconstruct/labels/cut_in_parts.h; NULL: the threads */
     char message[512];
+    char named[512];            /* the last sentence that names the rank where a failure was (ranks/exchange.h) */
     brio_failure failure, next; /* of the message; what is known so far of the failure that is about to come */
     uint64_t failures;          /* that were told in messages */
 };

@@ -4,11 +4,12 @@
  * Differs from the paper: every rank sends every rank a note, whose size is known; so the end needs no consensus. */
 #include "ranks/exchange.h"
 #include "base/memory.h"
+#include "base/versioned.h"
 #include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { NOTE_ANY = 1, NOTE_FAILED = 2 };
+enum { NOTE_ANY = 1, NOTE_FAILED = 2, MOST_RANKS = 1 << 20 };
 
 /* The sentence of a failure, as it is sent. */
 typedef struct {
@@ -17,6 +18,19 @@ typedef struct {
 } last_words;
 
 _Static_assert(sizeof(last_words) <= sizeof(((brio_exchange *)0)->last_words), "room for them");
+
+/* --- life --- */
+
+brio_status brio_exchange_take(brio_context *ctx, const brio_transport *given, brio_transport *transport) {
+    *transport = (brio_transport){0};
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_transport, given, transport));
+    const brio_transport *t = transport;
+    BRIO_EXPECT(ctx,
+                t->begin && t->end && t->host && t->ranks > 0 && t->ranks <= MOST_RANKS && t->rank >= 0 &&
+                    t->rank < t->ranks,
+                BRIO_ERR_ARGUMENT, "a transport of rank %d of %d", t->rank, t->ranks);
+    return BRIO_OK;
+}
 
 brio_status brio_exchange_new(brio_context *ctx, const brio_transport *transport, brio_exchange *x) {
     size_t n = (size_t)transport->ranks;
@@ -37,6 +51,28 @@ void brio_exchange_free(brio_exchange *x) {
     brio_release(x->ctx, x->out);
     brio_release(x->ctx, x->received);
     brio_release(x->ctx, x->from);
+}
+
+/* What a rank needs of the transport's room to take part in an exchange, for each rank. */
+typedef struct {
+    brio_letter out, received;
+    const brio_letter *from;
+    brio_parcel parcel[BRIO_MOST_UNDER_WAY];
+} little;
+
+_Static_assert(sizeof(little) <= BRIO_TRANSPORT_ROOM, "room for it");
+
+brio_status brio_exchange_refuse(brio_context *ctx, const brio_transport *transport, brio_status status) {
+    size_t n = (size_t)transport->ranks;
+    brio_exchange x = {.ctx = ctx, .transport = *transport};
+    if (!transport->room) return status;
+    memset(transport->room, 0, n * BRIO_TRANSPORT_ROOM);
+    x.out = transport->room;
+    x.received = x.out + n;
+    x.parcel[0] = (brio_parcel *)(x.received + n);
+    x.parcel[1] = x.parcel[0] + n;
+    x.from = (const brio_letter **)(x.parcel[1] + n);
+    return brio_exchange_agree(&x, status);
 }
 
 brio_parcel *brio_exchange_parcel(brio_exchange *x, int rank) {
@@ -62,12 +98,36 @@ brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, siz
 
 /* --- one exchange --- */
 
+/* Notes the failure of a rank, and the sentence that names it. */
+static brio_status note_failure(brio_exchange *x, brio_status status, const char *sentence) {
+    x->failure = status;
+    if (sentence != x->sentence) snprintf(x->sentence, sizeof x->sentence, "%s", sentence);
+    brio_fail(x->ctx, status, "%s", x->sentence);
+    snprintf(x->ctx->named, sizeof x->ctx->named, "%s", brio_message(x->ctx));
+    return status;
+}
+
+/* Puts the name of this rank before a sentence. */
+static void name_rank(const brio_exchange *x, const char *sentence, char named[600]) {
+    snprintf(named, 600, "rank %d on %s: %s", x->transport.rank, x->transport.host, sentence);
+}
+
 static brio_status fail_transport(brio_exchange *x, int code) {
-    x->failure = code == BRIO_ERR_NO_MEMORY ? BRIO_ERR_NO_MEMORY : BRIO_ERR_OPEN;
+    char sentence[600];
+    brio_status status = BRIO_ERR_OPEN;
+    const char *what = "the exchange with other ranks failed";
+    if (code == BRIO_ERR_NO_MEMORY) status = BRIO_ERR_NO_MEMORY, what = "no memory for what other ranks send";
+    if (code == BRIO_ERR_CANCELLED) status = BRIO_ERR_CANCELLED, what = "cancelled while it waited for other ranks";
     x->broken = true;
-    return brio_fail(x->ctx, x->failure, "rank %d on %s: %s", x->transport.rank, x->transport.host,
-                     code == BRIO_ERR_NO_MEMORY ? "no memory for what other ranks send"
-                                                : "the exchange with other ranks failed");
+    name_rank(x, what, sentence);
+    return note_failure(x, status, sentence);
+}
+
+void brio_exchange_break(brio_exchange *x, brio_status status) {
+    char sentence[600];
+    x->broken = true;
+    snprintf(sentence, sizeof sentence, "%s", brio_message(x->ctx));
+    note_failure(x, status, sentence);
 }
 
 static brio_status begin(brio_exchange *x, uint64_t note) {
@@ -95,6 +155,7 @@ static brio_status end(brio_exchange *x, const brio_letter **failed) {
     *failed = NULL;
     for (int i = 0; i < x->transport.ranks; i++) x->from[x->received[i].rank] = &x->received[i];
     for (int i = x->transport.ranks; i-- > 0;) {
+        if (i != x->transport.rank) x->received_bytes += x->from[i]->size;
         x->any |= (x->from[i]->note & NOTE_ANY) != 0;
         if (x->from[i]->note & NOTE_FAILED) *failed = x->from[i];
     }
@@ -106,8 +167,7 @@ static brio_status end(brio_exchange *x, const brio_letter **failed) {
 static void adopt(brio_exchange *x, const brio_letter *failed) {
     last_words words;
     memcpy(&words, failed->bytes, sizeof words);
-    x->failure = (brio_status)words.status;
-    brio_fail(x->ctx, x->failure, "%s", words.sentence);
+    note_failure(x, (brio_status)words.status, words.sentence);
 }
 
 /* Begins and ends what other ranks wait for.   first  the exchange that has the sentence of a failure: the least number
@@ -131,15 +191,18 @@ static brio_status drain(brio_exchange *x, uint64_t first, bool mine) {
 /* Ends the run on all ranks because of a failure of this one. */
 static brio_status fail(brio_exchange *x, brio_status status) {
     last_words words = {.status = status};
-    snprintf(words.sentence, sizeof words.sentence, "rank %d on %s: %s", x->transport.rank, x->transport.host,
-             brio_message(x->ctx));
+    const char *sentence = brio_message(x->ctx), *named = x->ctx->named;
+    if (*named && strstr(sentence, named))
+        snprintf(words.sentence, sizeof words.sentence, "%s", sentence);
+    else
+        name_rank(x, sentence, words.sentence);
     memcpy(x->last_words, &words, sizeof words);
     return drain(x, x->begun, true);
 }
 
 brio_status brio_exchange_agree(brio_exchange *x, brio_status status) {
     if (x->failure != BRIO_OK)
-        status = x->failure; /* all know of it */
+        status = note_failure(x, x->failure, x->sentence); /* all know of it; the context may say something else */
     else
         status = status == BRIO_OK ? brio_exchange_now(x, false) : fail(x, status);
     x->failed = status != BRIO_OK;

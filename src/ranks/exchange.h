@@ -8,6 +8,9 @@
  * f + 1, if it has not, and ends it: then nothing is under way anywhere, and all return the same status. If several
  * fail, the least number, and of it the least rank, has the sentence.
  *
+ * The rank with the failure puts its name before the sentence, once: a sentence that names a rank already, because it
+ * came from another one in an earlier exchange, stays as it is.
+ *
  * So after brio_exchange_agree all ranks stand at the same number, and exchanges go on. Only a transport that failed
  * ends them for good. What a later call exchanges must then follow from what all ranks have alike: a rank may have
  * finished a step that another one failed in. */
@@ -37,13 +40,25 @@ typedef struct {
     bool broken;         /* the transport failed */
     bool failed;         /* the last collective function did */
     char last_words[640];
-    uint64_t bytes; /* sent to other ranks */
+    char sentence[600];             /* of `failure` */
+    uint64_t bytes, received_bytes; /* sent to other ranks, and from them */
     double waited;
 } brio_exchange;
 
-/** Prepares exchanges. Must succeed on all ranks, or the transport stays unused. */
+/** Takes the caller's transport, and checks it. */
+brio_status brio_exchange_take(brio_context *ctx, const brio_transport *given, brio_transport *transport);
+
+/** Prepares exchanges. A rank where that fails calls brio_exchange_refuse. */
 brio_status brio_exchange_new(brio_context *ctx, const brio_transport *transport, brio_exchange *x);
 void brio_exchange_free(brio_exchange *x);
+
+/** Ends on all ranks what this one cannot begin: the first exchange of all others. Takes no memory but the room of the
+ *  transport; without room it does nothing, and others wait.
+ *  status  a failure, whose sentence is in the context. Returns that of all ranks. */
+brio_status brio_exchange_refuse(brio_context *ctx, const brio_transport *transport, brio_status status);
+
+/** Ends exchanges for good: others over the same transport failed with it.   status  theirs. */
+void brio_exchange_break(brio_exchange *x, brio_status status);
 
 /** Appends bytes, a multiple of 8, to what goes to a rank in the next exchange. */
 brio_status brio_exchange_put(brio_exchange *x, int rank, const void *bytes, size_t size);

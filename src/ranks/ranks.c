@@ -7,7 +7,7 @@
 #include "ranks/work.h"
 #include <string.h>
 
-enum { TILES = 4, MOST_TILES = 1 << 12, MOST_RANKS = 1 << 20 };
+enum { TILES = 4, MOST_TILES = 1 << 12 };
 
 /* --- life --- */
 
@@ -36,19 +36,13 @@ static brio_status open_tiles(brio_ranks *r, const brio_ranks_options *options) 
 }
 
 brio_status brio_ranks_prepare(brio_context *ctx, const brio_transport *transport, brio_ranks **out) {
-    brio_transport how = {0};
     brio_ranks *r = NULL;
     brio_status status = BRIO_OK;
     *out = NULL;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_transport, transport, &how));
-    BRIO_REQUIRE(ctx,
-                 how.begin && how.end && how.host && how.ranks > 0 && how.ranks <= MOST_RANKS && how.rank >= 0 &&
-                     how.rank < how.ranks,
-                 BRIO_ERR_ARGUMENT, "a transport of rank %d of %d", how.rank, how.ranks);
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, r, 1));
-    r->ctx = ctx, r->rank = how.rank, r->ranks = how.ranks;
+    r->ctx = ctx, r->rank = transport->rank, r->ranks = transport->ranks;
     r->cells.size = sizeof r->cells;
-    BRIO_TRY(brio_exchange_new(ctx, &how, &r->x));
+    BRIO_TRY(brio_exchange_new(ctx, transport, &r->x));
     *out = r;
     r = NULL;
 done:
@@ -63,8 +57,12 @@ brio_status brio_ranks_open(brio_ranks *r, const brio_ranks_options *options) {
 brio_status brio_ranks_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
                            brio_ranks **out) {
     BRIO_DOOR;
-    BRIO_FORWARD(brio_ranks_prepare(ctx, transport, out));
-    brio_status status = brio_ranks_open(*out, options);
+    brio_transport how;
+    *out = NULL;
+    BRIO_FORWARD(brio_exchange_take(ctx, transport, &how));
+    brio_status status = brio_ranks_prepare(ctx, &how, out);
+    if (status != BRIO_OK) return brio_exchange_refuse(ctx, &how, status);
+    status = brio_ranks_open(*out, options);
     if (status == BRIO_OK) return BRIO_OK;
     brio_ranks_free(*out);
     *out = NULL;

@@ -156,10 +156,11 @@ static brio_status work_together(brio_team_of_ranks *t, at_rank_0 *own, brio_til
     t->ctx->scratch = scratch;
     if (facts->dimension == 3) BRIO_TRY(collect(r, own));
     t->facts.bytes += r->x.bytes;
+    t->facts.bytes_received += r->x.received_bytes;
     t->facts.triangulations++;
 done:
     t->ctx->scratch = scratch;
-    if (r && r->x.broken) t->x.broken = true, t->x.failure = status; /* words cannot be exchanged, either */
+    if (r && r->x.broken) brio_exchange_break(&t->x, status); /* words cannot be exchanged, either */
     brio_ranks_free(r);
     return status;
 }
@@ -192,23 +193,26 @@ done:
 /* Has all ranks decide the parts of a cut. */
 static brio_status decide(void *user, brio_parts *parts) {
     brio_team_of_ranks *t = user;
-    uint64_t before = t->x.bytes;
+    uint64_t before = t->x.bytes, received_before = t->x.received_bytes;
     BRIO_FORWARD(say(t, (word){CUT, 0}));
     BRIO_FORWARD(brio_ranks_lead_cut(&t->x, parts));
     t->facts.parts += parts->num_parts;
     t->facts.part_bytes += t->x.bytes - before;
+    t->facts.part_bytes_received += t->x.received_bytes - received_before;
     return BRIO_OK;
 }
 
 static brio_status team_new(brio_context *ctx, const brio_transport *transport, const brio_ranks_options *options,
                             brio_team_of_ranks **out) {
     brio_team_of_ranks *t = NULL;
+    brio_transport how;
     brio_status status = BRIO_OK;
     *out = NULL;
+    BRIO_FORWARD(brio_exchange_take(ctx, transport, &how));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
+    t->transport = how;
     t->facts.size = sizeof t->facts;
-    BRIO_TRY(BRIO_TAKE(ctx, brio_transport, transport, &t->transport));
     BRIO_TRY(BRIO_TAKE(ctx, brio_ranks_options, options, &t->options));
     BRIO_REQUIRE(ctx, !t->options.stars && !t->options.key, BRIO_ERR_ARGUMENT,
                  "ranks of a team have neither stars nor a key");
@@ -218,7 +222,7 @@ static brio_status team_new(brio_context *ctx, const brio_transport *transport, 
 done:
     if (t) brio_exchange_free(&t->x);
     brio_release(ctx, t);
-    return status;
+    return status == BRIO_OK ? status : brio_exchange_refuse(ctx, &how, status);
 }
 
 static void team_free(brio_team_of_ranks *t) {

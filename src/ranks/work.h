@@ -35,7 +35,8 @@ struct brio_ranks {
     bool has_result;
 };
 
-/** Does of brio_ranks_new what needs no other rank, so that its failure is known to none. */
+/** Does of brio_ranks_new what needs no other rank, so that its failure is known to none.
+ *  transport  one that brio_exchange_take checked. */
 brio_status brio_ranks_prepare(brio_context *ctx, const brio_transport *transport, brio_ranks **out);
 /** Does the rest; collective. */
 brio_status brio_ranks_open(brio_ranks *r, const brio_ranks_options *options);

@@ -1,4 +1,4 @@
-/* A transport for ranks that are threads of a test, whose letters may come in any order. */
+/* A transport for ranks that are threads of a test, whose letters may come in any order; and memory of such a rank. */
 #ifndef BRIO_TESTS_POST_OFFICE_H
 #define BRIO_TESTS_POST_OFFICE_H
 
@@ -29,6 +29,7 @@ typedef struct {
     uint64_t begun, ended;
     uint8_t *held[MOST_RANKS]; /* what the last end gave */
     brio_rng rng;
+    uint64_t room[MOST_RANKS * BRIO_TRANSPORT_ROOM / 8]; /* of the transport */
 } postman;
 
 static inline int post_begin(void *user, const brio_letter *letters) {
@@ -72,6 +73,35 @@ static inline int post_end(void *user, brio_letter *received) {
         received[i - 1] = received[j], received[j] = swap;
     }
     return 0;
+}
+
+/* --- a rank's memory --- */
+
+/* Allocations until one fails, that one included; 0: none does. Of one thread. */
+typedef struct {
+    size_t left;
+    bool for_good; /* those after it fail, too */
+    bool refused;  /* one has failed */
+} ration;
+
+static inline bool ration_gives(ration *r) {
+    if (!r->left || --r->left) return true;
+    r->left = r->for_good;
+    r->refused = true;
+    return false;
+}
+
+static inline void *ration_alloc(size_t size, void *user) {
+    return ration_gives(user) ? malloc(size) : NULL;
+}
+
+static inline void *ration_realloc(void *block, size_t size, void *user) {
+    return ration_gives(user) ? realloc(block, size) : NULL;
+}
+
+static inline void ration_free(void *block, void *user) {
+    (void)user;
+    free(block);
 }
 
 #endif

@@ -51,7 +51,7 @@ typedef struct {
     postman man;
     brio_thread thread;
     brio_status status, first_failure;
-    size_t allocations; /* until one fails; 0: none does */
+    ration memory;
     brio_tiles_stats facts;
     brio_ranks_traffic traffic;
     uint64_t checksum, parts; /* parts: a sum over the indices of the vertices of all tetrahedra */
@@ -141,32 +141,15 @@ static int starve(const char *step, double fraction, void *user) {
 
 /* --- a rank's memory --- */
 
-static bool gives(member *m) {
-    return m->allocations == 0 || --m->allocations > 0;
-}
-
-static void *give(size_t size, void *user) {
-    return gives(user) ? malloc(size) : NULL;
-}
-
-static void *give_more(void *block, size_t size, void *user) {
-    return gives(user) ? realloc(block, size) : NULL;
-}
-
-static void take_back(void *block, void *user) {
-    (void)user;
-    free(block);
-}
-
 /* Lets an allocation of a step fail, if the plan says so. */
 static void arm(member *m, const char *step) {
     const plan *p = m->plan;
     bool here = p->allocation && p->fails == m->man.rank && step && !strcmp(step, p->step);
-    m->allocations = here ? p->allocation : 0;
+    m->memory.left = here ? p->allocation : 0;
 }
 
 static brio_context *context_of(member *m) {
-    const brio_allocator memory = {give, give_more, take_back, m};
+    const brio_allocator memory = {ration_alloc, ration_realloc, ration_free, &m->memory};
     brio_context *ctx;
     if (!m->plan->allocation) return new_context();
     EXPECT(brio_context_new(&memory, &ctx) == BRIO_OK);
@@ -249,11 +232,14 @@ static void work(void *argument) {
                         .host = "here",
                         .user = &m->man,
                         .begin = post_begin,
-                        .end = post_end};
+                        .end = post_end,
+                        .room = m->man.room};
     brio_ranks_options o = {
         .size = sizeof o, .scratch = folder, .tiles = m->plan->tiles, .key = m->plan->key, .stars = m->plan->cells};
     brio_context_set_threads(ctx, 1);
+    arm(m, "new");
     m->status = brio_ranks_new(ctx, &t, &o, &r);
+    arm(m, NULL);
     if (m->status == BRIO_OK) m->status = run_member(ctx, m, r);
     snprintf(m->sentence, sizeof m->sentence, "%s", m->status == BRIO_OK ? "" : brio_message(ctx));
     brio_ranks_free(r);
@@ -579,6 +565,22 @@ static void a_step_that_failed_anywhere_can_be_made_again(void) {
     }
 }
 
+/* A rank without memory for its first words let the others wait for ever. */
+static void a_rank_that_cannot_begin_ends_all(void) {
+    for (int rank = 0; rank < 3; rank++) {
+        plan p = {.n = make_points(6, 100, 0, false), .ranks = 3, .fails = rank, .step = "new", .tiles = 2};
+        char begin[32];
+        snprintf(begin, sizeof begin, "rank %d on here: ", rank);
+        for (p.allocation = 1;; p.allocation++) {
+            member m = run_ranks(&p);
+            if (m.status == BRIO_OK) break;
+            EXPECT(m.status == BRIO_ERR_NO_MEMORY && !strncmp(m.sentence, begin, strlen(begin)), "%s", m.sentence);
+        }
+        EXPECT(p.allocation > 7, "rank %d: %zu", rank, p.allocation);
+        EXPECT(files_left() == 0);
+    }
+}
+
 /* Ranks that wait for one that fails in the middle of the cells end with its sentence, whichever rank it is. */
 static void a_rank_that_ends_its_cells_ends_all(void) {
     for (int rank = 0; rank < 4; rank++) {
@@ -621,6 +623,7 @@ SUITE(test_ranks) {
     RUN(a_rank_without_memory_ends_all_and_they_go_on);
     RUN(a_call_that_failed_can_be_made_again);
     RUN(a_step_that_failed_anywhere_can_be_made_again);
+    RUN(a_rank_that_cannot_begin_ends_all);
     RUN(a_rank_that_ends_its_cells_ends_all);
     RUN(cells_of_no_points);
     RUN(a_bad_point_of_one_rank_ends_all);

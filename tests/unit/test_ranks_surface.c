@@ -13,7 +13,8 @@ typedef struct {
     uint64_t seed; /* of the messages' order, and of the surface */
     bool scratch;  /* the arrays of the surface are in files */
     int poor;      /* the rank whose memory ends, or -1 */
-    size_t memory; /* that it has */
+    size_t memory; /* that it has; 0: `ration` says what it gets */
+    ration ration;
 } plan;
 
 typedef struct {
@@ -23,6 +24,7 @@ typedef struct {
     brio_status status;
     brio_mesh *mesh; /* of rank 0 */
     brio_context *ctx;
+    ration ration;
     brio_team_facts facts;
     char sentence[512];
 } member;
@@ -32,7 +34,7 @@ static brio_status lead(member *m, const brio_transport *t, const brio_ranks_opt
     const brio_surface_options options = {.size = sizeof options, .seed = m->plan->seed};
     brio_team_of_ranks *team;
     brio_status status = brio_ranks_lead(m->ctx, t, o, &team);
-    EXPECT(status == BRIO_OK, "%s", brio_message(m->ctx));
+    if (status != BRIO_OK) return status;
     status = brio_surface(m->ctx, points, m->plan->n, &options, &m->mesh, NULL);
     m->facts = *brio_ranks_led(team);
     return brio_ranks_dismiss(team, status, NULL);
@@ -47,17 +49,26 @@ static void work(void *argument) {
                         .host = "here",
                         .user = &m->man,
                         .begin = post_begin,
-                        .end = post_end};
+                        .end = post_end,
+                        .room = m->man.room};
     brio_ranks_options o = {.size = sizeof o, .scratch = folder, .tiles = p->tiles};
     brio_context_set_threads(m->ctx, 1);
     if (p->scratch && m->man.rank == 0) EXPECT(brio_context_set_scratch(m->ctx, folder) == BRIO_OK);
-    if (p->poor == m->man.rank) brio_context_set_memory_limit(m->ctx, p->memory);
+    if (p->poor == m->man.rank) brio_context_set_memory_limit(m->ctx, p->memory), m->ration = p->ration;
     m->status = m->man.rank ? brio_ranks_serve(m->ctx, &t, &o) : lead(m, &t, &o);
+    m->ration.left = 0;
     snprintf(m->sentence, sizeof m->sentence, "%s", m->status == BRIO_OK ? "" : brio_message(m->ctx));
     for (int i = 0; i < p->ranks; i++) free(m->man.held[i]);
 }
 
-/* Runs all ranks. Returns the first, whose mesh and context are the caller's. */
+/* Whether the sentence of a failure names a rank once: the one that is poor, or else the leader. */
+static bool names_one_rank(const plan *p, const member *m) {
+    char name[32];
+    snprintf(name, sizeof name, "rank %d on here: ", p->poor < 0 ? 0 : p->poor);
+    return m->status == BRIO_OK || (!strncmp(m->sentence, name, strlen(name)) && !strstr(m->sentence + 1, "rank "));
+}
+
+/* Runs all ranks. Returns the first, whose mesh and context are the caller's; its ration is that of the poor rank. */
 static member run_ranks(const plan *p) {
     static post office;
     static member members[MOST_RANKS];
@@ -65,20 +76,23 @@ static member run_ranks(const plan *p) {
     brio_mutex_new(&office.lock);
     brio_condition_new(&office.changed);
     for (int i = 0; i < p->ranks; i++) {
-        members[i] = (member){.plan = p,
-                              .ctx = new_context(),
-                              .man = {.post = &office, .rank = i, .rng = brio_rng_new(p->seed + (uint64_t)i)}};
+        const brio_allocator memory = {ration_alloc, ration_realloc, ration_free, &members[i].ration};
+        members[i] =
+            (member){.plan = p, .man = {.post = &office, .rank = i, .rng = brio_rng_new(p->seed + (uint64_t)i)}};
+        EXPECT(brio_context_new(p->ration.left ? &memory : NULL, &members[i].ctx) == BRIO_OK);
         EXPECT(brio_thread_start(&members[i].thread, work, &members[i], 1 << 21));
     }
     for (int i = 0; i < p->ranks; i++) brio_thread_join(&members[i].thread);
+    EXPECT(names_one_rank(p, &members[0]), "rank %d: %s", p->poor, members[0].sentence);
     for (int i = 1; i < p->ranks; i++) {
-        EXPECT(members[i].status == members[0].status && strstr(members[i].sentence, members[0].sentence),
+        EXPECT(members[i].status == members[0].status && !strcmp(members[i].sentence, members[0].sentence),
                "rank 0: %s; rank %d: %s", members[0].sentence, i, members[i].sentence);
         EXPECT(brio_context_memory(members[i].ctx) == 0);
         brio_context_free(members[i].ctx);
     }
     brio_condition_free(&office.changed);
     brio_mutex_free(&office.lock);
+    if (p->poor > 0) members[0].ration = members[p->poor].ration;
     return members[0];
 }
 
@@ -162,7 +176,7 @@ static void a_rank_without_memory_ends_all(void) {
 
 /* A rank whose memory ended before it could say so let the others wait for ever. */
 static void a_rank_without_any_memory_let_others_wait(void) {
-    for (size_t memory = 2400; memory < 7000; memory += SHORT_TESTS ? 300 : 50)
+    for (size_t memory = 50; memory < 7000; memory += SHORT_TESTS ? 300 : 50)
         for (int poor = 0; poor < 3; poor++) {
             plan p = {.n = make_points(3, 200, 2), .ranks = 3, .tiles = 2, .poor = poor, .memory = memory};
             member m = run_ranks(&p);
@@ -170,6 +184,32 @@ static void a_rank_without_any_memory_let_others_wait(void) {
                    m.sentence);
             drop(&m);
         }
+}
+
+/* Every allocation of a rank fails, once or with all that come after it: counted, and then sampled. */
+static void starve(plan *p) {
+    for (p->poor = 0; p->poor < p->ranks; p->poor++) {
+        bool refused = true;
+        size_t n;
+        for (n = 1; refused; n += 1 + n / (SHORT_TESTS ? 8 : 64)) {
+            p->ration.left = n;
+            member m = run_ranks(p);
+            refused = m.ration.refused;
+            EXPECT(m.status == (refused ? BRIO_ERR_NO_MEMORY : BRIO_OK), "allocation %zu of rank %d: %s", n, p->poor,
+                   m.sentence);
+            EXPECT((m.status == BRIO_OK) == (m.mesh != NULL));
+            drop(&m);
+        }
+        EXPECT(n > 200, "%zu allocations of rank %d", n, p->poor);
+    }
+}
+
+static void any_allocation_of_any_rank_ends_all(void) {
+    for (int i = 0; i < 4; i++) {
+        plan p = {.n = make_points(3, 150, 2), .ranks = 2 + i % 2, .tiles = 2, .seed = (uint64_t)i};
+        p.ration.for_good = i / 2;
+        starve(&p);
+    }
 }
 
 /* Tiles of one process would take the place of the ranks. */
@@ -205,6 +245,58 @@ static void the_failure_of_the_leader_ends_all(void) {
     drop(&m);
 }
 
+/* A transport of one rank, which fails after some calls, and is not called again. */
+typedef struct {
+    postman man;
+    size_t calls; /* until it fails */
+    bool failed;
+} brittle;
+
+static bool breaks(brittle *b) {
+    EXPECT(!b->failed, "a transport that failed is called");
+    b->failed = b->calls-- == 0;
+    return b->failed;
+}
+
+static int begin_or_break(void *user, const brio_letter *letters) {
+    brittle *b = user;
+    return breaks(b) ? BRIO_ERR_CANCELLED : post_begin(&b->man, letters);
+}
+
+static int end_or_break(void *user, brio_letter *received) {
+    brittle *b = user;
+    return breaks(b) ? BRIO_ERR_CANCELLED : post_end(&b->man, received);
+}
+
+static void a_transport_that_breaks_anywhere_ends_the_leader(void) {
+    size_t n = make_points(3, 150, 2), calls = 0;
+    bool broken = true;
+    for (; broken; calls += 1 + calls / 16) {
+        static post office;
+        office = (post){.ranks = 1};
+        brittle b = {.man.post = &office, .calls = calls};
+        plan p = {.n = n, .ranks = 1};
+        member m = {.plan = &p, .ctx = new_context()};
+        const brio_transport t = {
+            .size = sizeof t, .ranks = 1, .host = "here", .user = &b, .begin = begin_or_break, .end = end_or_break};
+        const brio_ranks_options o = {.size = sizeof o, .scratch = folder, .tiles = 2};
+        brio_mutex_new(&office.lock);
+        brio_condition_new(&office.changed);
+        brio_status status = lead(&m, &t, &o);
+        broken = b.failed;
+        EXPECT(status == (broken ? BRIO_ERR_CANCELLED : BRIO_OK), "call %zu: %s", calls, brio_message(m.ctx));
+        EXPECT(!broken || !strcmp(brio_message(m.ctx), "rank 0 on here: cancelled while it waited for other ranks"),
+               "call %zu: %s", calls, brio_message(m.ctx));
+        free(b.man.held[0]);
+        for (int i = 0; i < BOXES; i++)
+            if (office.box[i][0][0].full) free(office.box[i][0][0].bytes);
+        brio_condition_free(&office.changed);
+        brio_mutex_free(&office.lock);
+        drop(&m);
+    }
+    EXPECT(calls > 40, "%zu", calls);
+}
+
 static void teams_have_neither_stars_nor_a_key(void) {
     brio_context *ctx = new_context();
     postman man = {0};
@@ -228,8 +320,10 @@ SUITE(test_ranks_surface) {
     RUN(cuts_are_divided_among_ranks);
     RUN(a_rank_without_memory_ends_all);
     RUN(a_rank_without_any_memory_let_others_wait);
+    RUN(any_allocation_of_any_rank_ends_all);
     RUN(ranks_have_their_own_tiles);
     RUN(the_failure_of_the_leader_ends_all);
+    RUN(a_transport_that_breaks_anywhere_ends_the_leader);
     RUN(teams_have_neither_stars_nor_a_key);
     rmdir(folder);
     return harness_end();

@@ -224,7 +224,7 @@ ENDS_WITH(brio_faces_part, faces);
 ENDS_WITH(brio_parts_options, high);
 ENDS_WITH(brio_parts_stats, scratch_bytes);
 ENDS_WITH(brio_ranks_options, key);
-ENDS_WITH(brio_transport, end);
+ENDS_WITH(brio_transport, room);
 ENDS_WITH(brio_ranks_traffic, waited_seconds);
 ENDS_WITH(brio_tile_part, num_tetrahedra);
 ENDS_WITH(brio_periodic_options, reserved_more);

@@ -25,8 +25,14 @@ brio_mpi *brio_mpi_new(MPI_Comm comm);
  *  the thread sleeps between its looks at the network, so that ranks may be more than processors. */
 brio_transport brio_mpi_transport(brio_mpi *m);
 
-/** While the transport waits, stop(user) is asked now and then: another result than 0 makes the exchange fail. */
+/** While the transport waits, stop(user) is asked now and then. After another result than 0 it tells all other ranks,
+ *  and waits for them for at most 0.8 s more, all exchanges together: if they fail meanwhile, all ranks end alike. Then
+ *  the exchange fails with BRIO_ERR_CANCELLED. */
 void brio_mpi_set_stop(brio_mpi *m, int (*stop)(void *user), void *user);
+
+/** Returns 1 if another rank told this one that it was asked to stop, else 0: for the callback of
+ *  brio_context_set_progress, so that this rank ends, too. */
+int brio_mpi_stopped(brio_mpi *m);
 
 /** Returns 1 if an exchange failed on this rank, or 0. Other ranks may wait for it then: MPI_Abort ends them. */
 int brio_mpi_has_failed(const brio_mpi *m);
