@@ -22,11 +22,11 @@ def prepare(work):
         ball /= np.linalg.norm(ball, axis=1)[:, None]
         return lambda: brio.reconstruct(ball, work, threads=1)
     if work == "tiles":
-        many = rng.random((1_000_000, 3))
+        many = rng.random((300_000, 3))
         return lambda: brio.TiledDelaunay(many, scratch=tempfile.gettempdir(), tiles=4, threads=1)
     if work == "cells-in-tiles":
-        tri = brio.TiledDelaunay(rng.random((100_000, 3)), scratch=tempfile.gettempdir(), tiles=4, stars=True)
-        return lambda: tri.cells(len)
+        tri = brio.TiledDelaunay(rng.random((40_000, 3)), scratch=tempfile.gettempdir(), tiles=4, stars=True)
+        return lambda: [tri.cells(len) for _ in range(9)]
     d = 2 if work in ("plane", "natural2") else 3
     queries, tri = rng.random((2_000_000, d)), brio.Delaunay(rng.random((1000, d)))
     if work == "plane":

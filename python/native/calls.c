@@ -28,7 +28,7 @@ static pooled_context *take_idle(module_state *state, int empty) {
 }
 
 /* Makes a context that is busy. */
-static pooled_context *context_new(module_state *state, int reserved) {
+static pooled_context *context_new(module_state *state) {
     pooled_context *context = calloc(1, sizeof *context);
     if (!context || brio_context_new(NULL, &context->ctx) != BRIO_OK) {
         free(context);
@@ -36,7 +36,6 @@ static pooled_context *context_new(module_state *state, int reserved) {
         return NULL;
     }
     context->busy = 1;
-    context->reserved = reserved;
     PyThread_acquire_lock(state->lock, WAIT_LOCK);
     context->next = state->contexts;
     state->contexts = context;
@@ -46,7 +45,7 @@ static pooled_context *context_new(module_state *state, int reserved) {
 
 pooled_context *context_take(module_state *state, int empty) {
     pooled_context *context = take_idle(state, empty);
-    return context ? context : context_new(state, 0);
+    return context ? context : context_new(state);
 }
 
 /* Takes a reserved context, once what is being freed in it is freed. */
@@ -154,8 +153,10 @@ int call_begin(call *c, module_state *state, int threads, PyObject *progress) {
 
 int call_begin_reserving(call *c, module_state *state, int threads, PyObject *progress) {
     if (read_call(c, state, threads, progress)) return -1;
-    if (!(c->context = context_new(state, 1))) return -1;
-    return prepare(c, threads);
+    if (!(c->context = context_take(state, 1))) return -1;
+    if (prepare(c, threads)) return -1;
+    c->context->reserved = 1;
+    return 0;
 }
 
 int call_begin_reserved(call *c, module_state *state, pooled_context *reserved, int threads, PyObject *progress) {

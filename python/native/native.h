@@ -61,7 +61,7 @@ typedef struct {
  *  progress  a callable or None; of a call with limits a tuple of that, a folder for scratch files, as bytes, or None,
  *            and the most bytes that the call may hold, or 0. The caller keeps it until the end of the call. */
 int call_begin(call *c, module_state *state, int threads, PyObject *progress);
-/** Begins a call in a new context, which is reserved for what is made. Who frees that sets `reserved` to 0; a call that
+/** Begins a call in a context without objects, which is reserved for what is made. Who frees that sets `reserved` to 0; a call that
  *  makes nothing does so before its end. */
 int call_begin_reserving(call *c, module_state *state, int threads, PyObject *progress);
 /** Begins a call in a reserved context, in which there is no other call. */

@@ -106,9 +106,10 @@ static PyObject *tiles_close(PyObject *module, PyObject *object) {
     if (!d->t || d->process != process_now()) Py_RETURN_NONE;
     d = begin(&c, state_of(module), object, 0, Py_None);
     if (!d) return NULL;
-    brio_tiles_free(d->t);
+    brio_status status;
+    CALL(c, status, (brio_tiles_free(d->t), BRIO_OK));
     d->t = NULL;
-    if (end(&c, d, BRIO_OK)) return NULL;
+    if (end(&c, d, status)) return NULL;
     Py_RETURN_NONE;
 }
 

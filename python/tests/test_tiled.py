@@ -289,6 +289,18 @@ print(sum(len(part.simplices) for part in tri) == tri.facts["simplices"], len(pa
 """, str(folder)).split() == ["True", "True"]
 
 
+@pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="counts threads where Linux lists them")
+def test_contexts_are_used_again(folder):
+    """Each context of the library has threads of its own, which stay."""
+    counts = []
+    for k in range(12):
+        with brio.TiledDelaunay(CLOUD, scratch=folder, tiles=1, threads=3) as tri:
+            tri.part(0)
+        brio.Delaunay(CLOUD, threads=3, max_memory=1e8)
+        counts.append(len(os.listdir("/proc/self/task")))
+    assert counts[-1] == counts[2]
+
+
 # --- functions of the user, threads, progress ---
 
 
