@@ -432,7 +432,7 @@ static brio_status check_method(run *r, int method) {
         {"self-intersections", a->self_intersections, NULL, false},
         {"left-out", a->left_out != NULL, NULL, false},
         {"explain", a->explain, "explanation", false},
-        {"tiles", a->tiles > 0 && (a->curves || method != CURVES), "tiles",
+        {"tiles", a->tiles > 0 && (method != CURVES || method_of(a) == CURVES), "tiles",
          false}, /* points may prove to be in a plane */
         {"normals", a->crust.normals != NULL, "normals", false},
         {"from", a->evidence.from != NULL, "evidence", false},

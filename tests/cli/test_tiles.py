@@ -160,6 +160,7 @@ class Tiles(CliTest):
                                (("--tiles", "2", "--scratch", scratch, "--method", "cocone"), "--tiles is for --method labeled-delaunay, and the method is cocone"),
                                (("--tiles", "2", "--scratch", scratch, "--sharp"), "the method is power-crust"),
                                (("--tiles", "2", "--scratch", scratch, "--curves"), "the method is curves"),
+                               (("--tiles", "2", "--scratch", scratch, "--method", "curves"), "the method is curves"),
                                (("--tiles", "70000", "--scratch", scratch), "70000 are more than 65536"),
                                (("--tiles", "0", "--scratch", scratch), "tiles")):
             self.assertIn(sentence, self.expect(1, "surface", path, "-o", out, *more).err)
