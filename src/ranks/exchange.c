@@ -22,13 +22,13 @@ _Static_assert(sizeof(last_words) <= sizeof(((brio_exchange *)0)->last_words), "
 /* --- life --- */
 
 brio_status brio_exchange_take(brio_context *ctx, const brio_transport *given, brio_transport *transport) {
-    *transport = (brio_transport){0};
-    BRIO_FORWARD(BRIO_TAKE(ctx, brio_transport, given, transport));
-    const brio_transport *t = transport;
+    brio_transport t = {0};
+    *transport = t;
+    BRIO_FORWARD(BRIO_TAKE(ctx, brio_transport, given, &t));
     BRIO_EXPECT(ctx,
-                t->begin && t->end && t->host && t->ranks > 0 && t->ranks <= MOST_RANKS && t->rank >= 0 &&
-                    t->rank < t->ranks,
-                BRIO_ERR_ARGUMENT, "a transport of rank %d of %d", t->rank, t->ranks);
+                t.begin && t.end && t.host && t.ranks > 0 && t.ranks <= MOST_RANKS && t.rank >= 0 && t.rank < t.ranks,
+                BRIO_ERR_ARGUMENT, "a transport of rank %d of %d", t.rank, t.ranks);
+    *transport = t;
     return BRIO_OK;
 }
 

@@ -45,7 +45,7 @@ typedef struct {
     double waited;
 } brio_exchange;
 
-/** Takes the caller's transport, and checks it. */
+/** Takes the caller's transport, and checks it.   transport  zero, without room, on failure. */
 brio_status brio_exchange_take(brio_context *ctx, const brio_transport *given, brio_transport *transport);
 
 /** Prepares exchanges. A rank where that fails calls brio_exchange_refuse. */

@@ -208,7 +208,7 @@ static brio_status team_new(brio_context *ctx, const brio_transport *transport, 
     brio_transport how;
     brio_status status = BRIO_OK;
     *out = NULL;
-    BRIO_FORWARD(brio_exchange_take(ctx, transport, &how));
+    BRIO_TRY(brio_exchange_take(ctx, transport, &how));
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, t, 1));
     t->ctx = ctx;
     t->transport = how;

@@ -1,10 +1,12 @@
 """test_mpi_faults.py BUILD: jobs of brio-mpi that fail. One sentence ends all ranks, nothing is half-written, and the same command
 goes on to the same result.
 
-BRIO_LONG=1 kills 50 jobs instead of 5, and starves a rank of memory at more places."""
+BRIO_LONG=1 kills 50 jobs instead of 5, interrupts 72 instead of 9, and starves a rank of memory at more places."""
 
 import os
+import pathlib
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -188,6 +190,79 @@ class Faults(MpiCase):
         self.assertGreater(ended, 0)
         self.mpi(3, path, "-o", out, command="surface", check=False)
         self.assertEqual(out.read_bytes(), expected)
+
+    def test_a_rank_without_any_memory_ends_all(self):
+        # it had no room to say so, and the others waited for ever
+        path = self.generate("scan", 800)
+        for command, output, rank, memory in (("surface", "out.ply", 0, 10), ("surface", "out.ply", 1, 10),
+                                              ("surface", "out.ply", 1, 2200), ("delaunay", "out.pvtu", 1, 10)):
+            poor = self.of_rank(rank, 'set -- "$@" --max-memory %d' % memory)
+            result = self.fails(4, "brio-mpi: rank %d on " % rank, path, "-o", self.folder / output, command=command, program=poor)
+            self.assertEqual(len(re.findall(r"rank \d on ", result.stderr)), 1, result.stderr)
+        self.assertEqual((self.names("out"), os.listdir(self.scratch)), ([], []))
+
+    def test_one_rank_with_another_command_line_ends_all(self):
+        path = self.generate("cube", 300)
+        self.fails(1, "rank 1 on ", path, program=self.of_rank(1, 'set -- "$@" --nothing'))
+        self.mpi(3, path, program=self.of_rank(1, 'set -- "$@" --threads 1'))
+
+    # --- ranks that are interrupted ---
+
+    def wait_until_they_catch(self, job, ranks):
+        """Waits until all ranks of a job have their handler of SIGINT. Returns their processes in order, or those that are left."""
+        end = time.monotonic() + 60
+        while job.poll() is None and time.monotonic() < end:
+            found = self.ranks_of(job)
+            try:
+                caught = [int(line.split()[1], 16) for pid in found
+                          for line in pathlib.Path("/proc/%d/status" % pid).read_text(encoding="ascii").splitlines()
+                          if line.startswith("SigCgt")]
+            except OSError:
+                continue
+            if len(caught) == ranks and all(mask >> (signal.SIGINT - 1) & 1 for mask in caught):
+                return found
+            time.sleep(0.005)
+        return []
+
+    def interrupt(self, line, ranks, share, whole, which):
+        """Runs a job, and interrupts mpirun (`which` is None) or a rank after this share of its time. Returns what it says."""
+        with subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as job:
+            start = time.monotonic()
+            pids = self.wait_until_they_catch(job, ranks)
+            time.sleep(max(0, share * (whole - (time.monotonic() - start))))
+            try:
+                os.kill(pids[which] if pids and which is not None else job.pid, signal.SIGINT)
+            except ProcessLookupError:
+                pass
+            out, errors = job.communicate(timeout=60)
+            return subprocess.CompletedProcess(line, job.returncode, out, errors)
+
+    def interrupted(self, command, path, out, keeps):
+        """Interrupts jobs at some moments: each ends with one sentence and nothing of an output, or was complete."""
+        line, rng = self.line(3, path, "-o", out, command=command), random.Random(command)
+        start = time.monotonic()
+        subprocess.run(line, check=True, capture_output=True)
+        whole, count = time.monotonic() - start, 0
+        for which in (None, 0, 1, 2) * 6 if LONG else (None, 0, 1):
+            for path in self.folder.glob(out.stem + "*"):
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+            result = self.interrupt(line, 3, rng.uniform(0, 0.9), whole, which)
+            facts = facts_of(result)
+            count += "error" in facts
+            if "error" in facts:
+                self.assertEqual((facts["error"], facts["exit"]), ("interrupted", 130), result.stderr)
+                said = [row for row in result.stderr.splitlines() if row.startswith("brio-mpi:")]
+                self.assertEqual(said, ["brio-mpi: interrupted"])
+                self.assertEqual(self.names(out.stem), [], (command, which))
+            self.assertTrue(keeps or not os.listdir(self.scratch), (command, which, result.stderr))
+        self.assertGreater(count, 0)
+
+    def test_jobs_that_are_interrupted_end_with_one_sentence(self):
+        # they said "the exchange with other ranks failed", and each rank its own
+        self.interrupted("surface", self.generate("scan", 16000, "scan.ply"), self.folder / "out.ply", False)
+        cube = self.generate("cube", 60000, "cube.ply")
+        self.interrupted("delaunay", cube, self.folder / "out.pvtu", True)
+        self.interrupted("voronoi", cube, self.folder / "out.npy", True)
 
     # --- ranks that are killed ---
 

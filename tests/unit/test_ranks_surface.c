@@ -191,7 +191,7 @@ static void starve(plan *p) {
     for (p->poor = 0; p->poor < p->ranks; p->poor++) {
         bool refused = true;
         size_t n;
-        for (n = 1; refused; n += 1 + n / (SHORT_TESTS ? 8 : 64)) {
+        for (n = 1; refused; n += 1 + n / (BRIEF_TESTS ? 4 : SHORT_TESTS ? 8 : 64)) {
             p->ration.left = n;
             member m = run_ranks(p);
             refused = m.ration.refused;
@@ -205,7 +205,7 @@ static void starve(plan *p) {
 }
 
 static void any_allocation_of_any_rank_ends_all(void) {
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i += BRIEF_TESTS ? 3 : 1) {
         plan p = {.n = make_points(3, 150, 2), .ranks = 2 + i % 2, .tiles = 2, .seed = (uint64_t)i};
         p.ration.for_good = i / 2;
         starve(&p);
