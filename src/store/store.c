@@ -59,11 +59,21 @@ void brio_store_clear(brio_store_folder *f) {
     if (f->path) brio_empty_folder(f->path, LOCK);
 }
 
+/* Returns whether something with the name of a folder is not of a store: there is no lock, and it is no empty folder,
+ * which a process leaves that is killed before it locks it. */
+static bool is_in_the_way(const char *parent, const char *name) {
+    char path[BRIO_PATH_MOST], lock[BRIO_PATH_MOST];
+    if (snprintf(path, sizeof path, "%s/%s", parent, name) >= BRIO_PATH_MOST) return false;
+    if (snprintf(lock, sizeof lock, "%s/%s", path, LOCK) >= BRIO_PATH_MOST) return false;
+    return brio_is_there(path) && !brio_is_there(lock) && !brio_remove_folder(path);
+}
+
 brio_status brio_store_begin_free(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out) {
     char numbered[64];
     bool in_use = true; /* by a process that may be gone by now */
     for (unsigned number = 1; number <= MOST_AT_ONCE && in_use; number++) {
         snprintf(numbered, sizeof numbered, "%s-%u", name, number);
+        if (number < MOST_AT_ONCE && is_in_the_way(parent, numbered)) continue;
         brio_status status = begin(ctx, parent, numbered, out, &in_use);
         if (status != BRIO_OK && (status != BRIO_ERR_OPEN || !in_use || number == MOST_AT_ONCE)) return status;
     }

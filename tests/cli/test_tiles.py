@@ -180,6 +180,18 @@ class Tiles(CliTest):
         self.facts("surface", self.path("scan.ply"), "-o", self.path("o.ply"), "--tiles", "4", "--scratch", self.scratch())
         self.assertEqual(os.listdir(self.scratch()), [])  # what the killed ones left, too
 
+    def test_files_in_a_folder_that_is_no_store_were_removed(self):
+        mine = os.path.join(self.scratch(), "brio-tiles-1")
+        os.mkdir(mine)
+        with open(os.path.join(mine, "mine.txt"), "w", encoding="ascii") as f:
+            f.write("mine")
+        with open(os.path.join(self.scratch(), "brio-tiles-2"), "w", encoding="ascii") as f:
+            f.write("a file")
+        os.mkdir(os.path.join(self.scratch(), "brio-tiles-3"))  # of a process that was killed before it locked it
+        self.facts("surface", self.rows("a.csv", 500), "-o", self.path("o.ply"), "--tiles", "2", "--scratch", self.scratch())
+        self.assertEqual(sorted(os.listdir(self.scratch())), ["brio-tiles-1", "brio-tiles-2"])
+        self.assertEqual(os.listdir(mine), ["mine.txt"])
+
     def test_surfaces_are_counted_before_the_work(self):
         self.rows("a.csv", 60000)
         limits = ("--scratch", self.scratch(), "-o", self.path("o.ply"), "--max-memory", "11M", "--tiles")

@@ -57,6 +57,7 @@ static void work(void *argument) {
     if (p->poor == m->man.rank) brio_context_set_memory_limit(m->ctx, p->memory), m->ration = p->ration;
     m->status = m->man.rank ? brio_ranks_serve(m->ctx, &t, &o) : lead(m, &t, &o);
     m->ration.left = 0;
+    EXPECT((m->ctx->scratch != NULL) == (p->scratch && m->man.rank == 0)); /* as it was, after a failure too */
     snprintf(m->sentence, sizeof m->sentence, "%s", m->status == BRIO_OK ? "" : brio_message(m->ctx));
     for (int i = 0; i < p->ranks; i++) free(m->man.held[i]);
 }
@@ -164,7 +165,7 @@ static void a_rank_without_memory_ends_all(void) {
     size_t failed = 0, ended = 0;
     for (uint64_t trial = 0; trial < (uint64_t)(SHORT_TESTS ? 16 : 200); trial++) {
         plan p = {.n = make_points(3, 900, 2), .ranks = 3, .tiles = 2, .seed = trial, .poor = (int)(trial % 3)};
-        p.memory = (size_t)20000 << trial % 13;
+        p.memory = (size_t)20000 << trial % 13, p.scratch = trial % 2;
         member m = run_ranks(&p);
         EXPECT(m.status == BRIO_OK || m.status == BRIO_ERR_NO_MEMORY, "%s", m.sentence);
         EXPECT((m.status == BRIO_OK) == (m.mesh != NULL));
@@ -231,6 +232,8 @@ static void ranks_have_their_own_tiles(void) {
     EXPECT(brio_surface(ctx, points, make_points(3, 500, 2), &options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(strstr(brio_message(ctx), "ranks triangulate for this surface"), "%s", brio_message(ctx));
     EXPECT(brio_ranks_dismiss(team, BRIO_OK, NULL) == BRIO_OK);
+    EXPECT(brio_surface(ctx, points, make_points(8, MOST, 0), &options, &mesh, NULL) == BRIO_OK); /* no ranks any more */
+    brio_mesh_free(mesh);
     free(man.held[0]);
     brio_condition_free(&office.changed);
     brio_mutex_free(&office.lock);

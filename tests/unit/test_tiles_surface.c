@@ -165,6 +165,19 @@ static void shares_of_tiles_that_are_too_large_are_refused_before_the_work(void)
     brio_context_free(ctx);
 }
 
+/* A handle of a facet has room for 2^30 tetrahedra, infinite ones among them. */
+static void more_tetrahedra_than_handles_are_refused(void) {
+    brio_context *ctx = new_context();
+    const uint64_t first[] = {0, 5, (UINT64_C(1) << 30) - 7};
+    brio_gather g;
+    brio_context_set_memory_limit(ctx, 1000000);
+    EXPECT(brio_gather_new(ctx, first, 2, 7, &g) == BRIO_ERR_TOO_LARGE, "%s", brio_message(ctx));
+    brio_gather_free(&g);
+    EXPECT(brio_gather_new(ctx, first, 2, 6, &g) == BRIO_ERR_NO_MEMORY, "%s", brio_message(ctx));
+    brio_gather_free(&g);
+    brio_context_free(ctx);
+}
+
 /* --- failures --- */
 
 static brio_status make_a_surface(brio_context *ctx, size_t n) {
@@ -228,6 +241,7 @@ SUITE(test_tiles_surface) {
     RUN(points_without_a_solid_have_the_same_sentence);
     RUN(what_tiles_have_not_is_refused);
     RUN(shares_of_tiles_that_are_too_large_are_refused_before_the_work);
+    RUN(more_tetrahedra_than_handles_are_refused);
     RUN(no_memory_is_a_status);
     RUN(cancelled_surfaces_leave_nothing);
     rmdir(folder);
