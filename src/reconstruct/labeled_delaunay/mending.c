@@ -15,17 +15,25 @@
  * move at a sample depends on the labels of the stars of the star's samples. So what happens at a sample depends on
  * samples at most two edges away that have less hashes, and on no number of a sample or a tetrahedron.
  *
+ * Where arrays are in scratch files, each turn in the order of hashes would read pages somewhere else. There many turns
+ * go along the samples, which are along a curve, each after those of less hashes that are at most two edges away. So
+ * every turn finds what it would find in the order of hashes.
+ *
  * Based on: Jones, Plassmann. A parallel graph coloring heuristic. SIAM J. Sci. Comput. 1993 (hashes as priorities). */
 #include "reconstruct/labeled_delaunay/mending.h"
 #include "base/memory.h"
 #include "base/sort.h"
 #include "base/team.h"
 #include "reconstruct/labeled_delaunay/hash_order.h"
+#include <assert.h>
 #include <string.h>
 
 /* MOST: tetrahedra that are flipped together. PRICES: the price is a quarter of a log-odds at first and doubles. SMALL:
  * in stars of more tetrahedra, single flips are not tried. All chosen. */
 enum { MOST = 64, PRICES = 9, SMALL = 96 };
+
+/* Fewer turns go in the order of hashes in any case. Chosen. */
+enum { MANY = 64 };
 
 /* Chosen. MOST_PLACES: threads that look at all samples: each has two bytes a tetrahedron, all together at most 32
  * bytes a tetrahedron. */
@@ -99,7 +107,7 @@ static void look_part(void *user, size_t begin, size_t end, int thread) {
     brio_star_parts s;
     flips.place = l->place + (size_t)thread * flips.num_tets;
     for (size_t p = begin; p < end; p++) {
-        brio_expect_stars(flips.g, p, false);
+        brio_expect_stars(flips.g, p);
         tally now = count(&own, (uint32_t)p, &s);
         l->m->surplus[p] = (uint8_t)now.surplus;
         l->m->fans[p] = (uint8_t)now.fans;
@@ -133,6 +141,7 @@ brio_status brio_mending_new(brio_label_flips *flips, brio_mending *out) {
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->fans, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->queued, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->looked, flips->num_samples));
+    if (flips->ctx->scratch) BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->turn, flips->num_samples));
     BRIO_TRY(look_at_all(out));
 done:
     return status;
@@ -143,6 +152,7 @@ void brio_mending_free(brio_mending *m) {
     brio_release(m->flips->ctx, m->fans);
     brio_release(m->flips->ctx, m->queued);
     brio_release(m->flips->ctx, m->looked);
+    brio_release(m->flips->ctx, m->turn);
     brio_release(m->flips->ctx, m->queue);
 }
 
@@ -306,16 +316,86 @@ done:
     return status;
 }
 
+/* --- the order of turns --- */
+
+/* Sets *first to the waiting sample of a star with the first turn, if that is before the turn of *first. */
+static void find_first(const brio_mending *m, uint32_t sample, uint32_t *first) {
+    const brio_vote_graph *g = m->flips->g;
+    for (size_t i = g->first[sample]; i < g->first[sample + 1]; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t p = g->dual->t.tet[brio_star_tet(g->star[i])].vertex[k];
+            if (p != g->dual->t.infinite && m->turn[p] && m->turn[p] < m->turn[*first]) *first = p;
+        }
+}
+
+/* Returns the waiting sample with the first turn of those at most two edges from a waiting sample, itself included. */
+static uint32_t first_near(brio_mending *m, uint32_t sample) {
+    const brio_vote_graph *g = m->flips->g;
+    uint32_t first = sample;
+    m->looks++;
+    for (size_t i = g->first[sample]; i < g->first[sample + 1]; i++)
+        for (int k = 0; k < 4; k++) {
+            uint32_t p = g->dual->t.tet[brio_star_tet(g->star[i])].vertex[k];
+            if (p == g->dual->t.infinite || m->looked[p] == m->looks) continue;
+            m->looked[p] = m->looks;
+            find_first(m, p, &first);
+        }
+    return first;
+}
+
+static int compare_numbers(uint32_t a, uint32_t b, const void *user) {
+    (void)user;
+    return (a > b) - (a < b);
+}
+
+/* Brings turns from the order of hashes into one along the curve: each sample after those that it waits for, each of
+ * these after those that it waits for, and so on. Turns fall along a path. */
+static brio_status go_along_curve(brio_mending *m, uint32_t *sample, size_t count) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = m->flips->ctx;
+    uint32_t *along = NULL, *path = NULL;
+    size_t depth = 0, listed = 0;
+    BRIO_TRY(BRIO_ALLOC(ctx, along, count));
+    BRIO_TRY(BRIO_ALLOC(ctx, path, count));
+    memcpy(along, sample, count * sizeof *along);
+    BRIO_TRY(brio_sort_many_indices(ctx, along, count, compare_numbers, NULL));
+    for (size_t i = 0; i < count; i++) m->turn[sample[i]] = (uint32_t)i + 1;
+    for (size_t i = 0; i < count; i++) {
+        if (m->turn[along[i]]) path[depth++] = along[i];
+        while (depth > 0) {
+            uint32_t last = path[depth - 1], first = first_near(m, last);
+            assert(m->turn[last] && m->turn[first] <= m->turn[last]);
+            if (first != last) {
+                path[depth++] = first;
+                continue;
+            }
+            sample[listed++] = last;
+            m->turn[last] = 0;
+            depth--;
+        }
+    }
+    assert(listed == count);
+done:
+    brio_release(ctx, along);
+    brio_release(ctx, path);
+    return status;
+}
+
+/* Sorts samples for their turns. */
+static brio_status order_turns(brio_mending *m, uint32_t *sample, size_t count) {
+    brio_status status =
+        brio_sort_many_indices(m->flips->ctx, sample, count, brio_compare_hashes, m->flips->g->dual->points);
+    return status == BRIO_OK && m->turn && count >= MANY ? go_along_curve(m, sample, count) : status;
+}
+
 /* Lets the queued samples have their turn, and those that are queued meanwhile, at one price. Those that stay singular
  * are in the queue at the end. */
 static brio_status mend_at(brio_mending *m, int64_t price) {
     brio_status status = BRIO_OK;
-    const brio_label_flips *f = m->flips;
     size_t left = 0;
     for (size_t begin = 0, end; begin < m->size; begin = end) {
         end = m->size;
-        BRIO_TRY(
-            brio_sort_many_indices(f->ctx, m->queue + begin, end - begin, brio_compare_hashes, f->g->dual->points));
+        BRIO_TRY(order_turns(m, m->queue + begin, end - begin));
         for (size_t i = begin; i < end; i++) {
             uint32_t p = m->queue[i];
             m->queued[p] = 0;

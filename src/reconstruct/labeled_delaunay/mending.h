@@ -12,6 +12,8 @@ typedef struct {
     uint8_t *queued;  /* #P: 1 if the sample is in the queue */
     uint32_t *looked; /* #P: the last call of brio_mending_look that came by, counted by `looks` */
     uint32_t looks;
+    uint32_t *turn; /* #P, with scratch files only: of queued samples that wait for a place along the curve, 1 and up in
+                       the order of their hashes; else 0 */
     uint32_t *queue; /* singular samples, and samples that were singular when they were queued */
     size_t size, capacity;
     size_t singular;  /* samples */

@@ -315,13 +315,26 @@ done:
     return status;
 }
 
+/* Announces what the weighing of patches reads, at the first tetrahedron of a stretch: of the next stretch, from the
+ * first tetrahedron that leans to the last one. So stretches without patches are not read. */
+static void expect_patches(const search *s, uint32_t tet, uint8_t label) {
+    const brio_vote_graph *g = s->f->g;
+    size_t from = tet + (size_t)BRIO_SWEEP_STRETCH, to = from + BRIO_SWEEP_STRETCH;
+    if (!s->f->ctx->scratch || tet % BRIO_SWEEP_STRETCH != 0) return;
+    if (to > s->f->num_finite) to = s->f->num_finite;
+    while (from < to && !leans(s, (uint32_t)from, label)) from++;
+    while (from < to && !leans(s, (uint32_t)to - 1, label)) to--;
+    brio_expect_rows(s->f->ctx, BRIO_ARRAYS(BRIO_READS(s->t->tet), BRIO_READS(g->vote), BRIO_READS(g->facet)), from,
+                     to);
+}
+
 /* Lists the patches of tetrahedra with a label that have the other one if the votes lean to it. */
 static brio_status list_patches(search *s, uint8_t label) {
     brio_status status = BRIO_OK;
     s->size = s->num_patches = s->num_readers = 0;
     s->is_sorted = false;
     for (uint32_t tet = 0; tet < s->f->num_finite; tet++) {
-        brio_along(s->f->ctx, tet, s->f->num_finite, BRIO_READS(s->t->tet));
+        expect_patches(s, tet, label);
         if (leans(s, tet, label)) BRIO_TRY(list_patch(s, tet, label));
     }
 done:
