@@ -35,12 +35,6 @@ enum { BIASES = 3, MOST_PATCH = BRIO_MOST_SIMPLE, NEARBY = 4096 };
 /* Samples of a block, which are near each other: blocks are noted. Chosen. */
 enum { BLOCK = 16 };
 
-#ifdef NDEBUG
-enum { CHECKED = 0 };
-#else
-enum { CHECKED = 1 };
-#endif
-
 /* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with
  * it, before samples are looked at. Chosen: on generated solids, raw scans and the models beside the project 8, 16 and
  * 32 differ by a run of 321 or two. */
@@ -405,7 +399,7 @@ static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     for (size_t i = 0; i < s->num_patches; i++) order[i] = (uint32_t)i;
     BRIO_TRY(brio_radix_sort(ctx, s->hash, order, s->num_patches, 64));
     for (size_t i = 0; i < s->num_patches; i++)
-        if (CHECKED || !s->settled[order[i]]) BRIO_TRY(take_turn(s, order[i], label));
+        if (BRIO_CHECKED_TURNS || !s->settled[order[i]]) BRIO_TRY(take_turn(s, order[i], label));
 done:
     brio_release(ctx, order);
     return status;
