@@ -243,7 +243,7 @@ static inline void rename_one(const distribution *d, const brio_tetrahedron *old
 /* Announces that the places and turns of all neighbours of the entries at hand will be read. */
 static void expect_neighbours(distribution *d, size_t n) {
     brio_read_ahead *r = d->read_ahead;
-    for (size_t i = 0; i < n; i++, r->now++)
+    for (size_t i = 0; i < n; i++)
         for (int f = 0; f < 4; f++) {
             uint32_t other = brio_tet_of(d->entries[i].tet.mate[f]);
             brio_expect(r, &d->place[other]);

@@ -53,7 +53,6 @@ static void expect_neighbours(brio_inserter *ins, uint32_t p) {
     const brio_cavity *c = &ins->cavity;
     const brio_store *s = ins->store;
     size_t fresh = ins->zone ? ins->next_slot : s->t.count, end = ins->zone ? ins->end_slot : s->capacity;
-    ins->read_ahead.now++;
     if (p + SOON < s->num_points) brio_expect(&ins->read_ahead, s->record[p + SOON]);
     if (fresh + SOON < end) brio_expect(&ins->read_ahead, &s->t.tet[fresh + SOON]);
     for (size_t i = 0; i < c->num_created; i++) {

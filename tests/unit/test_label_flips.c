@@ -166,6 +166,24 @@ static void mending_leaves_hardly_any_singular_sample(void) {
     free_scene(s);
 }
 
+/* Many samples of this chaos sleep, and are woken by others. What is expected is found when all samples have all their
+ * turns, which checked builds do. */
+static void what_changes_wakes_what_sleeps(void) {
+    scene *s = scene_of(uniform_points);
+    brio_label_flips f;
+    brio_mending m;
+    uint64_t inner = 0;
+    label_by(s, is_lucky);
+    EXPECT(brio_label_flips_new(&s->graph, s->label, &f) == BRIO_OK);
+    EXPECT(brio_mending_new(&f, &m) == BRIO_OK && brio_mend(&m) == BRIO_OK);
+    for (size_t t = 0; t < s->dual.num_finite; t++)
+        if (s->label[t] == BRIO_LABEL_INNER) inner += brio_tet_hash(&s->dual, t);
+    EXPECT(f.size == 2553 && inner == 0xedfedc0aa8c61a0c, "%zu, %llx", f.size, (unsigned long long)inner);
+    brio_mending_free(&m);
+    brio_label_flips_free(&f);
+    free_scene(s);
+}
+
 /* --- small regions --- */
 
 /* Walks over the region of a tetrahedron; flips its tetrahedra in `dropped` if it is small. Returns whether it is. */
@@ -603,6 +621,7 @@ SUITE(test_label_flips) {
     RUN(regions_in_scratch_files_go_along_a_curve);
     RUN(flips_know_the_energy);
     RUN(mending_leaves_hardly_any_singular_sample);
+    RUN(what_changes_wakes_what_sleeps);
     RUN(small_regions_are_those_of_a_walk);
     RUN(flips_that_deform_are_known);
     RUN(true_handles_stay_and_none_appears);

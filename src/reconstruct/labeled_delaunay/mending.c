@@ -8,6 +8,9 @@
  * a sample counts once for each fan. The price of a part rises from next to nothing, so that what the votes decide
  * clearly is decided first.
  *
+ * Where nothing helps at a price, it is known which price would help. Until then the sample sleeps, unless a label
+ * changes in the star of a sample that an edge joins to it, or in its own: moves there read no others.
+ *
  * Every flip lowers the sum, so the work ends. Stars that no price mends are left to cocone/manifold_stars.c.
  *
  * At each price all singular samples have their turn, then those that were queued meanwhile, and so on. Each turn goes
@@ -21,11 +24,13 @@
 #include "base/sort.h"
 #include "base/team.h"
 #include "reconstruct/labeled_delaunay/hash_order.h"
+#include <assert.h>
 #include <string.h>
 
 /* MOST: tetrahedra that are flipped together. PRICES: the price is a quarter of a log-odds at first and doubles. SMALL:
  * in stars of more tetrahedra, single flips are not tried. All chosen. */
 enum { MOST = 64, PRICES = 9, SMALL = 96 };
+#define FIRST_PRICE (BRIO_FLIP_UNIT / 4)
 
 /* Chosen. MOST_PLACES: threads that look at all samples: each has two bytes a tetrahedron, all together at most 32
  * bytes a tetrahedron. */
@@ -40,6 +45,12 @@ typedef struct {
     int size;
     int64_t gain;
 } move;
+
+/* What is found at a sample. */
+typedef struct {
+    move best;
+    int64_t helps; /* the least price at which some move has a gain */
+} choice;
 
 /* --- which samples to look at --- */
 
@@ -59,6 +70,7 @@ static brio_status enqueue(brio_mending *m, uint32_t sample) {
     BRIO_TRY(BRIO_RESERVE(m->flips->ctx, m->queue, m->capacity, m->size + 1));
     m->queue[m->size++] = sample;
     m->queued[sample] = 1;
+    m->sleeps[sample] = 0;
 done:
     return status;
 }
@@ -99,7 +111,7 @@ static void look_part(void *user, size_t begin, size_t end, int thread) {
     brio_star_parts s;
     flips.place = l->place + (size_t)thread * flips.num_tets;
     for (size_t p = begin; p < end; p++) {
-        brio_expect_stars(flips.g, p, false);
+        brio_expect_stars(flips.g, p);
         tally now = count(&own, (uint32_t)p, &s);
         l->m->surplus[p] = (uint8_t)now.surplus;
         l->m->fans[p] = (uint8_t)now.fans;
@@ -132,6 +144,7 @@ brio_status brio_mending_new(brio_label_flips *flips, brio_mending *out) {
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->surplus, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->fans, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->queued, flips->num_samples));
+    BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->sleeps, flips->num_samples));
     BRIO_TRY(BRIO_ALLOC_ZERO(flips->ctx, out->looked, flips->num_samples));
     BRIO_TRY(look_at_all(out));
 done:
@@ -142,6 +155,7 @@ void brio_mending_free(brio_mending *m) {
     brio_release(m->flips->ctx, m->surplus);
     brio_release(m->flips->ctx, m->fans);
     brio_release(m->flips->ctx, m->queued);
+    brio_release(m->flips->ctx, m->sleeps);
     brio_release(m->flips->ctx, m->looked);
     brio_release(m->flips->ctx, m->queue);
 }
@@ -163,7 +177,7 @@ static bool is_better(const brio_mending *m, const move *a, const move *b) {
 }
 
 /* Keeps a move if it is better than the best one so far. */
-static brio_status consider(brio_mending *m, move *x, int64_t price, move *best) {
+static brio_status consider(brio_mending *m, move *x, int64_t price, choice *out) {
     brio_status status = BRIO_OK;
     brio_label_flips *f = m->flips;
     uint32_t sample[4 * MOST];
@@ -179,8 +193,13 @@ static brio_status consider(brio_mending *m, move *x, int64_t price, move *best)
         fewer += m->surplus[sample[i]] - after.surplus;
         twice += 2 * (after.fans - m->fans[sample[i]]);
     }
-    x->gain = price * fewer - cost + HANDLE / 4 * twice;
-    if (fewer > 0 && is_better(m, x, best)) *best = *x;
+    cost -= HANDLE / 4 * twice;
+    x->gain = price * fewer - cost;
+    if (fewer > 0) {
+        int64_t helps = cost < 0 ? 0 : cost / fewer + 1;
+        if (helps < out->helps) out->helps = helps;
+        if (is_better(m, x, &out->best)) out->best = *x;
+    }
 done:
     brio_take_back(f, from);
     return status;
@@ -269,7 +288,8 @@ static bool may_join(const brio_mending *m, uint32_t tet) {
     return alike <= 2;
 }
 
-static brio_status consider_all(brio_mending *m, uint32_t sample, const brio_star_parts *s, int64_t price, move *best) {
+static brio_status consider_all(brio_mending *m, uint32_t sample, const brio_star_parts *s, int64_t price,
+                                choice *out) {
     brio_status status = BRIO_OK;
     move x;
     for (int part = 0; part < s->count; part++) {
@@ -277,38 +297,61 @@ static brio_status consider_all(brio_mending *m, uint32_t sample, const brio_sta
         while (s->part[i] != part) i++;
         uint8_t label = m->flips->label[brio_star_tet(s->at[i])];
         if (s->of[label == BRIO_LABEL_INNER] < 2) continue;
-        if (take_part(m, s, part, &x)) BRIO_TRY(consider(m, &x, price, best));
-        if (take_path(m, sample, s, part, label, &x)) BRIO_TRY(consider(m, &x, price, best));
+        if (take_part(m, s, part, &x)) BRIO_TRY(consider(m, &x, price, out));
+        if (take_path(m, sample, s, part, label, &x)) BRIO_TRY(consider(m, &x, price, out));
     }
     for (size_t i = 0; i < s->size && s->size <= SMALL; i++) {
         x.size = 1;
         x.tet[0] = brio_star_tet(s->at[i]);
-        if (x.tet[0] < m->flips->num_finite && may_join(m, x.tet[0])) BRIO_TRY(consider(m, &x, price, best));
+        if (x.tet[0] < m->flips->num_finite && may_join(m, x.tet[0])) BRIO_TRY(consider(m, &x, price, out));
     }
 done:
     return status;
 }
 
+/* Returns the first price that is not less than the one that helps. */
+static uint8_t first_price(int64_t helps) {
+    uint8_t i = 0;
+    while (i < PRICES && FIRST_PRICE << i < helps) i++;
+    return i;
+}
+
+/* Wakes the samples whose moves depend on the labels of flips [from, size): those in the stars of their samples. */
+static void wake(const brio_mending *m, size_t from) {
+    const brio_vote_graph *g = m->flips->g;
+    const brio_tetrahedron *t = g->dual->t.tet;
+    uint32_t sample[4 * MOST];
+    size_t count = brio_list_samples(m->flips, from, m->flips->size, sample);
+    for (size_t n = 0; n < count; n++)
+        for (size_t i = g->first[sample[n]]; i < g->first[sample[n] + 1]; i++)
+            for (int k = 0; k < 4; k++) {
+                uint32_t p = t[brio_star_tet(g->star[i])].vertex[k];
+                if (p != g->dual->t.infinite) m->sleeps[p] = 0;
+            }
+}
+
 /* Makes the best move at a sample, again and again. */
-static brio_status mend_star(brio_mending *m, uint32_t sample, int64_t price) {
+static brio_status mend_star(brio_mending *m, uint32_t sample, int price) {
     brio_status status = BRIO_OK;
     brio_star_parts s;
-    for (;;) {
-        move best = {.gain = 0};
-        if (count(m, sample, &s).surplus == 0) break;
-        BRIO_TRY(consider_all(m, sample, &s, price, &best));
-        if (best.gain <= 0) break;
+    while (count(m, sample, &s).surplus > 0) {
+        choice x = {.helps = INT64_MAX};
+        BRIO_TRY(consider_all(m, sample, &s, FIRST_PRICE << price, &x));
+        assert(x.best.gain <= 0 || m->sleeps[sample] <= price);
+        m->sleeps[sample] = first_price(x.helps);
+        if (x.best.gain <= 0) break;
         size_t from = m->flips->size;
-        for (int i = 0; i < best.size; i++) BRIO_TRY(brio_flip(m->flips, best.tet[i]));
+        for (int i = 0; i < x.best.size; i++) BRIO_TRY(brio_flip(m->flips, x.best.tet[i]));
         BRIO_TRY(brio_mending_look(m, from, m->flips->size));
+        wake(m, from);
     }
 done:
     return status;
 }
 
 /* Lets the queued samples have their turn, and those that are queued meanwhile, at one price. Those that stay singular
- * are in the queue at the end. */
-static brio_status mend_at(brio_mending *m, int64_t price) {
+ * are in the queue at the end. The turns of those that sleep are left out, except in checked builds. */
+static brio_status mend_at(brio_mending *m, int price) {
     brio_status status = BRIO_OK;
     const brio_label_flips *f = m->flips;
     size_t left = 0;
@@ -319,7 +362,7 @@ static brio_status mend_at(brio_mending *m, int64_t price) {
         for (size_t i = begin; i < end; i++) {
             uint32_t p = m->queue[i];
             m->queued[p] = 0;
-            BRIO_TRY(mend_star(m, p, price));
+            if (BRIO_CHECKED_TURNS || m->sleeps[p] <= price) BRIO_TRY(mend_star(m, p, price));
         }
     }
     for (size_t i = 0; i < m->size; i++) {
@@ -335,8 +378,8 @@ done:
 
 brio_status brio_mend(brio_mending *m) {
     brio_status status = BRIO_OK;
-    int64_t price = BRIO_FLIP_UNIT / 4;
-    for (int i = 0; i < PRICES && m->size > 0; i++, price *= 2) BRIO_TRY(mend_at(m, price));
+    for (size_t i = 0; i < m->size; i++) m->sleeps[m->queue[i]] = 0;
+    for (int price = 0; price < PRICES && m->size > 0; price++) BRIO_TRY(mend_at(m, price));
 done:
     return status;
 }

@@ -4,12 +4,21 @@
 
 #include "reconstruct/labeled_delaunay/label_flips.h"
 
+/* Whether turns that cannot change anything are taken, too, to check that. */
+#ifdef NDEBUG
+enum { BRIO_CHECKED_TURNS = 0 };
+#else
+enum { BRIO_CHECKED_TURNS = 1 };
+#endif
+
 /** A sample is singular if the parts of its star are more than one outer and one inner part. */
 typedef struct {
     brio_label_flips *flips;
     uint8_t *surplus; /* #P: brio_surplus of each star, at most 255; 0 of stars with over BRIO_STAR_ROOM tetrahedra */
     uint8_t *fans;    /* #P: parts of each star less one, at most 255 */
     uint8_t *queued;  /* #P: 1 if the sample is in the queue */
+    uint8_t *sleeps;  /* #P: of queued samples, within brio_mend: the first price at which a move there helps, unless
+                         labels that it depends on change before */
     uint32_t *looked; /* #P: the last call of brio_mending_look that came by, counted by `looks` */
     uint32_t looks;
     uint32_t *queue; /* singular samples, and samples that were singular when they were queued */

@@ -40,10 +40,16 @@ typedef struct {
 } evidence;
 
 typedef struct {
+    double kept, all;
+} own_votes;
+
+typedef struct {
     const brio_vote_graph *g;
     const uint8_t *label;
     const brio_facets *facets;
-    float *margin; /* #facets */
+    brio_tet_slice slice;
+    own_votes *votes; /* #P, while they are counted */
+    float *margin;    /* #facets */
     evidence *own, *round;
     float *confidence;
 } judgement;
@@ -57,17 +63,28 @@ static void add_vote(const judgement *j, uint32_t tet, int slot, double *kept, d
     *all += weight;
 }
 
-static void count_own_votes(void *user, size_t begin, size_t end, int thread) {
+/* Adds the votes of samples along the tetrahedra. */
+static void add_own_votes(void *user, size_t begin, size_t end, int thread) {
     const judgement *j = user;
-    const brio_vote_graph *g = j->g;
     (void)thread;
-    for (size_t p = begin; p < end; p++) {
-        double kept = 0, all = 0;
-        brio_expect_stars(g, p, true);
-        for (size_t i = g->first[p]; i < g->first[p + 1]; i++)
-            add_vote(j, brio_star_tet(g->star[i]), brio_slot_of(g->star[i]), &kept, &all);
-        j->own[p] = (evidence){(float)kept, (float)all, 0, 0};
-    }
+    for (size_t tet = j->slice.first; tet < j->slice.end; tet++)
+        for (int i = 0; i < 4; i++) {
+            size_t p = j->g->dual->t.tet[tet].vertex[i];
+            if (p - begin < end - begin) add_vote(j, (uint32_t)tet, i, &j->votes[p].kept, &j->votes[p].all);
+        }
+}
+
+static brio_status count_own_votes(judgement *j) {
+    brio_status status = BRIO_OK;
+    brio_context *ctx = j->g->ctx;
+    size_t n = j->g->dual->num_points;
+    BRIO_TRY(BRIO_ALLOC_ZERO(ctx, j->votes, n));
+    BRIO_TRY(brio_for_tet_slices(j->g, &j->slice, BRIO_ARRAYS(BRIO_READS(j->g->dual->t.tet), BRIO_READS(j->g->vote)),
+                                 add_own_votes, j));
+    for (size_t p = 0; p < n; p++) j->own[p] = (evidence){(float)j->votes[p].kept, (float)j->votes[p].all, 0, 0};
+done:
+    brio_release(ctx, j->votes);
+    return status;
 }
 
 static uint32_t corner_of(const judgement *j, uint32_t facet, int k) {
@@ -128,10 +145,10 @@ brio_status brio_vote_confidence(const brio_vote_graph *g, const uint8_t *label,
     size_t n = g->dual->num_points;
     int threads = brio_threads(g->ctx, n, SAMPLES_A_THREAD);
     judgement j = {.g = g, .label = label, .facets = facets, .confidence = confidence};
-    BRIO_TRY(BRIO_ALLOC(g->ctx, j.margin, facets->count));
     BRIO_TRY(BRIO_ALLOC(g->ctx, j.own, n));
+    BRIO_TRY(count_own_votes(&j));
+    BRIO_TRY(BRIO_ALLOC(g->ctx, j.margin, facets->count));
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, j.round, n));
-    BRIO_TRY(brio_for(g->ctx, threads, n, count_own_votes, &j));
     BRIO_TRY(brio_for(g->ctx, threads, facets->count, measure_margins, &j));
     for (size_t i = 0; i < facets->count; i++) add_margin(&j, i);
     for (size_t i = 0; i < facets->count; i++) pool(&j, facets->facet[i]);

@@ -17,7 +17,6 @@
 #include "reconstruct/labeled_delaunay/vote_graph.h"
 #include "base/memory.h"
 #include "base/places.h"
-#include "base/team.h"
 #include "base/vector.h"
 #include "reconstruct/cocone/triangle.h"
 #include "reconstruct/labeled_delaunay/vote_weight.h"
@@ -139,19 +138,33 @@ static void weigh_votes(void *user, size_t begin, size_t end, int thread) {
 
 /* --- stars --- */
 
+brio_status brio_for_tet_slices(const brio_vote_graph *g, brio_tet_slice *slice, const brio_swept *along,
+                                brio_part_fn body, void *user) {
+    brio_status status = BRIO_OK;
+    size_t count = g->dual->t.count, n = g->dual->num_points, most = g->ctx->scratch ? BRIO_SWEEP_STRETCH : SLICE;
+    int threads = brio_threads(g->ctx, n, SAMPLES_A_THREAD);
+    for (slice->first = 0; slice->first < count; slice->first = slice->end) {
+        slice->end = count - slice->first < most ? count : slice->first + most;
+        brio_expect_rows(g->ctx, along, slice->end, count - slice->end < most ? count : slice->end + most);
+        BRIO_TRY(brio_for_parts(g->ctx, threads, n, body, user));
+    }
+done:
+    return status;
+}
+
 typedef struct {
     const builder *b;
-    size_t *next;      /* #P: how many entries a star has, then where the next one goes */
-    size_t first, end; /* the slice of the tetrahedra that all threads read */
+    size_t *next; /* #P: how many entries a star has, then where the next one goes */
+    brio_tet_slice slice;
 } lister;
 
-/* The two steps of listing, for parts of the samples. Every thread reads all tetrahedra, in ascending order. */
+/* The two steps of listing. */
 
 static void count_entries(void *user, size_t begin, size_t end, int thread) {
     const lister *l = user;
     const brio_pole_vectors *v = l->b->dual;
     (void)thread;
-    for (size_t tet = l->first; tet < l->end; tet++)
+    for (size_t tet = l->slice.first; tet < l->slice.end; tet++)
         for (int i = 0; i < num_samples(v, tet); i++) {
             size_t p = v->t.tet[tet].vertex[i];
             if (p - begin < end - begin) l->next[p]++;
@@ -162,24 +175,11 @@ static void write_entries(void *user, size_t begin, size_t end, int thread) {
     const lister *l = user;
     const brio_pole_vectors *v = l->b->dual;
     (void)thread;
-    for (size_t tet = l->first; tet < l->end; tet++)
+    for (size_t tet = l->slice.first; tet < l->slice.end; tet++)
         for (int i = 0; i < num_samples(v, tet); i++) {
             size_t p = v->t.tet[tet].vertex[i];
             if (p - begin < end - begin) l->b->g->star[l->next[p]++] = brio_facet_of((uint32_t)tet, i);
         }
-}
-
-static brio_status for_slices(lister *l, int threads, brio_part_fn step) {
-    brio_status status = BRIO_OK;
-    size_t count = l->b->dual->t.count;
-    for (l->first = 0; l->first < count; l->first = l->end) {
-        l->end = count - l->first < SLICE ? count : l->first + SLICE;
-        brio_expect_rows(l->b->g->ctx, BRIO_ARRAYS(BRIO_READS(l->b->dual->t.tet)), l->end,
-                         count - l->end < SLICE ? count : l->end + SLICE);
-        BRIO_TRY(brio_for_parts(l->b->g->ctx, threads, l->b->dual->num_points, step, l));
-    }
-done:
-    return status;
 }
 
 /* Lists the stars of the samples. */
@@ -188,12 +188,12 @@ static brio_status list_stars(const builder *b) {
     brio_vote_graph *g = b->g;
     lister l = {.b = b};
     size_t n = b->dual->num_points;
-    int threads = brio_threads(g->ctx, n, SAMPLES_A_THREAD);
+    const brio_swept *along = BRIO_ARRAYS(BRIO_READS(b->dual->t.tet));
     BRIO_TRY(BRIO_ALLOC_ZERO(g->ctx, l.next, n));
-    BRIO_TRY(for_slices(&l, threads, count_entries));
+    BRIO_TRY(brio_for_tet_slices(g, &l.slice, along, count_entries, &l));
     g->first[n] = brio_counts_to_places(l.next, 1, n, 0);
     for (size_t p = 0; p < n; p++) g->first[p] = l.next[p];
-    BRIO_TRY(for_slices(&l, threads, write_entries));
+    BRIO_TRY(brio_for_tet_slices(g, &l.slice, along, write_entries, &l));
 done:
     brio_release(g->ctx, l.next);
     return status;
@@ -235,12 +235,11 @@ static size_t middle_of_star(const brio_vote_graph *g, size_t p) {
     return brio_star_tet(g->star[g->first[p] + (g->first[p + 1] - g->first[p]) / 2]);
 }
 
-void brio_expect_stars(const brio_vote_graph *g, size_t sample, bool votes) {
+void brio_expect_stars(const brio_vote_graph *g, size_t sample) {
     size_t n = g->dual->num_points, from = sample + STARS, to = from + STARS < n ? from + STARS : n;
     if (!g->ctx->scratch || sample % STARS != 0 || from >= n) return;
     brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->star)), g->first[from], g->first[to]);
-    brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->dual->t.tet), {votes ? g->vote : NULL, sizeof *g->vote, false}),
-                     middle_of_star(g, from), middle_of_star(g, to));
+    brio_expect_rows(g->ctx, BRIO_ARRAYS(BRIO_READS(g->dual->t.tet)), middle_of_star(g, from), middle_of_star(g, to));
 }
 
 /* --- sums --- */

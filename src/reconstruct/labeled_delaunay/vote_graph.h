@@ -3,6 +3,7 @@
 #ifndef BRIO_RECONSTRUCT_VOTE_GRAPH_H
 #define BRIO_RECONSTRUCT_VOTE_GRAPH_H
 
+#include "base/team.h"
 #include "dual/pole_vectors.h"
 #include "reconstruct/labels/label.h"
 
@@ -60,9 +61,21 @@ static inline uint32_t brio_star_tet(uint32_t entry) {
     return entry >> 2;
 }
 
-/** Announces the stars that a loop over samples reaches soon, and their tetrahedra. For each of its samples.
- *  votes  whether what they vote, too. */
-void brio_expect_stars(const brio_vote_graph *g, size_t sample, bool votes);
+/** Announces the stars that a loop over samples reaches soon, and their tetrahedra. For each of its samples. */
+void brio_expect_stars(const brio_vote_graph *g, size_t sample);
+
+/** A slice of the tetrahedra. */
+typedef struct {
+    size_t first, end;
+} brio_tet_slice;
+
+/** Calls body for parts of the samples, for one slice of the tetrahedra after another: each thread reads all
+ *  tetrahedra, in ascending order, and writes what its samples get of them. So sums at a sample are in the order of its
+ *  star, without reading through its star.
+ *  slice  written before each call: that of body's user.   along  what is read of the tetrahedra.
+ *  Returns BRIO_OK or BRIO_ERR_CANCELLED. */
+brio_status brio_for_tet_slices(const brio_vote_graph *g, brio_tet_slice *slice, const brio_swept *along,
+                                brio_part_fn body, void *user);
 
 /** What a weight is in whole numbers: weight / divisor * factor, rounded towards 0. */
 typedef struct {

@@ -35,12 +35,6 @@ enum { BIASES = 3, MOST_PATCH = BRIO_MOST_SIMPLE, NEARBY = 4096 };
 /* Samples of a block, which are near each other: blocks are noted. Chosen. */
 enum { BLOCK = 16 };
 
-#ifdef NDEBUG
-enum { CHECKED = 0 };
-#else
-enum { CHECKED = 1 };
-#endif
-
 /* In log-odds. BIAS: what all votes lean by. HANDLE: how much more likely a surface is without a small handle than with
  * it, before samples are looked at. Chosen: on generated solids, raw scans and the models beside the project 8, 16 and
  * 32 differ by a run of 321 or two. */
@@ -315,13 +309,26 @@ done:
     return status;
 }
 
+/* Announces what the weighing of patches reads, at the first tetrahedron of a stretch: of the next stretch, from the
+ * first tetrahedron that leans to the last one. So stretches without patches are not read. */
+static void expect_patches(const search *s, uint32_t tet, uint8_t label) {
+    const brio_vote_graph *g = s->f->g;
+    size_t from = tet + (size_t)BRIO_SWEEP_STRETCH, to = from + BRIO_SWEEP_STRETCH;
+    if (!s->f->ctx->scratch || tet % BRIO_SWEEP_STRETCH != 0) return;
+    if (to > s->f->num_finite) to = s->f->num_finite;
+    while (from < to && !leans(s, (uint32_t)from, label)) from++;
+    while (from < to && !leans(s, (uint32_t)to - 1, label)) to--;
+    brio_expect_rows(s->f->ctx, BRIO_ARRAYS(BRIO_READS(s->t->tet), BRIO_READS(g->vote), BRIO_READS(g->facet)), from,
+                     to);
+}
+
 /* Lists the patches of tetrahedra with a label that have the other one if the votes lean to it. */
 static brio_status list_patches(search *s, uint8_t label) {
     brio_status status = BRIO_OK;
     s->size = s->num_patches = s->num_readers = 0;
     s->is_sorted = false;
     for (uint32_t tet = 0; tet < s->f->num_finite; tet++) {
-        brio_along(s->f->ctx, tet, s->f->num_finite, BRIO_READS(s->t->tet));
+        expect_patches(s, tet, label);
         if (leans(s, tet, label)) BRIO_TRY(list_patch(s, tet, label));
     }
 done:
@@ -392,7 +399,7 @@ static brio_status weigh_patches(search *s, uint8_t label, double bias) {
     for (size_t i = 0; i < s->num_patches; i++) order[i] = (uint32_t)i;
     BRIO_TRY(brio_radix_sort(ctx, s->hash, order, s->num_patches, 64));
     for (size_t i = 0; i < s->num_patches; i++)
-        if (CHECKED || !s->settled[order[i]]) BRIO_TRY(take_turn(s, order[i], label));
+        if (BRIO_CHECKED_TURNS || !s->settled[order[i]]) BRIO_TRY(take_turn(s, order[i], label));
 done:
     brio_release(ctx, order);
     return status;

@@ -49,7 +49,6 @@ typedef struct {
 static void expect_block(const round_of_blocks *r, size_t i, brio_read_ahead *ahead) {
     const brio_signed_graph *g = r->pr->g;
     if (!ahead->active || i >= r->blocks) return;
-    ahead->now++;
     for (size_t n = r->b->begin[r->block[i]]; n < r->b->end[r->block[i]]; n++)
         brio_expect(ahead, g->edge + g->first[r->b->node[n]]);
 }
