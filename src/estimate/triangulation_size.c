@@ -280,8 +280,8 @@ static double power_of(double before, double after) {
  * half as many points give a power.
  *   Tetrahedra may join points far from each other, as those of two lines or two planes: no surroundings show them. The
  * estimate is raised, unless the sample has little more than the surroundings. A set of many points, of which a sample
- * says less, is raised with a power of 1 if it has next to no tetrahedra in surroundings; with a greater power, whatever
- * is there, if samples grow as their squares do, twice in turn.
+ * says less, is raised with a power of 1 if it has next to no tetrahedra in surroundings; with a greater power,
+ * whatever is there, if samples grow as their squares do, twice in turn.
  *   Surroundings that hold parts of several lines grow faster than the whole does. Where they are extrapolated by a
  * power, and samples tell less, the estimate is the geometric mean of both. */
 static brio_status correct_by_samples(const cloud *c, const tally *far, bool by_power, brio_triangulation_size *size) {
