@@ -25,15 +25,19 @@ enum { BALLS = 12, BALL_MOST = 4096, BALL_AIM = 1500, BALL_LEAST = 400, MOST_TET
 enum { FEW_BALLS = 3, MOST_EXACT = 1 << 17 };
 /* Derived: a set that fits into one ball is triangulated once. Twelve balls that hold all of it would cost more. */
 enum { ALL = BALL_MOST };
-/* Chosen. SAMPLE: points of the greatest sample; EXACT_SAMPLE: where balls took MOST_EXACT. SAMPLE_TETRAHEDRA: a sample
- * with more is halved; of two lines it has 1,024 points. MOST_SAMPLED: points of a set of which a sample tells a power.
- * FEW: tetrahedra a point, of which surfaces and solids have twice as many. */
-enum { SAMPLE = 1 << 12, EXACT_SAMPLE = 1 << 10, SAMPLE_TETRAHEDRA = 1 << 18, MOST_SAMPLED = 1 << 14, FEW = 2 };
+/* Chosen. SAMPLE: points of the greatest sample; EXACT_SAMPLE: where balls took MOST_EXACT. HALVINGS: from the greatest
+ * sample to the least. SAMPLE_TETRAHEDRA: a sample with more is left aside; of two lines it has 1,024 points.
+ * MOST_SAMPLED: points of a set of which a sample tells a power. FEW: tetrahedra a point, of which surfaces and solids
+ * have twice as many. */
+enum { SAMPLE = 1 << 12, EXACT_SAMPLE = 1 << 10, HALVINGS = 5, SAMPLE_TETRAHEDRA = 1 << 18 };
+enum { MOST_SAMPLED = 1 << 14, FEW = 2 };
 /* Derived: scaled weights are below 2^MOST_EXPONENT, so they are finite. */
 enum { MOST_EXPONENT = 1000 };
 
 /* Chosen: of a sample, the tetrahedra a point for each of the surroundings. Scans, lattices and surfaces have less. */
 static const double MORE = 1.5;
+/* Chosen: a power of samples that is one of squares. Those of two lines have 1.98, of a cylinder 1.5. */
+static const double SQUARE = 1.75;
 static const double USUAL = 6.8; /* tetrahedra a point of uniform points */
 /* The share of the tetrahedra a point that a ball has more than the ball of half its radius. In space the border of the
  * balls makes a share of 0.03. */
@@ -225,8 +229,11 @@ done:
     return status;
 }
 
-static void extrapolate(const cloud *c, const tally *far, const tally *near, brio_triangulation_size *size) {
+/* Extrapolates what was counted in surroundings. *by_power: with a power of the number of points. */
+static void extrapolate(const cloud *c, const tally *far, const tally *near, brio_triangulation_size *size,
+                        bool *by_power) {
     double points = (double)c->count;
+    *by_power = false;
     if (far->points == 0 || near->points == 0) { /* nearly all points are at a few positions */
         *size = (brio_triangulation_size){points * USUAL, 0};
         return;
@@ -237,31 +244,60 @@ static void extrapolate(const cloud *c, const tally *far, const tally *near, bri
     /* Of the ratio, from the near points to the far ones: at most as the points, since n points have at most n * n
      * tetrahedra. */
     double doubling = fmin(log(ratio / (ratio - growth)), log(far->points / near->points));
-    if (goes_on && doubling > POWER * log(far->points / near->points))
+    *by_power = goes_on && doubling > POWER * log(far->points / near->points);
+    if (*by_power)
         ratio *= exp(doubling * more);
     else if (goes_on && growth > GROWS * ratio)
         ratio += growth * more;
     *size = (brio_triangulation_size){points * ratio, c->weights ? points * far->hidden / far->points : 0};
 }
 
-/* Raises an estimate to what random samples tell, where tetrahedra join points far from each other, as those of two
- * lines or two planes: no surroundings show them. The greatest sample whose tetrahedra are not too many and one of half
- * as many points give the power. A sample keeps no noise and no lattice, and hides fewer points by weights. So only
- * sets without weights are sampled, of many points only those that have next to no tetrahedra in surroundings, and a
- * sample that has little more than the surroundings is left aside. */
-static brio_status raise_by_samples(const cloud *c, const tally *far, brio_triangulation_size *size) {
-    brio_triangulation_size all, half;
+/* The tetrahedra of samples, each of half as many points as the one before. */
+typedef struct {
+    double points, tetrahedra[3];
+} sampled;
+
+/* Triangulates samples, twice as many points each time, up to `most` points or SAMPLE_TETRAHEDRA. */
+static brio_status take_samples(const cloud *c, size_t most, sampled *s) {
+    *s = (sampled){0};
+    for (int halvings = HALVINGS; halvings >= 0; halvings--) {
+        brio_triangulation_size size;
+        brio_status status = size_of_sample(c, most >> halvings, SAMPLE_TETRAHEDRA, &size);
+        if (status == BRIO_ERR_TOO_LARGE) break;
+        BRIO_FORWARD(status);
+        *s = (sampled){(double)(most >> halvings), {size.tetrahedra, s->tetrahedra[0], s->tetrahedra[1]}};
+    }
+    return BRIO_OK;
+}
+
+/* Returns the power with which tetrahedra grow from a sample to one of twice as many points. */
+static double power_of(double before, double after) {
+    return before > 0 ? log2(after / before) : 1;
+}
+
+/* Corrects an estimate by what random samples tell. A sample keeps no noise and no lattice, and hides fewer points by
+ * weights. So only sets without weights are sampled. The greatest sample whose tetrahedra are not too many and one of
+ * half as many points give a power.
+ *   Tetrahedra may join points far from each other, as those of two lines or two planes: no surroundings show them. The
+ * estimate is raised, unless the sample has little more than the surroundings. A set of many points, of which a sample
+ * says less, is raised with a power of 1 if it has next to no tetrahedra in surroundings; with a greater power,
+ * whatever is there, if samples grow as their squares do, twice in turn.
+ *   Surroundings that hold parts of several lines grow faster than the whole does. Where they are extrapolated by a
+ * power, and samples tell less, the estimate is the geometric mean of both. */
+static brio_status correct_by_samples(const cloud *c, const tally *far, bool by_power, brio_triangulation_size *size) {
+    sampled s;
     double points = (double)c->count, known = size->tetrahedra / points;
-    size_t most = far->exact < MOST_EXACT ? SAMPLE : EXACT_SAMPLE, n = c->count < most ? c->count : most;
-    brio_status status;
-    if (c->weights || (c->count > MOST_SAMPLED && known >= FEW)) return BRIO_OK;
-    while ((status = size_of_sample(c, n, SAMPLE_TETRAHEDRA, &all)) == BRIO_ERR_TOO_LARGE) n /= 2;
-    BRIO_FORWARD(status);
-    if (all.tetrahedra < MORE * known * (double)n) return BRIO_OK;
-    BRIO_FORWARD(size_of_sample(c, n / 2, SAMPLE_TETRAHEDRA, &half));
-    double power = half.tetrahedra > 0 ? log2(all.tetrahedra / half.tetrahedra) : 1;
-    power = fmin(power, c->count > MOST_SAMPLED ? 1 : 2);
-    size->tetrahedra = fmax(size->tetrahedra, all.tetrahedra * pow(points / (double)n, power));
+    size_t most = far->exact < MOST_EXACT ? SAMPLE : EXACT_SAMPLE;
+    bool many = c->count > MOST_SAMPLED;
+    if (c->weights) return BRIO_OK;
+    BRIO_FORWARD(take_samples(c, c->count < most ? c->count : most, &s));
+    double power = power_of(s.tetrahedra[1], s.tetrahedra[0]), before = power_of(s.tetrahedra[2], s.tetrahedra[1]);
+    double told = s.tetrahedra[0] * pow(points / s.points, fmin(power, 2));
+    if (by_power && told < size->tetrahedra) size->tetrahedra = sqrt(size->tetrahedra * told);
+    bool squares = power > SQUARE && before > SQUARE;
+    if (s.tetrahedra[0] < MORE * known * s.points || (many && !squares && known >= FEW)) return BRIO_OK;
+    if (many && !squares) told = s.tetrahedra[0] * pow(points / s.points, fmin(power, 1));
+    size->tetrahedra = fmax(size->tetrahedra, told);
     return BRIO_OK;
 }
 
@@ -270,12 +306,13 @@ brio_status brio_estimate_size(brio_context *ctx, const double *points, const do
     const double scale = brio_scale_to_one(brio_exponent(brio_greatest(points, 3 * num_points)));
     const cloud c = {ctx, points, weights, num_points, scale};
     tally far = {0}, near = {0};
+    bool by_power = false;
     brio_aside aside = brio_aside_begin(ctx);
     brio_status status = num_points <= ALL ? size_of_sample(&c, num_points, MOST_TETRAHEDRA, size) : BRIO_ERR_TOO_LARGE;
     if (status == BRIO_ERR_TOO_LARGE) {
         status = count_surroundings(&c, &far, &near);
-        if (status == BRIO_OK) extrapolate(&c, &far, &near, size);
-        if (status == BRIO_OK) status = raise_by_samples(&c, &far, size);
+        if (status == BRIO_OK) extrapolate(&c, &far, &near, size, &by_power);
+        if (status == BRIO_OK) status = correct_by_samples(&c, &far, by_power, size);
         if (status == BRIO_OK && num_points <= ALL) size->tetrahedra = fmax(size->tetrahedra, MOST_TETRAHEDRA);
     }
     brio_aside_end(ctx, &aside);

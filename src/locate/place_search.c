@@ -8,8 +8,10 @@
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977.
- * Differs from the paper: a range knows its greatest weight, which bounds its power distances. */
+ *           Arya, Mount. Algorithms for fast vector quantization. DCC 1993 (distances of ranges).
+ * Differs from the papers: a range knows its greatest weight, which bounds its power distances. */
 #include "locate/place_search.h"
+#include "base/vector.h"
 #include "query/nearest_points.h"
 #include <string.h>
 
@@ -60,16 +62,17 @@ static inline void offer(search *s, size_t place) {
     s->found[i] = now;
 }
 
-/* Returns whether every vertex beyond a plane at the distance `across` comes after the last one kept.
- * across, most  scaled. */
-static inline bool is_beyond(const search *s, double across, double most) {
+/* Returns whether every vertex of a range that is `off` away along the axes comes after the last one kept.
+ * off, most  scaled. */
+static inline bool is_beyond(const search *s, const double off[3], double most) {
     if (s->size < s->wanted) return false;
     const brio_found *last = &s->found[s->size - 1];
-    double square = across * across;
+    double square = brio_dot(off, off);
     return square - most - last->value > SHARE * (square + fabs(most) + last->magnitude) + SMALL;
 }
 
-static void look(search *s, size_t begin, size_t end) {
+/* Looks at a range.   off  along each axis, how far the range is from the position at least; scaled. */
+static void look(search *s, size_t begin, size_t end, double off[3]) {
     const brio_locator *l = s->l;
     if (end - begin <= BRIO_TREE_LEAF) {
         for (size_t place = begin; place < end; place++) offer(s, place);
@@ -77,25 +80,28 @@ static void look(search *s, size_t begin, size_t end) {
     }
     size_t middle = begin + (end - begin) / 2;
     int axis = l->axis[middle];
-    double across = (s->x[axis] - l->record[middle][axis]) * l->scale;
+    double across = (s->x[axis] - l->record[middle][axis]) * l->scale, before = off[axis];
     double most = s->power ? l->most[middle] * l->scale * l->scale : 0;
     if (across < 0)
-        look(s, begin, middle);
+        look(s, begin, middle, off);
     else
-        look(s, middle + 1, end);
-    if (is_beyond(s, across, most)) return;
-    offer(s, middle);
-    if (across < 0)
-        look(s, middle + 1, end);
-    else
-        look(s, begin, middle);
+        look(s, middle + 1, end, off);
+    off[axis] = across;
+    if (!is_beyond(s, off, most)) {
+        offer(s, middle);
+        if (across < 0)
+            look(s, middle + 1, end, off);
+        else
+            look(s, begin, middle, off);
+    }
+    off[axis] = before;
 }
 
 size_t brio_search_places(const brio_locator *l, const double *x, bool power, size_t wanted, uint32_t hint,
                           brio_found *found) {
     search s = {.l = l, .x = {x[0], x[1], x[2]}, .power = power && l->weighted, .wanted = wanted, .found = found};
     if (wanted == 1 && hint != BRIO_INFINITE) s.found[s.size++] = evaluate(&s, hint);
-    look(&s, 0, l->num_vertices);
+    look(&s, 0, l->num_vertices, (double[3]){0, 0, 0});
     return s.size;
 }
 

@@ -15,6 +15,7 @@ typedef struct {
     brio_near_point *near; /* BRIO_NEAR_ROOM entries, in the order in which the search met them */
     size_t size, wanted;
     double bound;    /* square of a distance; no farther point is among the nearest */
+    size_t met;      /* points that the search looked at */
     size_t compared; /* pairs of points at the bound that were compared: what ties cost */
 } brio_near_list;
 
@@ -43,6 +44,7 @@ void brio_keep_nearest(brio_near_list *l);
 static inline void brio_offer_points(brio_near_list *l, size_t begin, size_t end) {
     assert(begin <= end && end - begin <= BRIO_TREE_LEAF && 0 < l->wanted && l->wanted <= BRIO_MOST_NEAR);
     if (l->size >= 2 * l->wanted) brio_keep_nearest(l);
+    l->met += end - begin;
     for (size_t i = begin; i < end; i++) {
         double square = brio_square_distance(l->p, l->point[i]);
         assert(l->size < BRIO_NEAR_ROOM);

@@ -5,12 +5,14 @@
  * are sorted. So the tree does not depend on the order of the input.
  *
  * A query lists the points it meets that are not farther than its bound (near_list.h). It enters the far half of a
- * range only when the cut is within the bound. Of a range of duplicates it lists as many as are wanted, and it ends
+ * range only when the half is within the bound, by its distances along all axes: by that to the cut alone, a query far
+ * from a cluster would meet all of the cluster. Of a range of duplicates it lists as many as are wanted, and it ends
  * when it has as many where it is: else a query among n duplicates would meet them all.
  *
  * Based on: Friedman, Bentley, Finkel. An algorithm for finding best matches in logarithmic expected time. ACM TOMS
  * 1977.
- * Differs from the paper: ties, and duplicates. */
+ *           Arya, Mount. Algorithms for fast vector quantization. DCC 1993 (distances of ranges).
+ * Differs from the papers: ties, and duplicates. */
 #include "query/nearest_points.h"
 #include "base/finite.h"
 #include "base/memory.h"
@@ -144,8 +146,9 @@ static void look_at_duplicates(brio_near_list *l, size_t begin, size_t end) {
     brio_offer_points(l, begin, end);
 }
 
-/* Lists points of a range. */
-static void look(brio_near_list *l, const brio_point_tree *t, size_t begin, size_t end) {
+/* Lists points of a range.   off  along each axis, how far the range is from the position at least. Squares of these
+ * sum to no more than the computed square of any point, because each step rounds in the same direction. */
+static void look(brio_near_list *l, const brio_point_tree *t, size_t begin, size_t end, double off[3]) {
     if (brio_is_settled(l)) return;
     if (end - begin <= LEAF) {
         brio_offer_points(l, begin, end);
@@ -156,23 +159,27 @@ static void look(brio_near_list *l, const brio_point_tree *t, size_t begin, size
         look_at_duplicates(l, begin, end);
         return;
     }
-    assert(t->axis[middle] < 3);
-    double across = l->p[t->axis[middle]] - t->point[middle][t->axis[middle]];
+    int axis = t->axis[middle];
+    assert(axis < 3);
+    double across = l->p[axis] - t->point[middle][axis], before = off[axis];
     if (across < 0)
-        look(l, t, begin, middle);
+        look(l, t, begin, middle, off);
     else
-        look(l, t, middle + 1, end);
+        look(l, t, middle + 1, end, off);
     if (isinf(l->bound) && l->size >= l->wanted) brio_keep_nearest(l); /* the points that remain are usually farther */
-    if (across * across > l->bound) return;
-    brio_offer_points(l, middle, middle + 1);
-    if (across < 0)
-        look(l, t, middle + 1, end);
-    else
-        look(l, t, begin, middle);
+    off[axis] = across;
+    if (brio_dot(off, off) <= l->bound) {
+        brio_offer_points(l, middle, middle + 1);
+        if (across < 0)
+            look(l, t, middle + 1, end, off);
+        else
+            look(l, t, begin, middle, off);
+    }
+    off[axis] = before;
 }
 
 void brio_offer_tree(brio_near_list *l, const brio_point_tree *tree) {
-    look(l, tree, 0, tree->count);
+    look(l, tree, 0, tree->count, (double[3]){0, 0, 0});
 }
 
 size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t wanted, double bound,
@@ -186,7 +193,8 @@ size_t brio_nearest_points(const brio_point_tree *tree, const double *p, size_t 
     return l.size;
 }
 
-static double nearest_in(const brio_point_tree *t, const double *p, size_t begin, size_t end, double best) {
+static double nearest_in(const brio_point_tree *t, const double *p, size_t begin, size_t end, double best,
+                         double off[3]) {
     if (end - begin <= LEAF) {
         for (size_t i = begin; i < end; i++) {
             double square = brio_square_distance(p, t->point[i]);
@@ -195,19 +203,23 @@ static double nearest_in(const brio_point_tree *t, const double *p, size_t begin
         return best;
     }
     size_t middle = begin + (end - begin) / 2;
-    if (t->axis[middle] == DUPLICATES) return fmin(best, brio_square_distance(p, t->point[middle]));
-    assert(t->axis[middle] < 3);
-    double across = p[t->axis[middle]] - t->point[middle][t->axis[middle]];
+    int axis = t->axis[middle];
+    if (axis == DUPLICATES) return fmin(best, brio_square_distance(p, t->point[middle]));
+    assert(axis < 3);
+    double across = p[axis] - t->point[middle][axis], before = off[axis];
     bool below = across < 0;
     double square = brio_square_distance(p, t->point[middle]);
     best = square < best ? square : best;
-    best = below ? nearest_in(t, p, begin, middle, best) : nearest_in(t, p, middle + 1, end, best);
-    if (across * across >= best) return best;
-    return below ? nearest_in(t, p, middle + 1, end, best) : nearest_in(t, p, begin, middle, best);
+    best = below ? nearest_in(t, p, begin, middle, best, off) : nearest_in(t, p, middle + 1, end, best, off);
+    off[axis] = across;
+    if (brio_dot(off, off) < best)
+        best = below ? nearest_in(t, p, middle + 1, end, best, off) : nearest_in(t, p, begin, middle, best, off);
+    off[axis] = before;
+    return best;
 }
 
 double brio_nearest_square(const brio_point_tree *tree, const double *p, double best) {
-    return nearest_in(tree, p, 0, tree->count, best);
+    return nearest_in(tree, p, 0, tree->count, best, (double[3]){0, 0, 0});
 }
 
 void brio_sort_near_points(const brio_point_tree *tree, brio_near_point *near, size_t count) {

@@ -22,7 +22,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from count_house import SMALL as SMALL_LINES, files_of, single_headers, without_comments
 
 LINES, COLUMNS, FEWEST, MOST = 600, 120, 3, 30
-SMALL, SINGLE = 236, 76
+SMALL, SINGLE = 235, 76
 FOLDERS = {"src/base": 46, "src/io": 50, "src/mesh": 44, "src/plane": 33, "src/platform": 31, "src/predicates": 31, "src/reconstruct/cocone": 35,
            "src/reconstruct/labeled_delaunay": 36, "src/testdata": 31, "src/triangulation": 54}
 WIDE = {"include": 12, "src/reconstruct": 19}

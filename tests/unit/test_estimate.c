@@ -9,9 +9,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { N = SHORT_TESTS ? 20000 : 40000 };
+enum { N = SHORT_TESTS ? 20000 : 40000, LARGEST = 200000 };
 
-static double points[3 * N], weights[N];
+static double points[3 * LARGEST], weights[N];
 
 /* The most bytes that the context held, beyond what it held before. */
 static double peak_of_delaunay(const double *w, int threads, const brio_laboratory_options *o) {
@@ -172,6 +172,51 @@ static void points_on_two_lines_had_an_infinite_estimate(void) {
         EXPECT(ratio > 0.8 && ratio < 1.3, "%g points: %g", n, ratio);
         brio_context_free(ctx);
     }
+}
+
+/* Turns points, so that lines along an axis become lines up to rounding. */
+static void turn_points(size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        double *p = points + 3 * i, x = p[0], y = p[1], z = p[2];
+        p[0] = 0.48 * x - 0.64 * y + 0.6 * z, p[1] = 0.8 * x + 0.6 * y, p[2] = -0.36 * x + 0.48 * y + 0.8 * z;
+    }
+}
+
+/* The estimate of more than 16,384 points on two lines grew as they do, and points on lines up to rounding have
+ * tetrahedra in their surroundings, too: it was a ten thousandth of n^2 / 4. */
+static void many_points_on_two_lines_had_few_tetrahedra(void) {
+
+    for (int turned = 0; turned < 2; turned++)
+        for (size_t count = 20000; count <= LARGEST; count *= 10) {
+            brio_context *ctx = new_context();
+            uint64_t tetrahedra = 0;
+            points_on_two_lines(count);
+            if (turned) turn_points(count);
+            EXPECT(brio_estimate_tetrahedra(ctx, points, NULL, count, &tetrahedra) == BRIO_OK);
+            double ratio = (double)tetrahedra / ((double)count * (double)count / 4);
+            EXPECT(ratio > 0.5 && ratio < 2, "%zu points, turned %d: %g", count, turned, ratio);
+            brio_context_free(ctx);
+        }
+}
+
+/* Surroundings of points of a spring hold parts of several windings, and grow faster than the whole does: the estimate
+ * was four times as large. */
+static void points_of_a_spring_had_too_many_tetrahedra(void) {
+    enum { SPRING = 8000 };
+    brio_context *ctx = new_context();
+    brio_triangulation *t = NULL;
+    uint64_t tetrahedra = 0;
+    for (size_t i = 0; i < SPRING; i++) {
+        double angle = 125.0 * (double)i / SPRING;
+        points[3 * i] = cos(angle), points[3 * i + 1] = sin(angle), points[3 * i + 2] = angle / 10;
+    }
+    EXPECT(brio_estimate_tetrahedra(ctx, points, NULL, SPRING, &tetrahedra) == BRIO_OK);
+    EXPECT(brio_delaunay(ctx, points, NULL, SPRING, NULL, &t) == BRIO_OK);
+    const brio_delaunay_stats *s = brio_triangulation_stats(t);
+    double ratio = (double)tetrahedra / (double)(s->tetrahedra + s->hull_facets);
+    EXPECT(ratio > 0.5 && ratio < 3, "%g", ratio);
+    brio_triangulation_free(t);
+    brio_context_free(ctx);
 }
 
 /* Surroundings of points of two planes have no tetrahedra: the estimate was of none. */
@@ -452,6 +497,8 @@ SUITE(test_estimate) {
     RUN(gaps_in_space_that_repeats_are_estimated);
     RUN(clusters_that_fit_a_ball_are_estimated);
     RUN(points_on_two_lines_had_an_infinite_estimate);
+    RUN(many_points_on_two_lines_had_few_tetrahedra);
+    RUN(points_of_a_spring_had_too_many_tetrahedra);
     RUN(points_of_two_planes_had_no_tetrahedra);
     RUN(points_on_a_line_take_few_balls);
     RUN(tetrahedra_on_curves_are_estimated);

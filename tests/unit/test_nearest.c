@@ -137,7 +137,31 @@ static void points_at_few_positions_take_few_comparisons(void) {
     brio_context_free(ctx);
 }
 
+/* From far away all points of a cluster are beyond each cut of the tree by less than the nearest point is away: a query
+ * met all of them. */
+static void queries_far_from_a_cluster_do_not_meet_all_of_it(void) {
+    enum { QUERIES = 50, FEW = 2 * MOST / 3 };
+    static double p[3 * MOST];
+    brio_context *ctx = new_context();
+    brio_near_point near[BRIO_NEAR_ROOM];
+    brio_rng rng = brio_rng_new(4);
+    brio_point_tree tree;
+    size_t met = 0;
+    for (size_t i = 0; i < 3 * MOST; i++) p[i] = 1e-4 * brio_rng_double(&rng);
+    EXPECT(brio_point_tree_new(ctx, p, MOST, &tree) == BRIO_OK);
+    for (int q = 0; q < QUERIES; q++) {
+        double from[3] = {1 + brio_rng_double(&rng), -1 - brio_rng_double(&rng), 1 + brio_rng_double(&rng)};
+        brio_near_list l = brio_near_list_for((const double(*)[3])tree.point, from, 8, near);
+        brio_offer_tree(&l, &tree);
+        met += l.met;
+    }
+    EXPECT(0 < met && met < QUERIES * FEW, "%zu points a query", met / QUERIES);
+    brio_point_tree_free(ctx, &tree);
+    brio_context_free(ctx);
+}
+
 SUITE(test_nearest) {
+    RUN(queries_far_from_a_cluster_do_not_meet_all_of_it);
     RUN(ties_are_kept_in_linear_time);
     RUN(points_at_few_positions_take_few_comparisons);
     RUN(nearest_points_are_the_first_of_all);
