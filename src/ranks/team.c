@@ -2,9 +2,9 @@
  *
  * Rank 0 has the points, and a context whose triangulator (triangulation.h) is the team. Whenever a surface needs a
  * triangulation, rank 0 says so, and all ranks do the same: rank 0 adds its points, which the ranks divide among each
- * other's tiles; all triangulate; the rows of all tiles go to rank 0, some at a time, and after them the mates of facets
- * between tiles. There they become the triangulation that one process makes (tiles/gather.c). Parts of minimum cuts are
- * closed tasks, which rank 0 sends to all (cuts.c). In between the others wait for the next word.
+ * other's tiles; all triangulate; the rows of all tiles go to rank 0, some at a time, then the mates of facets between
+ * tiles. There they become the triangulation that one process makes (tiles/gather.c). Parts of minimum cuts are closed
+ * tasks, which rank 0 sends to all (cuts.c). In between the others wait for the next word.
  *
  * A failure in a triangulation or a cut is that of all ranks. A failure of rank 0 between them reaches the others when
  * rank 0 dismisses them. */
@@ -69,7 +69,7 @@ typedef struct {
     brio_gather *gather; /* NULL on other ranks than 0 */
 } sending;
 
-/* Sends the rows of one tile of each rank to rank 0, as a brio_tile_part_fn. The file of the tile is not needed any more. */
+/* Sends the rows of one tile of each rank to rank 0, as a brio_tile_part_fn. The tile's file is not needed any more. */
 static brio_status send_part(void *user, uint32_t tile, const brio_tile_part *part, const uint32_t *mate) {
     sending *s = user;
     brio_ranks *r = s->r;
@@ -119,8 +119,9 @@ static brio_status add_points(brio_ranks *r, const at_rank_0 *own) {
 
 static brio_status make_room(brio_ranks *r, at_rank_0 *own) {
     if (!own) return BRIO_OK;
-    return brio_gather_new(r->ctx, own->points, own->num_points, own->first, (uint32_t)r->ranks * r->t->num_tiles,
-                           r->facts.hull_facets, &own->rows);
+    const brio_input input = {own->points, NULL, own->num_points};
+    uint32_t tiles = (uint32_t)r->ranks * r->t->num_tiles;
+    return brio_gather_new(r->ctx, &input, own->first, tiles, r->facts.hull_facets, &own->rows);
 }
 
 static brio_status collect(brio_ranks *r, at_rank_0 *own) {

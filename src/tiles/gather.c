@@ -19,16 +19,15 @@
 
 enum { SOME = 1 << 12 /* rows at once. Chosen */, MOST_TETRAHEDRA = 1 << 30 };
 
-brio_status brio_gather_new(brio_context *ctx, const double *points, size_t num_points, const uint64_t *first,
-                            uint32_t num_tiles, uint64_t hull_facets, brio_gather *out) {
+brio_status brio_gather_new(brio_context *ctx, const brio_input *input, const uint64_t *first, uint32_t num_tiles,
+                            uint64_t hull_facets, brio_gather *out) {
     uint64_t all = first[num_tiles] + hull_facets;
-    *out = (brio_gather){
-        .ctx = ctx, .points = points, .num_points = num_points, .first = first, .num_tiles = num_tiles};
+    *out = (brio_gather){.ctx = ctx, .input = *input, .first = first, .num_tiles = num_tiles};
     BRIO_EXPECT(ctx, all < MOST_TETRAHEDRA, BRIO_ERR_TOO_LARGE, "%llu tetrahedra are too many for one triangulation",
                 (unsigned long long)all);
     out->num_finite = (size_t)first[num_tiles];
     out->count = (size_t)all;
-    BRIO_FORWARD(brio_adoption_begin(ctx, &(brio_input){points, NULL, num_points}, out->count, &out->adoption));
+    BRIO_FORWARD(brio_adoption_begin(ctx, input, out->count, &out->adoption));
     out->tet = brio_adoption_tetrahedra(out->adoption);
     return BRIO_ALLOC_IN_MEMORY(ctx, out->some, SOME);
 }
@@ -179,15 +178,16 @@ done:
 /* --- the points that are no vertices --- */
 
 /* Lists of each point the one of least index at its position.   *vertex_of  the caller's. */
-static brio_status name_vertices(brio_context *ctx, const double *points, size_t num_points, uint32_t **vertex_of) {
+static brio_status name_vertices(brio_context *ctx, const brio_input *input, uint32_t **vertex_of) {
     brio_status status = BRIO_OK;
+    size_t n = input->count;
     uint32_t *order = NULL, *named = NULL;
-    BRIO_TRY(BRIO_ALLOC(ctx, *vertex_of, num_points));
-    BRIO_TRY(brio_canonical_points(ctx, points, num_points, &order));
-    BRIO_TRY(BRIO_ALLOC(ctx, named, num_points));
-    memcpy(named, order, num_points * sizeof *named);
-    brio_name_coincident(points, num_points, named);
-    for (size_t i = 0; i < num_points; i++) (*vertex_of)[order[i]] = named[i];
+    BRIO_TRY(BRIO_ALLOC(ctx, *vertex_of, n));
+    BRIO_TRY(brio_canonical_points(ctx, input->points, n, &order));
+    BRIO_TRY(BRIO_ALLOC(ctx, named, n));
+    memcpy(named, order, n * sizeof *named);
+    brio_name_coincident(input->points, n, named);
+    for (size_t i = 0; i < n; i++) (*vertex_of)[order[i]] = named[i];
 done:
     brio_release(ctx, order);
     brio_release(ctx, named);
@@ -205,7 +205,7 @@ brio_status brio_gather_end(brio_gather *g, uint64_t duplicates, brio_triangulat
     BRIO_TRY(join_hull(g));
     brio_release(ctx, g->some);
     g->some = NULL;
-    if (duplicates) BRIO_TRY(name_vertices(ctx, g->points, g->num_points, &vertex_of));
+    if (duplicates) BRIO_TRY(name_vertices(ctx, &g->input, &vertex_of));
     status = brio_adoption_end(ctx, g->adoption, vertex_of, out);
 done:
     brio_release(ctx, vertex_of);
@@ -252,10 +252,11 @@ brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_po
     brio_status status = BRIO_OK;
     uint64_t *first = NULL;
     taking own = {.gather.ctx = ctx, .t = t};
+    const brio_input input = {points, NULL, num_points};
     *out = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, first, t->num_tiles + 1));
     for (uint32_t i = 0; i < t->num_tiles; i++) first[i + 1] = first[i] + t->tile[i].tetrahedra;
-    BRIO_TRY(brio_gather_new(ctx, points, num_points, first, t->num_tiles, t->stats.hull_facets, &own.gather));
+    BRIO_TRY(brio_gather_new(ctx, &input, first, t->num_tiles, t->stats.hull_facets, &own.gather));
     BRIO_TRY(BRIO_ALLOC_IN_MEMORY(ctx, own.some, SOME));
     BRIO_TRY(take_all(&own));
     status = brio_gather_end(&own.gather, t->stats.duplicates, out);

@@ -1,9 +1,9 @@
 /* Neighbours of tetrahedra across tiles.
  *
- * Two tetrahedra are neighbours if they share a facet. The facets of a part are known by their vertices; those whose
- * latest vertex is the same meet in a small table (linear probing). What is left alone is a facet of the hull, or its other side is of
- * another tile. These facets go to files by a hash of the indices of their vertices, as many files as tiles. Each file
- * is sorted in memory, and each side of a pair is told the other one, in a file of its tile. So no more than the
+ * Two tetrahedra are neighbours if they share a facet. The facets of a part whose latest vertex is the same meet in a
+ * small table, by their other vertices (linear probing). What is left alone is a facet of the hull, or its other side
+ * is of another tile. These facets go to files by a hash of the indices of their vertices, as many files as tiles. Each
+ * file is sorted in memory, and each side of a pair is told the other one, in a file of its tile. So no more than the
  * borders of all tiles is written, and neighbours within a tile are found anew when they are asked for.
  *
  * Based on: Aggarwal, Vitter. The input/output complexity of sorting and related problems. CACM 1988.
@@ -64,8 +64,9 @@ static void list_seconds(const brio_tile_part *p, uint32_t *end, uint32_t *row) 
     for (size_t i = 0; i < p->num_tetrahedra; i++) row[end[p->tetrahedra[i][1]]++] = (uint32_t)i;
 }
 
-/* A tetrahedron's first vertex is its latest, and its second one the latest of the others; rows are sorted by the first
- * (part.c). So three facets have the first for their latest vertex, and one the second. */
+/* Makes use of the order of a part (part.c): a tetrahedron's first vertex is its latest, its second one the latest of
+ * the others, and rows are sorted by the first. So three facets have the first for their latest vertex, and one the
+ * second. */
 brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p, uint32_t *mate) {
     uint32_t *second = NULL, *end = NULL;
     facets f = {0};

@@ -310,8 +310,7 @@ brio_status brio_tiles_join(brio_tiles *t, brio_tile_part_fn with, void *user);
 /** Tetrahedra that come part after part. Facets of the hull have infinite ones, which follow. */
 typedef struct {
     brio_context *ctx;
-    const double *points;
-    size_t num_points;
+    brio_input input;
     const uint64_t *first; /* #tiles + 1: of each tile, its first tetrahedron among all */
     uint32_t num_tiles;
     size_t num_finite, count; /* count: the infinite ones, too */
@@ -323,10 +322,11 @@ typedef struct {
 } brio_gather;
 
 /** Makes room.
- *  points  num_points by 3, kept, as `first`.   hull_facets  of all.   out  freed with brio_gather_free, on failure too.
+ *  input  without weights; its points stay where they are, as `first`.   hull_facets  of all.
+ *  out  freed with brio_gather_free, on failure too.
  *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE (over 2^30 tetrahedra), BRIO_ERR_NO_MEMORY. */
-brio_status brio_gather_new(brio_context *ctx, const double *points, size_t num_points, const uint64_t *first,
-                            uint32_t num_tiles, uint64_t hull_facets, brio_gather *out);
+brio_status brio_gather_new(brio_context *ctx, const brio_input *input, const uint64_t *first, uint32_t num_tiles,
+                            uint64_t hull_facets, brio_gather *out);
 void brio_gather_free(brio_gather *g);
 
 /** A tetrahedron of a tile: its vertices by the indices of points, and its mates in the same tile, or BRIO_NO_FACET. */

@@ -381,8 +381,7 @@ static void take_tetrahedra(brio_context *ctx, brio_adoption *a, const uint32_t 
     memset(s->state, TET_PLAIN, a->count * sizeof *s->state);
     s->t.count = a->count;
     s->adopted = true;
-    for (size_t p = 0; vertex_of && p < s->num_points; p++)
-        s->representative[a->record[p]] = a->record[vertex_of[p]];
+    for (size_t p = 0; vertex_of && p < s->num_points; p++) s->representative[a->record[p]] = a->record[vertex_of[p]];
     brio_release(ctx, a->record);
     a->record = NULL;
 }

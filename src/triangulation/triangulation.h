@@ -52,8 +52,7 @@ uint32_t brio_adoption_infinite(const brio_adoption *a);
 /** Makes the triangulation of the tetrahedra that were written. Call it once; free the adoption in any case.
  *  vertex_of  of a vertex: itself; of a duplicate: its vertex; of others: any vertex. NULL: all points are vertices.
  *  Returns what brio_delaunay returns. */
-brio_status brio_adoption_end(brio_context *ctx, brio_adoption *a, const uint32_t *vertex_of,
-                              brio_triangulation **out);
+brio_status brio_adoption_end(brio_context *ctx, brio_adoption *a, const uint32_t *vertex_of, brio_triangulation **out);
 void brio_adoption_free(brio_context *ctx, brio_adoption *a);
 
 /** Who makes the triangulations of a context, where one process in one memory is not to do it. A context has at most
