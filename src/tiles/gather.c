@@ -277,18 +277,13 @@ static brio_status run_in_memory(brio_tiles *t) {
     return status;
 }
 
-/* Triangulates points in tiles of about as many points as those of all points have, at most a tenth more. */
+/* Triangulates points in tiles. */
 static brio_status make(void *user, brio_context *ctx, const double *points, size_t num_points,
                         brio_triangulation **out) {
-    const brio_tiled *tiled = user;
-    brio_tiles_options o = *tiled->options;
     brio_status status = BRIO_OK;
     brio_tiles *t = NULL;
-    double share = (double)num_points / (double)tiled->num_points;
     *out = NULL;
-    o.tiles = (uint32_t)fmax(1, ceil(share * brio_tiles_number(&o) - 0.1));
-    if (o.tiles == 1 && share < 1) return brio_delaunay(ctx, points, NULL, num_points, NULL, out);
-    BRIO_TRY(brio_tiles_new(ctx, &o, &t));
+    BRIO_TRY(brio_tiles_new(ctx, user, &t));
     BRIO_TRY(brio_tiles_add(ctx, t, points, NULL, num_points));
     BRIO_TRY(run_in_memory(t));
     status = t->stats.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, NULL, out)
@@ -298,9 +293,9 @@ done:
     return status;
 }
 
-brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiled *tiled, brio_triangulator *out) {
-    BRIO_EXPECT(ctx, !tiled->options->stars && !tiled->options->key, BRIO_ERR_ARGUMENT,
+brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiles_options *options, brio_triangulator *out) {
+    BRIO_EXPECT(ctx, !options->stars && !options->key, BRIO_ERR_ARGUMENT,
                 "tiles of a surface have neither stars nor a key");
-    *out = (brio_triangulator){(void *)tiled, make};
+    *out = (brio_triangulator){(void *)options, make};
     return BRIO_OK;
 }

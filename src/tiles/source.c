@@ -5,10 +5,10 @@
  * over it, and the balls of the next round are smaller by a factor. Else it comes to blocks, and these are read.
  *
  * Where many points lie nearly on spheres, as the points of a rounded sphere do, blocks are met by ball after ball, and
- * their points compared exactly without being in conflict; elsewhere, as on a torus, ball after ball finds some of them.
- * A block that had PATIENCE comparisons a point with balls, or findings, is added as a whole; then its points are known,
- * and known points are never in conflict. So the number of these comparisons is in proportion to the points.
- * Comparisons in vain with half-spaces do not count: each of them meets whole blocks, and a filter settles most.
+ * their points compared exactly without being in conflict; elsewhere, as on a torus, ball after ball finds some points
+ * of them. A block that had PATIENCE such comparisons a point, in vain or not, is added as a whole; then its points are
+ * known, and known points are never in conflict. So the number of these comparisons is in proportion to the points.
+ * Half-spaces that compare in vain do not count: near the hull they meet whole blocks, of which no point is needed.
  *
  * Most balls are empty, and large: they touch the boxes of many blocks. So a block in memory is divided into groups of
  * points that follow each other along the curve. A ball is compared with the boxes of all groups in vector lanes, and

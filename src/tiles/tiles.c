@@ -62,7 +62,7 @@ brio_status brio_tiles_new(brio_context *ctx, const brio_tiles_options *options,
     t->ctx = ctx;
     t->raw.file = -1;
     t->folder.lock = -1;
-    t->num_tiles = brio_tiles_number(&o);
+    t->num_tiles = o.tiles ? o.tiles : TILES;
     t->stars = o.stars != 0;
     t->sorts_cells = o.stars == 1 || o.stars == 3;
     t->sorts_faces = o.stars == 1;
@@ -278,12 +278,8 @@ void brio_tiles_leave(brio_tiles *t) {
 
 /* --- all stages --- */
 
-uint32_t brio_tiles_number(const brio_tiles_options *o) {
-    return o->tiles ? o->tiles : TILES;
-}
-
 double brio_tiles_least_memory(const brio_tiles_options *o, double points) {
-    return BYTES_A_POINT * points / brio_tiles_number(o);
+    return BYTES_A_POINT * points / (o->tiles ? o->tiles : TILES);
 }
 
 double brio_tiles_disk(double points) {

@@ -87,8 +87,6 @@ brio_status brio_tiles_arrange(brio_tiles *t);
 /** Triangulates one tile, and writes its file. */
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 
-/** Returns how many tiles options ask for. */
-uint32_t brio_tiles_number(const brio_tiles_options *options);
 /** Return the bytes that brio_tiles_run needs for points at different positions: memory for one of equal tiles, and
  *  disk. Cells need more. */
 double brio_tiles_least_memory(const brio_tiles_options *options, double points);
@@ -358,14 +356,8 @@ brio_status brio_gather_end(brio_gather *g, uint64_t duplicates, brio_triangulat
  *  points  num_points by 3: those that were added.   Returns what brio_delaunay returns. */
 brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, brio_triangulation **out);
 
-/** What is triangulated in tiles for a call, and fewer points of it likewise. */
-typedef struct {
-    const brio_tiles_options *options;
-    size_t num_points;
-} brio_tiled;
-
-/** Lets a context's triangulations be made in tiles: fewer points in fewer tiles, and what is one tile as a whole.
- *  tiled  kept: its options have neither stars nor a key.   Returns BRIO_OK, BRIO_ERR_ARGUMENT. */
-brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiled *tiled, brio_triangulator *out);
+/** Lets a context's triangulations be made in tiles.
+ *  options  kept: neither stars nor a key.   Returns BRIO_OK, BRIO_ERR_ARGUMENT. */
+brio_status brio_triangulate_in_tiles(brio_context *ctx, const brio_tiles_options *options, brio_triangulator *out);
 
 #endif

@@ -145,12 +145,11 @@ static brio_status require_room(brio_context *ctx, const double *points, size_t 
 static brio_status make(brio_context *ctx, const double *points, size_t num_points, const brio_surface_options *o,
                         brio_mesh *mesh, brio_surface_stats *stats) {
     brio_triangulator in_tiles;
-    const brio_tiled tiled = {o->tiles, num_points};
     const brio_method_row *method = brio_method_row_of(o->method);
     if (!o->tiles) return method->make(ctx, points, num_points, o, mesh, stats);
     BRIO_EXPECT(ctx, !ctx->triangulator, BRIO_ERR_ARGUMENT,
                 "tiles: ranks triangulate for this surface, in their tiles");
-    BRIO_FORWARD(brio_triangulate_in_tiles(ctx, &tiled, &in_tiles));
+    BRIO_FORWARD(brio_triangulate_in_tiles(ctx, o->tiles, &in_tiles));
     ctx->triangulator = &in_tiles;
     brio_status status = method->make(ctx, points, num_points, o, mesh, stats);
     ctx->triangulator = NULL;
