@@ -87,10 +87,9 @@ brio_status brio_tiles_arrange(brio_tiles *t);
 /** Triangulates one tile, and writes its file. */
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 
-/** Return the bytes that brio_tiles_run needs for points at different positions: memory for one of equal tiles, and
- *  disk. Cells need more. */
+/** Returns the bytes of memory that brio_tiles_run needs for one of equal tiles of points at different positions. Cells
+ *  need more. */
 double brio_tiles_least_memory(const brio_tiles_options *options, double points);
-double brio_tiles_disk(double points);
 
 /** Returns the bytes at most while points are taken and divided. */
 double brio_tiles_divide_bytes(const brio_tiles *t);
