@@ -106,15 +106,17 @@ brio_status brio_live_snapshot(brio_context *ctx, const brio_dynamic *d, const b
     brio_status status = BRIO_OK;
     uint32_t *place = NULL, *vertex_of = NULL; /* of each row: its place in the list; of each place: its vertex */
     uint32_t *standing = NULL;                 /* of each row that is a vertex: the place that stands for it */
-    brio_tetrahedron *tet = NULL;
+    brio_adoption *adoption = NULL;
     uint32_t *moved = NULL;
     size_t live = d->counts.finite + d->counts.infinite, n = 0;
     if (d->dimension < 3) return brio_delaunay(ctx, list->point, list->weight, list->count, NULL, out);
     BRIO_TRY(BRIO_ALLOC(ctx, place, d->num_rows));
     BRIO_TRY(BRIO_ALLOC(ctx, standing, d->num_rows));
     BRIO_TRY(BRIO_ALLOC(ctx, vertex_of, list->count));
-    BRIO_TRY(BRIO_ALLOC(ctx, tet, live));
     BRIO_TRY(BRIO_ALLOC(ctx, moved, d->t.count));
+    BRIO_TRY(brio_adoption_begin(ctx, &(brio_input){list->point, list->weight, list->count}, 0, live, &adoption));
+    brio_tetrahedron *tet = brio_adoption_tetrahedra(adoption);
+    const uint32_t *record = brio_adoption_records(adoption), infinite = brio_adoption_infinite(adoption);
     for (size_t i = 0; i < list->count; i++) place[d->row_of[list->name[i]]] = (uint32_t)i;
     for (uint32_t r = 1; r < d->num_rows; r++)
         if (brio_row_kind(d, r) == ROW_VERTEX) standing[r] = first_of_twins(d, place, r);
@@ -133,18 +135,17 @@ brio_status brio_live_snapshot(brio_context *ctx, const brio_dynamic *d, const b
         brio_tetrahedron *to = &tet[moved[s]];
         for (int k = 0; k < 4; k++) {
             uint32_t v = d->t.tet[s].vertex[k], mate = d->t.tet[s].mate[k];
-            to->vertex[k] = v ? standing[v] : BRIO_INFINITE;
+            to->vertex[k] = v ? record[standing[v]] : infinite;
             to->mate[k] = brio_facet_of(moved[brio_tet_of(mate)], brio_slot_of(mate));
         }
     }
     BRIO_TRY(brio_look(ctx, live));
-    brio_adopted from = {.tet = tet, .count = live, .vertex_of = vertex_of};
-    status = brio_delaunay_adopt(ctx, &(brio_input){list->point, list->weight, list->count}, &from, out);
+    status = brio_adoption_end(ctx, adoption, vertex_of, out);
 done:
+    brio_adoption_free(ctx, adoption);
     brio_release(ctx, place);
     brio_release(ctx, standing);
     brio_release(ctx, vertex_of);
-    brio_release(ctx, tet);
     brio_release(ctx, moved);
     return status;
 }

@@ -16,6 +16,11 @@ static brio_status send_answer(void *user, const brio_facet_answer *a) {
     return brio_exchange_put(&r->x, (int)(a->tile / r->t->num_tiles), a, sizeof *a);
 }
 
+static brio_status send_answer_to_0(void *user, const brio_facet_answer *a) {
+    brio_ranks *r = user;
+    return brio_exchange_put(&r->x, 0, a, sizeof *a);
+}
+
 /* Exchanges rows, and puts those that come into files: facets by their hash, answers by their tile. */
 static brio_status pass(brio_ranks *r, brio_row_files *files, bool lone) {
     size_t size = lone ? sizeof(brio_lone_facet) : sizeof(brio_facet_answer);
@@ -32,35 +37,48 @@ static brio_status pass(brio_ranks *r, brio_row_files *files, bool lone) {
     return BRIO_OK;
 }
 
-static brio_status divide_lone(brio_ranks *r) {
+/* Makes the part of a tile, and sends what is lone. */
+static brio_status divide_tile(brio_ranks *r, uint32_t tile, brio_tile_part_fn with, void *user, brio_row_files *lone) {
+    brio_tile_part p = {.size = sizeof p};
+    uint32_t *mate = NULL;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_ranks_make_part(r, tile, &p));
+    BRIO_TRY(BRIO_ALLOC(r->ctx, mate, 4 * p.num_tetrahedra + 1));
+    BRIO_TRY(brio_tile_match_inside(r->ctx, brio_ranks_tile(r, tile), &p, mate));
+    if (with) BRIO_TRY(with(user, tile, &p, mate));
+    BRIO_TRY(brio_tile_lone_facets(brio_ranks_tile(r, tile), &p, mate, send_lone, r));
+    status = pass(r, lone, true);
+done:
+    brio_tile_part_free(r->ctx, &p);
+    brio_release(r->ctx, mate);
+    return status;
+}
+
+static brio_status divide_lone(brio_ranks *r, brio_tile_part_fn with, void *user) {
     brio_tiles *t = r->t;
     brio_row_files lone = {0};
-    brio_tile_part p = {.size = sizeof p};
     brio_status status = BRIO_OK;
     BRIO_TRY(brio_row_files_open(&t->folder, "lone", t->num_tiles, &lone));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         BRIO_TRY(brio_progress(r->ctx, "neighbours", 0.9 * i / t->num_tiles));
-        BRIO_TRY(brio_ranks_make_part(r, i, &p));
-        BRIO_TRY(brio_tile_lone_facets(r->ctx, brio_ranks_tile(r, i), &p, send_lone, r));
-        brio_tile_part_free(r->ctx, &p);
-        BRIO_TRY(pass(r, &lone, true));
+        BRIO_TRY(divide_tile(r, i, with, user, &lone));
     }
     status = brio_row_files_flush(&lone);
 done:
-    brio_tile_part_free(r->ctx, &p);
     brio_row_files_close(&lone);
     return status;
 }
 
-static brio_status join_lone(brio_ranks *r) {
+/* Has the facets answered.   files  of answers that come to this rank.   to_0  whether all of them go to rank 0. */
+static brio_status join_lone(brio_ranks *r, uint32_t files, bool to_0) {
     brio_tiles *t = r->t;
     brio_row_files joined = {0};
     uint64_t alone = 0, all = 0;
     brio_status status = BRIO_OK;
-    BRIO_TRY(brio_row_files_open(&t->folder, "joined", t->num_tiles, &joined));
+    BRIO_TRY(brio_row_files_open(&t->folder, "joined", files, &joined));
     for (uint32_t i = 0; i < t->num_tiles; i++) {
         BRIO_TRY(brio_progress(r->ctx, "neighbours", 0.9 + 0.1 * i / t->num_tiles));
-        BRIO_TRY(brio_facet_pairs(t, i, send_answer, r, &alone));
+        BRIO_TRY(brio_facet_pairs(t, i, to_0 ? send_answer_to_0 : send_answer, r, &alone));
         BRIO_TRY(pass(r, &joined, false));
     }
     BRIO_TRY(brio_row_files_flush(&joined));
@@ -74,14 +92,20 @@ done:
     return status;
 }
 
+brio_status brio_ranks_join_at_0(brio_ranks *r, brio_tile_part_fn with, void *user) {
+    brio_status status = divide_lone(r, with, user);
+    uint32_t files = r->rank ? 1 : (uint32_t)r->ranks * r->t->num_tiles;
+    return status == BRIO_OK ? join_lone(r, files, true) : status;
+}
+
 /* Finds all neighbours that are of another tile, unless a call before did so on all ranks. */
 static brio_status join(brio_ranks *r) {
     brio_tiles *t = r->t;
     BRIO_FORWARD(brio_exchange_now(&r->x, !t->has_neighbours));
     if (!r->x.any) return BRIO_OK;
     t->has_neighbours = false;
-    brio_status status = divide_lone(r);
-    if (status == BRIO_OK) status = join_lone(r);
+    brio_status status = divide_lone(r, NULL, NULL);
+    if (status == BRIO_OK) status = join_lone(r, t->num_tiles, false);
     t->has_neighbours = status == BRIO_OK;
     if (status == BRIO_OK) return BRIO_OK;
     brio_facet_files_remove(t);
@@ -100,8 +124,7 @@ static brio_status name_neighbours(brio_ranks *r, uint32_t tile, const brio_tile
                 (unsigned long long)r->t->tile[tile].tetrahedra);
     BRIO_FORWARD(join(r));
     if (!part->num_tetrahedra) return BRIO_OK;
-    BRIO_FORWARD(brio_tile_match_inside(r->ctx, brio_ranks_tile(r, tile), part, neighbours));
-    return brio_facet_answers_take(r->t, tile, all, part, neighbours);
+    return brio_tile_name_neighbours(r->t, tile, brio_ranks_tile(r, tile), all, part, neighbours);
 }
 
 brio_status brio_ranks_neighbours(brio_context *ctx, brio_ranks *r, uint32_t tile, const brio_tile_part *part,

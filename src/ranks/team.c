@@ -2,9 +2,9 @@
  *
  * Rank 0 has the points, and a context whose triangulator (triangulation.h) is the team. Whenever a surface needs a
  * triangulation, rank 0 says so, and all ranks do the same: rank 0 adds its points, which the ranks divide among each
- * other's tiles; all triangulate; the rows of all tiles go to rank 0, some at a time, where they become the
- * triangulation that one process makes (tiles/gather.c). Parts of minimum cuts are closed tasks, which rank 0 sends to
- * all (cuts.c). In between the others wait for the next word.
+ * other's tiles; all triangulate; the rows of all tiles go to rank 0, some at a time, then the mates of facets between
+ * tiles. There they become the triangulation that one process makes (tiles/gather.c). Parts of minimum cuts are closed
+ * tasks, which rank 0 sends to all (cuts.c). In between the others wait for the next word.
  *
  * A failure in a triangulation or a cut is that of all ranks. A failure of rank 0 between them reaches the others when
  * rank 0 dismisses them. */
@@ -14,7 +14,7 @@
 #include "ranks/work.h"
 #include <string.h>
 
-/* Chosen: 800 kB of rows from each rank are on their way at once, and points are added in blocks of 24 MB. */
+/* Chosen: 500 kB of rows from each rank are on their way at once, and points are added in blocks of 24 MB. */
 enum { ROWS_AT_ONCE = 1 << 14, POINTS_AT_ONCE = 1 << 20 };
 
 /* What rank 0 says. */
@@ -41,56 +41,48 @@ typedef struct {
     uint64_t tile, first, count;
 } rows_head;
 
-/* The tile of this rank that is sent now. */
-typedef struct {
-    brio_tile_part part;
-    brio_tile_neighbour (*neighbours)[4];
-    size_t sent;
-} sending;
-
-static brio_status put_rows(brio_ranks *r, uint32_t tile, sending *s) {
-    size_t left = s->part.num_tetrahedra - s->sent, count = left < ROWS_AT_ONCE ? left : ROWS_AT_ONCE;
-    const rows_head head = {brio_ranks_tile(r, tile), s->sent, count};
-    void *room;
-    if (!count) return BRIO_OK;
-    BRIO_FORWARD(brio_exchange_put(&r->x, 0, &head, sizeof head));
-    BRIO_FORWARD(brio_exchange_room(&r->x, 0, count * sizeof(brio_gather_row), &room));
-    brio_gather_row *row = room;
-    for (size_t i = 0; i < count; i++)
-        row[i] = brio_gather_row_of(&s->part, (const brio_tile_neighbour(*)[4])s->neighbours, s->sent + i);
-    s->sent += count;
+/* Appends rows of a tile of this rank to what goes to rank 0. */
+static brio_status put_rows(brio_ranks *r, const rows_head *head, const brio_tile_part *part, const uint32_t *mate) {
+    void *rows;
+    if (!head->count) return BRIO_OK;
+    BRIO_FORWARD(brio_exchange_put(&r->x, 0, head, sizeof *head));
+    BRIO_FORWARD(brio_exchange_room(&r->x, 0, head->count * sizeof(brio_gather_row), &rows));
+    brio_gather_rows(part, mate, head->first, head->count, rows);
     return BRIO_OK;
 }
 
 /* Takes what came, on rank 0. */
-static void take_rows(const brio_ranks *r, brio_gather *g) {
+static brio_status take_rows(const brio_ranks *r, brio_gather *g) {
     for (int i = 0; i < r->ranks; i++) {
         const uint8_t *at = r->x.from[i]->bytes;
         rows_head head;
         if (!r->x.from[i]->size) continue;
         memcpy(&head, at, sizeof head);
-        const brio_gather_row *row = (const brio_gather_row *)(const void *)(at + sizeof head);
-        for (uint64_t k = 0; k < head.count; k++) brio_gather_take(g, (uint32_t)head.tile, head.first + k, &row[k]);
+        BRIO_FORWARD(brio_gather_take(g, (uint32_t)head.tile, head.first,
+                                      (const brio_gather_row *)(const void *)(at + sizeof head), head.count));
     }
+    return BRIO_OK;
 }
 
-/* Sends the rows of one tile of each rank to rank 0.   g  NULL on other ranks. */
-static brio_status send_tile(brio_ranks *r, uint32_t tile, brio_gather *g) {
-    sending s = {.part = {.size = sizeof s.part}};
-    brio_context *ctx = r->ctx;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_ranks_part(ctx, r, tile, &s.part));
-    BRIO_TRY(brio_exchange_agree(&r->x, BRIO_ALLOC(ctx, s.neighbours, s.part.num_tetrahedra + 1)));
-    BRIO_TRY(brio_ranks_neighbours(ctx, r, tile, &s.part, s.neighbours));
+typedef struct {
+    brio_ranks *r;
+    brio_gather *gather; /* NULL on other ranks than 0 */
+} sending;
+
+/* Sends the rows of one tile of each rank to rank 0, as a brio_tile_part_fn. The tile's file is not needed any more. */
+static brio_status send_part(void *user, uint32_t tile, const brio_tile_part *part, const uint32_t *mate) {
+    sending *s = user;
+    brio_ranks *r = s->r;
+    size_t sent = 0;
+    brio_tile_result_remove(r->t, tile);
     for (bool more = true; more; more = r->x.any) {
-        BRIO_TRY(put_rows(r, tile, &s));
-        BRIO_TRY(brio_exchange_now(&r->x, s.sent < s.part.num_tetrahedra));
-        if (g) take_rows(r, g);
+        size_t left = part->num_tetrahedra - sent, count = left < ROWS_AT_ONCE ? left : ROWS_AT_ONCE;
+        BRIO_FORWARD(put_rows(r, &(rows_head){brio_ranks_tile(r, tile), sent, count}, part, mate));
+        sent += count;
+        BRIO_FORWARD(brio_exchange_now(&r->x, sent < part->num_tetrahedra));
+        if (s->gather) BRIO_FORWARD(take_rows(r, s->gather));
     }
-done:
-    brio_tile_part_free(ctx, &s.part);
-    brio_release(ctx, s.neighbours);
-    return brio_exchange_agree(&r->x, status);
+    return BRIO_OK;
 }
 
 /* Tells rank 0 how many tetrahedra each tile has.   first  on rank 0 #tiles of all ranks + 1. */
@@ -111,23 +103,22 @@ static brio_status count_rows(brio_ranks *r, uint64_t *first) {
 
 /* What rank 0 has besides: its points, and what becomes of the rows. */
 typedef struct {
-    const double *points;
-    size_t num_points;
     uint64_t *first;
     brio_gather rows;
 } at_rank_0;
 
 static brio_status add_points(brio_ranks *r, const at_rank_0 *own) {
-    for (size_t i = 0; own && i < own->num_points; i += POINTS_AT_ONCE) {
-        size_t some = own->num_points - i < POINTS_AT_ONCE ? own->num_points - i : POINTS_AT_ONCE;
-        BRIO_FORWARD(brio_ranks_add(r->ctx, r, own->points + 3 * i, NULL, some, i));
+    const brio_input *input = own ? &own->rows.input : NULL;
+    for (size_t i = 0; input && i < input->count; i += POINTS_AT_ONCE) {
+        size_t some = input->count - i < POINTS_AT_ONCE ? input->count - i : POINTS_AT_ONCE;
+        BRIO_FORWARD(brio_ranks_add(r->ctx, r, input->points + 3 * i, NULL, some, i));
     }
     return BRIO_OK;
 }
 
 static brio_status make_room(brio_ranks *r, at_rank_0 *own) {
     if (!own) return BRIO_OK;
-    return brio_gather_new(r->ctx, own->first, (uint32_t)r->ranks * r->t->num_tiles, r->facts.hull_facets, &own->rows);
+    return brio_gather_begin(&own->rows, own->first, (uint32_t)r->ranks * r->t->num_tiles, r->facts.hull_facets);
 }
 
 static brio_status collect(brio_ranks *r, at_rank_0 *own) {
@@ -136,8 +127,12 @@ static brio_status collect(brio_ranks *r, at_rank_0 *own) {
     BRIO_FORWARD(brio_exchange_agree(&r->x, status));
     BRIO_FORWARD(brio_exchange_agree(&r->x, count_rows(r, own ? own->first : NULL)));
     BRIO_FORWARD(brio_exchange_agree(&r->x, make_room(r, own)));
-    for (uint32_t i = 0; i < r->t->num_tiles; i++) BRIO_FORWARD(send_tile(r, i, own ? &own->rows : NULL));
-    return BRIO_OK;
+    char *scratch = r->ctx->scratch;
+    r->ctx->scratch = NULL; /* tiles are in memory */
+    status = brio_ranks_join_at_0(r, send_part, &(sending){r, own ? &own->rows : NULL});
+    if (status == BRIO_OK && own) status = brio_gather_join(&own->rows, r->t);
+    r->ctx->scratch = scratch;
+    return brio_exchange_agree(&r->x, status);
 }
 
 /* Triangulates with all ranks.   own  NULL on other ranks than 0.   facts  of the triangulation, written. */
@@ -178,12 +173,12 @@ static brio_status make(void *user, brio_context *ctx, const double *points, siz
     const brio_delaunay_options of_one = {.size = sizeof of_one, .seed = seed};
     brio_status status = BRIO_OK;
     brio_tiles_stats facts = {0};
-    at_rank_0 own = {.points = points, .num_points = num_points, .rows.ctx = ctx};
+    at_rank_0 own = {.rows = {.ctx = ctx, .input = {points, NULL, num_points}, .seed = seed}};
     *out = NULL;
     BRIO_TRY(say(t, (word){TRIANGULATE, num_points}));
     BRIO_TRY(work_together(t, &own, &facts));
     status = facts.dimension < 3 ? brio_delaunay(ctx, points, NULL, num_points, &of_one, out)
-                                 : brio_gather_end(&own.rows, points, num_points, facts.duplicates, seed, out);
+                                 : brio_gather_end(&own.rows, facts.duplicates, out);
 done:
     brio_gather_free(&own.rows);
     brio_release(ctx, own.first);

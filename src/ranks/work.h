@@ -64,6 +64,11 @@ brio_status brio_ranks_own_points(brio_ranks *r, const uint64_t *places, size_t 
 /** Makes the part of a tile of this rank, which all ranks do at once. */
 brio_status brio_ranks_make_part(brio_ranks *r, uint32_t tile, brio_tile_part *p);
 
+/** Makes the parts of all tiles, which all ranks do at once, hands on each, and sends the answers to all facets without
+ *  a neighbour in theirs to rank 0, into files of all ranks' tiles (tiles/work.h).
+ *  with  takes a part of this rank. It may exchange, if it does on all ranks. */
+brio_status brio_ranks_join_at_0(brio_ranks *r, brio_tile_part_fn with, void *user);
+
 /** Has all ranks decide the parts of a cut: rank 0 calls lead, all others follow. Return what brio_tasks_share does. */
 brio_status brio_ranks_lead_cut(brio_exchange *x, brio_parts *p);
 brio_status brio_ranks_follow_cut(brio_exchange *x);

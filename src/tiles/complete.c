@@ -396,6 +396,12 @@ done:
     return status;
 }
 
+void brio_tile_result_remove(brio_tiles *t, uint32_t tile) {
+    char name[32];
+    snprintf(name, sizeof name, "tile-%u", tile);
+    brio_store_remove(&t->folder, name);
+}
+
 brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, uint64_t *halo) {
     const brio_tile *facts = &t->tile[tile];
     brio_store_file f = {.file = -1};

@@ -1,74 +1,135 @@
 /* A triangulation put together from the parts of its tiles.
  *
- * Rows of all parts are numbered one after another. A part tells its vertices by the indices of points, and across each
- * facet the tile and the row of the neighbour, which is a number then. Each facet of the hull gets an infinite
- * tetrahedron; two of these are neighbours across an edge of the hull, and find each other by sorting these edges. When
- * all are here, a look at each neighbour's vertices tells through which of its facets the two meet. Then all are sorted
- * into the canonical order, as if they had been inserted (brio_delaunay_adopt).
+ * Rows of all parts are numbered one after another. Each part is made once: its rows are written behind those before
+ * it, with the mates that they have in the part; facets without one are told the other side when all parts are here
+ * (neighbours.c). Those that have none are of the hull, and get infinite tetrahedra; two of these are neighbours across
+ * an edge of the hull, and find each other by sorting these edges. Then all are sorted into the canonical order, as if
+ * they had been inserted (brio_adoption_end).
  *
- * Everything goes along the rows, and neighbours are nearly always of the same tile. So what is in scratch files is
- * read and written in sequence. */
+ * Rows are written where they are sorted from, and the files of a tile are removed as they are read. So there is never
+ * more than the tetrahedra, and what of the tiles is still to come. */
+#include "base/kept.h"
 #include "base/memory.h"
 #include "base/sort.h"
-#include "base/team.h"
 #include "order/canonical_points.h"
+#include "store/row_files.h"
 #include "tiles/work.h"
 #include "triangulation/tetrahedra.h"
 #include <string.h>
 
-enum { TETS_A_THREAD = 1 << 12, MOST_TETRAHEDRA = 1 << 30 };
+enum { SOME = 1 << 12 /* rows at once. Chosen */, MOST_TETRAHEDRA = 1 << 30 };
 
-brio_status brio_gather_new(brio_context *ctx, const uint64_t *first, uint32_t num_tiles, uint64_t hull_facets,
-                            brio_gather *out) {
+brio_status brio_gather_begin(brio_gather *g, const uint64_t *first, uint32_t num_tiles, uint64_t hull_facets) {
     uint64_t all = first[num_tiles] + hull_facets;
-    *out = (brio_gather){.ctx = ctx, .first = first, .num_tiles = num_tiles};
-    BRIO_EXPECT(ctx, all < MOST_TETRAHEDRA, BRIO_ERR_TOO_LARGE, "%llu tetrahedra are too many for one triangulation",
+    g->first = first, g->num_tiles = num_tiles;
+    BRIO_EXPECT(g->ctx, all < MOST_TETRAHEDRA, BRIO_ERR_TOO_LARGE, "%llu tetrahedra are too many for one triangulation",
                 (unsigned long long)all);
-    out->num_finite = (size_t)first[num_tiles];
-    out->count = (size_t)all;
-    return BRIO_ALLOC(ctx, out->tet, out->count);
+    g->num_finite = (size_t)first[num_tiles];
+    g->count = (size_t)all;
+    BRIO_FORWARD(brio_adoption_begin(g->ctx, &g->input, g->seed, g->count, &g->adoption));
+    g->tet = brio_adoption_tetrahedra(g->adoption);
+    return BRIO_ALLOC_IN_MEMORY(g->ctx, g->some, SOME);
 }
 
 void brio_gather_free(brio_gather *g) {
-    brio_release(g->ctx, g->tet);
-    g->tet = NULL;
+    brio_adoption_free(g->ctx, g->adoption);
+    brio_release(g->ctx, g->some);
+    g->adoption = NULL, g->some = NULL;
 }
 
 /* --- parts --- */
 
-/* Adds the infinite tetrahedron across a facet of the hull, which is seen from outside counterclockwise. Returns its
- * number. */
-static uint32_t add_infinite(brio_gather *g, uint32_t tet, int slot) {
-    const uint32_t *v = g->tet[tet].vertex;
-    size_t number = g->num_finite + g->num_infinite++;
-    assert(number < g->count);
-    brio_tetrahedron *t = &g->tet[number];
-    t->vertex[0] = v[BRIO_FACET[slot][0]];
-    t->vertex[1] = v[BRIO_FACET[slot][2]];
-    t->vertex[2] = v[BRIO_FACET[slot][1]];
-    t->vertex[3] = BRIO_INFINITE;
-    t->mate[3] = tet;
-    return (uint32_t)number;
-}
-
-brio_gather_row brio_gather_row_of(const brio_tile_part *part, const brio_tile_neighbour (*neighbours)[4], size_t i) {
-    brio_gather_row row;
-    for (int k = 0; k < 4; k++) row.vertex[k] = (uint32_t)part->index[part->tetrahedra[i][k]];
-    memcpy(row.neighbour, neighbours[i], sizeof row.neighbour);
-    return row;
-}
-
-void brio_gather_take(brio_gather *g, uint32_t tile, uint64_t row, const brio_gather_row *tetrahedron) {
-    uint32_t number = (uint32_t)(g->first[tile] + row);
-    brio_tetrahedron *t = &g->tet[number];
-    memcpy(t->vertex, tetrahedron->vertex, sizeof t->vertex);
-    for (int k = 0; k < 4; k++) {
-        brio_tile_neighbour n = tetrahedron->neighbour[k];
-        t->mate[k] = n.tile == BRIO_NO_TILE ? add_infinite(g, number, k) : (uint32_t)(g->first[n.tile] + n.tetrahedron);
+void brio_gather_rows(const brio_tile_part *part, const uint32_t *mate, size_t begin, size_t count,
+                      brio_gather_row *rows) {
+    for (size_t i = 0; i < count; i++) {
+        for (int k = 0; k < 4; k++) rows[i].vertex[k] = (uint32_t)part->index[part->tetrahedra[begin + i][k]];
+        memcpy(rows[i].mate, mate + 4 * (begin + i), sizeof rows[i].mate);
     }
 }
 
+brio_status brio_gather_take(brio_gather *g, uint32_t tile, uint64_t begin, const brio_gather_row *rows, size_t count) {
+    const uint32_t *record = brio_adoption_records(g->adoption), before = brio_facet_of((uint32_t)g->first[tile], 0);
+    uint64_t to = g->first[tile] + begin;
+    for (size_t i = 0, some; i < count; i += some) {
+        some = count - i < SOME ? count - i : SOME;
+        for (size_t j = 0; j < some; j++)
+            for (int k = 0; k < 4; k++) {
+                uint32_t mate = rows[i + j].mate[k];
+                bool lone = mate == BRIO_NO_FACET;
+                g->some[j].vertex[k] = record[rows[i + j].vertex[k]];
+                g->some[j].mate[k] = lone ? mate : before + mate;
+                g->num_lone += lone;
+            }
+        BRIO_FORWARD(brio_block_write(g->ctx, g->tet, (to + i) * sizeof *g->tet, g->some, some * sizeof *g->some));
+        BRIO_FORWARD(brio_look(g->ctx, some));
+    }
+    return BRIO_OK;
+}
+
 /* --- mates --- */
+
+/* Adds the infinite tetrahedron across a facet of the hull, which is seen from outside counterclockwise. Returns its
+ * facet there. */
+static uint32_t add_infinite(brio_gather *g, uint32_t facet) {
+    const brio_tetrahedron *inside = &g->tet[brio_tet_of(facet)];
+    int slot = brio_slot_of(facet);
+    uint32_t number = (uint32_t)(g->num_finite + g->num_infinite++);
+    brio_tetrahedron *t = &g->tet[number];
+    t->vertex[0] = inside->vertex[BRIO_FACET[slot][0]];
+    t->vertex[1] = inside->vertex[BRIO_FACET[slot][2]];
+    t->vertex[2] = inside->vertex[BRIO_FACET[slot][1]];
+    t->vertex[3] = brio_adoption_infinite(g->adoption);
+    t->mate[3] = facet;
+    return brio_facet_of(number, 3);
+}
+
+/* Finds the number of a facet of a tile among all. Returns false if there is none. */
+static bool find_facet(const brio_gather *g, uint32_t tile, uint32_t facet, uint32_t *number) {
+    if (tile >= g->num_tiles || brio_tet_of(facet) >= g->first[tile + 1] - g->first[tile]) return false;
+    *number = brio_facet_of((uint32_t)g->first[tile], 0) + facet;
+    return true;
+}
+
+/* Joins a facet with what it is told. Returns false if that cannot be. */
+static bool join_facet(brio_gather *g, const brio_facet_answer *a) {
+    uint32_t facet, other;
+    if (!find_facet(g, a->tile, a->facet, &facet)) return false;
+    uint32_t *mate = &g->tet[brio_tet_of(facet)].mate[brio_slot_of(facet)];
+    if (*mate != BRIO_NO_FACET) return false;
+    if (a->other_tile == BRIO_NO_TILE) {
+        if (g->num_finite + g->num_infinite == g->count) return false;
+        other = add_infinite(g, facet);
+    } else if (!find_facet(g, a->other_tile, a->other_facet, &other)) {
+        return false;
+    }
+    *mate = other;
+    g->num_lone--;
+    return true;
+}
+
+/* Takes the answers to a tile from a file. */
+static brio_status join_tile(brio_gather *g, brio_tiles *t, uint32_t tile) {
+    brio_facet_answer *answer = NULL;
+    size_t n = 0;
+    brio_status status = BRIO_OK;
+    BRIO_TRY(brio_facet_answers_read(t, tile, &answer, &n));
+    for (size_t i = 0; i < n; i++)
+        if (!join_facet(g, &answer[i])) BRIO_TRY(brio_facet_answers_changed(t, tile));
+    status = brio_look(g->ctx, n);
+done:
+    brio_release(g->ctx, answer);
+    return status;
+}
+
+brio_status brio_gather_join(brio_gather *g, brio_tiles *t) {
+    for (uint32_t i = 0; i < g->num_tiles; i++) {
+        BRIO_FORWARD(join_tile(g, t, i));
+        brio_row_files_remove(&t->folder, "joined", i);
+    }
+    return BRIO_OK;
+}
+
+/* --- the hull --- */
 
 typedef struct {
     uint64_t vertices; /* of an edge of the hull: the greater one in the upper half */
@@ -104,8 +165,8 @@ static brio_status join_hull(brio_gather *g) {
         uint32_t a = edge[order[i]].facet, b = edge[order[i + 1]].facet;
         BRIO_REQUIRE(g->ctx, edge[order[i]].vertices == edge[order[i + 1]].vertices, BRIO_ERR_INTERNAL,
                      "an edge of the hull has one facet");
-        g->tet[brio_tet_of(a)].mate[brio_slot_of(a)] = brio_tet_of(b);
-        g->tet[brio_tet_of(b)].mate[brio_slot_of(b)] = brio_tet_of(a);
+        g->tet[brio_tet_of(a)].mate[brio_slot_of(a)] = b;
+        g->tet[brio_tet_of(b)].mate[brio_slot_of(b)] = a;
     }
 done:
     brio_release(g->ctx, edge);
@@ -113,60 +174,38 @@ done:
     return status;
 }
 
-/* Returns the slot of the vertex of a neighbour that a tetrahedron does not have. */
-static int slot_across(const brio_tetrahedron *t, const brio_tetrahedron *neighbour) {
-    int j = 0;
-    while (j < 3 && brio_slot_of_vertex(t->vertex, neighbour->vertex[j]) < 4) j++;
-    return j;
-}
-
-/* Replaces the numbers of neighbours by handles of their facets. Reads nothing that another thread writes. */
-static void find_mates(void *user, size_t begin, size_t end, int thread) {
-    brio_gather *g = user;
-    (void)thread;
-    for (size_t i = begin; i < end; i++) {
-        brio_tetrahedron *t = &g->tet[i];
-        for (int k = 0; k < 4; k++) {
-            uint32_t other = t->mate[k];
-            t->mate[k] = brio_facet_of(other, slot_across(t, &g->tet[other]));
-        }
-    }
-}
-
 /* --- the points that are no vertices --- */
 
-/* Writes of each point the one of least index at its position. */
-static brio_status name_vertices(brio_context *ctx, const double *points, size_t num_points, uint64_t duplicates,
-                                 uint32_t *vertex_of) {
+/* Lists of each point the one of least index at its position.   *vertex_of  the caller's. */
+static brio_status name_vertices(brio_context *ctx, const brio_input *input, uint32_t **vertex_of) {
     brio_status status = BRIO_OK;
+    size_t n = input->count;
     uint32_t *order = NULL, *named = NULL;
-    for (size_t p = 0; p < num_points; p++) vertex_of[p] = (uint32_t)p;
-    if (duplicates == 0) return BRIO_OK;
-    BRIO_TRY(brio_canonical_points(ctx, points, num_points, &order));
-    BRIO_TRY(BRIO_ALLOC(ctx, named, num_points));
-    memcpy(named, order, num_points * sizeof *named);
-    brio_name_coincident(points, num_points, named);
-    for (size_t i = 0; i < num_points; i++) vertex_of[order[i]] = named[i];
+    BRIO_TRY(BRIO_ALLOC(ctx, *vertex_of, n));
+    BRIO_TRY(brio_canonical_points(ctx, input->points, n, &order));
+    BRIO_TRY(BRIO_ALLOC(ctx, named, n));
+    memcpy(named, order, n * sizeof *named);
+    brio_name_coincident(input->points, n, named);
+    for (size_t i = 0; i < n; i++) (*vertex_of)[order[i]] = named[i];
 done:
     brio_release(ctx, order);
     brio_release(ctx, named);
     return status;
 }
 
-brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_points, uint64_t duplicates, uint64_t seed,
-                            brio_triangulation **out) {
+brio_status brio_gather_end(brio_gather *g, uint64_t duplicates, brio_triangulation **out) {
     brio_status status = BRIO_OK;
     brio_context *ctx = g->ctx;
     uint32_t *vertex_of = NULL;
     *out = NULL;
-    BRIO_REQUIRE(ctx, g->num_finite + g->num_infinite == g->count, BRIO_ERR_INTERNAL, "%zu facets of the hull of %zu",
-                 g->num_infinite, g->count - g->num_finite);
+    BRIO_REQUIRE(ctx, g->num_finite + g->num_infinite == g->count && !g->num_lone, BRIO_ERR_INTERNAL,
+                 "%zu facets of the hull of %zu; %zu facets have no other side", g->num_infinite,
+                 g->count - g->num_finite, g->num_lone);
     BRIO_TRY(join_hull(g));
-    BRIO_TRY(brio_sweep(ctx, brio_threads(ctx, g->count, TETS_A_THREAD), g->count, find_mates, g, BRIO_WRITES(g->tet)));
-    BRIO_TRY(BRIO_ALLOC(ctx, vertex_of, num_points));
-    BRIO_TRY(name_vertices(ctx, points, num_points, duplicates, vertex_of));
-    status = brio_delaunay_adopt(ctx, &(brio_input){points, NULL, num_points},
-                                 &(brio_adopted){g->tet, g->count, vertex_of, seed}, out);
+    brio_release(ctx, g->some);
+    g->some = NULL;
+    if (duplicates) BRIO_TRY(name_vertices(ctx, &g->input, &vertex_of));
+    status = brio_adoption_end(ctx, g->adoption, vertex_of, out);
 done:
     brio_release(ctx, vertex_of);
     return status;
@@ -174,20 +213,36 @@ done:
 
 /* --- the tiles of one process --- */
 
-static brio_status take_tile(brio_gather *g, brio_tiles *t, uint32_t tile) {
-    brio_tile_part part = {.size = sizeof part};
-    brio_tile_neighbour(*neighbours)[4] = NULL;
-    brio_status status = BRIO_OK;
-    BRIO_TRY(brio_tiles_part(t->ctx, t, tile, &part));
-    BRIO_TRY(BRIO_ALLOC(t->ctx, neighbours, part.num_tetrahedra + 1));
-    BRIO_TRY(brio_tiles_neighbours(t->ctx, t, tile, &part, neighbours));
-    for (size_t i = 0; i < part.num_tetrahedra; i++) {
-        brio_gather_row row = brio_gather_row_of(&part, (const brio_tile_neighbour(*)[4])neighbours, i);
-        brio_gather_take(g, tile, i, &row);
+typedef struct {
+    brio_gather gather;
+    brio_tiles *t;
+    brio_gather_row *some;
+} taking;
+
+/* Takes a part, as a brio_tile_part_fn. Its file is not needed any more. */
+static brio_status take_part(void *user, uint32_t tile, const brio_tile_part *part, const uint32_t *mate) {
+    taking *own = user;
+    brio_tile_result_remove(own->t, tile);
+    for (size_t i = 0, some; i < part->num_tetrahedra; i += some) {
+        some = part->num_tetrahedra - i < SOME ? part->num_tetrahedra - i : SOME;
+        brio_gather_rows(part, mate, i, some, own->some);
+        BRIO_FORWARD(brio_gather_take(&own->gather, tile, i, own->some, some));
     }
-done:
-    brio_tile_part_free(t->ctx, &part);
-    brio_release(t->ctx, neighbours);
+    return BRIO_OK;
+}
+
+/* Takes all parts, and what their facets are told. Tiles are in memory, as they were when they were triangulated. */
+static brio_status take_all(taking *own) {
+    brio_tiles *t = own->t;
+    char *scratch = t->ctx->scratch;
+    t->ctx->scratch = NULL;
+    brio_keep_begin(t->ctx);
+    brio_status status = brio_tiles_join(t, take_part, own);
+    t->has_result = false;
+    brio_store_remove(&t->folder, "points");
+    if (status == BRIO_OK) status = brio_gather_join(&own->gather, t);
+    brio_keep_end(t->ctx);
+    t->ctx->scratch = scratch;
     return status;
 }
 
@@ -196,14 +251,17 @@ brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_po
     brio_context *ctx = t->ctx;
     brio_status status = BRIO_OK;
     uint64_t *first = NULL;
-    brio_gather g = {.ctx = ctx};
+    taking own = {.gather = {.ctx = ctx, .input = {points, NULL, num_points}, .seed = seed}, .t = t};
+    *out = NULL;
     BRIO_TRY(BRIO_ALLOC_ZERO(ctx, first, t->num_tiles + 1));
     for (uint32_t i = 0; i < t->num_tiles; i++) first[i + 1] = first[i] + t->tile[i].tetrahedra;
-    BRIO_TRY(brio_gather_new(ctx, first, t->num_tiles, t->stats.hull_facets, &g));
-    for (uint32_t i = 0; i < t->num_tiles; i++) BRIO_TRY(take_tile(&g, t, i));
-    status = brio_gather_end(&g, points, num_points, t->stats.duplicates, seed, out);
+    BRIO_TRY(brio_gather_begin(&own.gather, first, t->num_tiles, t->stats.hull_facets));
+    BRIO_TRY(BRIO_ALLOC_IN_MEMORY(ctx, own.some, SOME));
+    BRIO_TRY(take_all(&own));
+    status = brio_gather_end(&own.gather, t->stats.duplicates, out);
 done:
-    brio_gather_free(&g);
+    brio_release(ctx, own.some);
+    brio_gather_free(&own.gather);
     brio_release(ctx, first);
     return status;
 }

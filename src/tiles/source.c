@@ -5,9 +5,10 @@
  * over it, and the balls of the next round are smaller by a factor. Else it comes to blocks, and these are read.
  *
  * Where many points lie nearly on spheres, as the points of a rounded sphere do, blocks are met by ball after ball, and
- * their points compared exactly without being in conflict. A block that wasted PATIENCE comparisons a point is added
- * as a whole; then its points are known, and known points are never in conflict. So the number of these comparisons is
- * in proportion to the points.
+ * their points compared exactly without being in conflict; elsewhere, as on a torus, ball after ball finds some points
+ * of them. A block that had PATIENCE such comparisons a point, in vain or not, is added as a whole; then its points are
+ * known, and known points are never in conflict. So the number of these comparisons is in proportion to the points.
+ * Half-spaces that compare in vain do not count: near the hull they meet whole blocks, of which no point is needed.
  *
  * Most balls are empty, and large: they touch the boxes of many blocks. So a block in memory is divided into groups of
  * points that follow each other along the curve. A ball is compared with the boxes of all groups in vector lanes, and
@@ -49,8 +50,8 @@ typedef struct {
     double w[TILE_BLOCK];
     uint64_t place;
     uint32_t points;
-    uint32_t wasted; /* comparisons; atomic */
-    int state;       /* atomic */
+    uint32_t tried; /* comparisons that count; atomic */
+    int state;      /* atomic */
 } block;
 
 /* A ball in lanes: see brio_ball_meets. */
@@ -275,7 +276,7 @@ static brio_status read_block(brio_tile_source *s, const brio_tile_node *node, b
     block *b = *out;
     b->place = node->place;
     b->points = node->points;
-    b->wasted = 0;
+    b->tried = 0;
     b->state = BLOCK_NEW;
     brio_status status = brio_store_read(&s->points, (node->place - s->t->first_place) * sizeof *some, some,
                                          node->points * sizeof *some);
@@ -393,7 +394,7 @@ static brio_status search_block(brio_tile_source *s, search *se, const brio_ball
                                 bool *unsure) {
     block *b;
     BRIO_FORWARD(find_block(s, node, &b));
-    uint32_t wasted = 0, i;
+    uint32_t tried = 0, i;
     int state = __atomic_load_n(&b->state, __ATOMIC_RELAXED), before = *hits;
     *unsure |= state == BLOCK_ADDED;
     if (state != BLOCK_NEW) return BRIO_OK;
@@ -401,13 +402,14 @@ static brio_status search_block(brio_tile_source *s, search *se, const brio_ball
     while (*hits < before + ENOUGH_OF_BLOCK && next_try(&list, &i)) {
         brio_set_point p = point_of(b, i);
         if (!brio_ball_takes(&se->filter, ball, p.record)) {
-            wasted += !is_vertex(ball, p.record);
+            tried += !ball->infinite && !is_vertex(ball, p.record);
             continue;
         }
         ++*hits;
+        tried++;
         BRIO_FORWARD(brio_found_add(&se->found, &p));
     }
-    if (!wasted || __atomic_add_fetch(&b->wasted, wasted, __ATOMIC_RELAXED) <= PATIENCE * b->points) return BRIO_OK;
+    if (!tried || __atomic_add_fetch(&b->tried, tried, __ATOMIC_RELAXED) <= PATIENCE * b->points) return BRIO_OK;
     *unsure = true;
     return add_whole(s, se, b, node);
 }

@@ -282,10 +282,6 @@ double brio_tiles_least_memory(const brio_tiles_options *o, double points) {
     return BYTES_A_POINT * points / (o->tiles ? o->tiles : TILES);
 }
 
-double brio_tiles_disk(double points) {
-    return DISK_A_POINT * points;
-}
-
 /* Returns the bytes for tiles of at most `points`, of which there are about `tiles`. */
 static double bytes_of_tiles(const brio_tiles *t, double points, double tiles, int at_once) {
     double index = (double)t->num_nodes * sizeof *t->node + tiles * (sizeof *t->tile + sizeof *t->cuts.cut);

@@ -87,10 +87,9 @@ brio_status brio_tiles_arrange(brio_tiles *t);
 /** Triangulates one tile, and writes its file. */
 brio_status brio_tiles_complete(brio_tiles *t, uint32_t tile);
 
-/** Return the bytes that brio_tiles_run needs for points at different positions: memory for one of equal tiles, and
- *  disk. Cells need more. */
+/** Returns the bytes of memory that brio_tiles_run needs for one of equal tiles of points at different positions. Cells
+ *  need more. */
 double brio_tiles_least_memory(const brio_tiles_options *options, double points);
-double brio_tiles_disk(double points);
 
 /** Returns the bytes at most while points are taken and divided. */
 double brio_tiles_divide_bytes(const brio_tiles *t);
@@ -226,6 +225,8 @@ typedef struct {
 /** Reads it.   wants_all  false: only which points are vertices. */
 brio_status brio_tile_result_read(brio_tiles *t, uint32_t tile, bool wants_all, brio_tile_result *out);
 void brio_tile_result_free(brio_tiles *t, brio_tile_result *r);
+/** Removes the file. */
+void brio_tile_result_remove(brio_tiles *t, uint32_t tile);
 /** Reads the places of the halo of a tile, as many as its facts say. */
 brio_status brio_tile_halo(brio_tiles *t, uint32_t tile, uint64_t *halo);
 /** Reads the border of a tile.   border  as many rows as the tile's facts say. */
@@ -258,75 +259,98 @@ typedef struct {
     uint32_t tile, facet;
 } brio_lone_facet;
 
-/** Says to a facet of a tile what its neighbour is. */
+/** Says to a facet of a tile which one is on its other side.   other_tile  BRIO_NO_TILE: the facet is of the hull. */
 typedef struct {
-    uint32_t tile, facet;
-    brio_tile_neighbour neighbour;
+    uint32_t tile, facet, other_tile, other_facet;
 } brio_facet_answer;
+
+#define BRIO_NO_FACET UINT32_MAX
 
 /** Returns a number by which both sides of a facet meet. */
 uint64_t brio_lone_facet_hash(const brio_lone_facet *l);
 
-/** Names the neighbours that are in the same part. The others become those that a facet of the hull has. */
-brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p,
-                                   brio_tile_neighbour (*neighbours)[4]);
+/** Finds the neighbours that are in the same part.
+ *  p  as brio_tile_part_make makes it.   mate  4 for each tetrahedron: receives the facet on the other side of each
+ *  facet, or BRIO_NO_FACET where the part has none. */
+brio_status brio_tile_match_inside(brio_context *ctx, uint32_t tile, const brio_tile_part *p, uint32_t *mate);
 
 /** Hands on the facets of a part that have no neighbour in it. They come into files of rows, as many as tiles: `lone-I`
  *  by their hash. Answers come into `joined-I` by their tile (store/row_files.h). */
 typedef brio_status (*brio_lone_facet_fn)(void *user, const brio_lone_facet *l);
-brio_status brio_tile_lone_facets(brio_context *ctx, uint32_t tile, const brio_tile_part *p, brio_lone_facet_fn take,
+brio_status brio_tile_lone_facets(uint32_t tile, const brio_tile_part *p, const uint32_t *mate, brio_lone_facet_fn take,
                                   void *user);
 
-/** Finds the pairs of facets of file `lone-I`, removes it, and hands on an answer to each side.
+/** Finds the pairs of facets of file `lone-I`, removes it, and hands on an answer to each facet.
  *  *alone  grows by the facets that have no other side. */
 typedef brio_status (*brio_facet_answer_fn)(void *user, const brio_facet_answer *a);
 brio_status brio_facet_pairs(brio_tiles *t, uint32_t file, brio_facet_answer_fn take, void *user, uint64_t *alone);
 
-/** Names the neighbours of a part by the answers of file `joined-I`.   all_tiles  of all processes. */
-brio_status brio_facet_answers_take(brio_tiles *t, uint32_t file, uint64_t all_tiles, const brio_tile_part *p,
-                                    brio_tile_neighbour (*neighbours)[4]);
+/** Reads the answers of file `joined-I`.   *answers  n, the caller's: brio_release, on failure too. */
+brio_status brio_facet_answers_read(brio_tiles *t, uint32_t file, brio_facet_answer **answers, size_t *n);
+/** Returns BRIO_ERR_OPEN, for answers that cannot be. */
+brio_status brio_facet_answers_changed(const brio_tiles *t, uint32_t file);
 /** Removes the files of lone facets and of answers that are there, after a failure. */
 void brio_facet_files_remove(brio_tiles *t);
+
+/** Names the neighbours of a part, as brio_tiles_neighbours.
+ *  file  of its answers.   tile, all_tiles  of all processes. */
+brio_status brio_tile_name_neighbours(brio_tiles *t, uint32_t file, uint32_t tile, uint64_t all_tiles,
+                                      const brio_tile_part *part, brio_tile_neighbour (*neighbours)[4]);
+
+/** Takes the part of a tile with its mates inside. */
+typedef brio_status (*brio_tile_part_fn)(void *user, uint32_t tile, const brio_tile_part *part, const uint32_t *mate);
+/** Makes the parts of all tiles of one process, one after the other, hands on each, and writes the answers to all that
+ *  have facets without a neighbour. After a failure the files of these give their room back.
+ *  with  NULL, or a function that takes the parts. */
+brio_status brio_tiles_join(brio_tiles *t, brio_tile_part_fn with, void *user);
 
 /* --- a triangulation put together from the parts of its tiles --- */
 
 /** Tetrahedra that come part after part. Facets of the hull have infinite ones, which follow. */
 typedef struct {
     brio_context *ctx;
+    brio_input input;      /* of brio_delaunay, without weights */
+    uint64_t seed;         /* likewise */
     const uint64_t *first; /* #tiles + 1: of each tile, its first tetrahedron among all */
     uint32_t num_tiles;
     size_t num_finite, count; /* count: the infinite ones, too */
     size_t num_infinite;      /* that are here */
-    brio_tetrahedron *tet;    /* count; until all are here, a mate is a tetrahedron */
+    size_t num_lone;          /* facets that are here and have no mate yet */
+    brio_adoption *adoption;
+    brio_tetrahedron *tet;  /* count */
+    brio_tetrahedron *some; /* on their way there */
 } brio_gather;
 
 /** Makes room.
- *  first  kept.   hull_facets  of all.   out  freed with brio_gather_free, on failure too.
- *  Returns BRIO_OK, BRIO_ERR_TOO_LARGE (over 2^30 tetrahedra), BRIO_ERR_NO_MEMORY. */
-brio_status brio_gather_new(brio_context *ctx, const uint64_t *first, uint32_t num_tiles, uint64_t hull_facets,
-                            brio_gather *out);
+ *  g  with ctx, input and seed; freed with brio_gather_free, on failure too. Points stay where they are, as `first`.
+ *  hull_facets  of all.   Returns BRIO_OK, BRIO_ERR_TOO_LARGE (over 2^30 tetrahedra), BRIO_ERR_NO_MEMORY. */
+brio_status brio_gather_begin(brio_gather *g, const uint64_t *first, uint32_t num_tiles, uint64_t hull_facets);
 void brio_gather_free(brio_gather *g);
 
-/** A tetrahedron of a tile: its vertices by the indices of points, and what is across its facets. */
+/** A tetrahedron of a tile: its vertices by the indices of points, and its mates in the same tile, or BRIO_NO_FACET. */
 typedef struct {
-    uint32_t vertex[4];
-    brio_tile_neighbour neighbour[4];
+    uint32_t vertex[4], mate[4];
 } brio_gather_row;
 
-/** Returns row `i` of a part.   neighbours  of its tetrahedra, as brio_tiles_neighbours names them. */
-brio_gather_row brio_gather_row_of(const brio_tile_part *part, const brio_tile_neighbour (*neighbours)[4], size_t i);
+/** Writes `count` rows of a part from `begin` on. */
+void brio_gather_rows(const brio_tile_part *part, const uint32_t *mate, size_t begin, size_t count,
+                      brio_gather_row *rows);
 
-/** Takes a row of a tile's part. Rows may come in any order. */
-void brio_gather_take(brio_gather *g, uint32_t tile, uint64_t row, const brio_gather_row *tetrahedron);
+/** Takes rows of a tile's part. They may come in any order. */
+brio_status brio_gather_take(brio_gather *g, uint32_t tile, uint64_t begin, const brio_gather_row *rows, size_t count);
 
-/** Makes what brio_delaunay makes of the points with this seed, once all parts are here.
- *  points  num_points by 3, by the indices of the parts.   duplicates  points at the position of another one.
+/** Takes the answers to all tiles from the files `joined-I`, which are removed, once all rows are here.
+ *  t  in whose folder they are.   Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED. */
+brio_status brio_gather_join(brio_gather *g, brio_tiles *t);
+
+/** Makes what brio_delaunay makes of the points, once all parts are joined.
+ *  duplicates  points at the position of another one.
  *  Cost: sorts the tetrahedra, in files where the context has a scratch folder.
  *  Returns what brio_delaunay returns. */
-brio_status brio_gather_end(brio_gather *g, const double *points, size_t num_points, uint64_t duplicates, uint64_t seed,
-                            brio_triangulation **out);
+brio_status brio_gather_end(brio_gather *g, uint64_t duplicates, brio_triangulation **out);
 
-/** Makes what brio_delaunay makes with this seed of the points of all tiles of one process, whose dimension is 3.
+/** Makes what brio_delaunay makes with this seed of the points of all tiles of one process, whose dimension is 3. The
+ *  tiles have neither parts nor points afterwards: their files are removed as they are read.
  *  points  num_points by 3: those that were added.   Returns what brio_delaunay returns. */
 brio_status brio_tiles_gather(brio_tiles *t, const double *points, size_t num_points, uint64_t seed,
                               brio_triangulation **out);

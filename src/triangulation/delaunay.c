@@ -322,49 +322,86 @@ brio_status brio_delaunay_unordered(brio_context *ctx, const brio_input *input, 
 
 /* --- tetrahedra that are known --- */
 
-/* Writes tetrahedra whose vertices are the caller's indices into a store that brio_start has begun. */
-static brio_status adopt(brio_store *s, const brio_adopted *from) {
-    brio_status status = BRIO_OK;
-    uint32_t *record = NULL; /* of each point of the caller */
-    BRIO_TRY(BRIO_ALLOC(s->ctx, record, s->num_points));
-    for (uint32_t r = 0; r < s->num_points; r++) record[s->caller[r]] = r;
-    if (from->count > s->t.count) BRIO_TRY(brio_store_reserve(s, from->count - s->t.count));
-    for (size_t tet = 0; tet < from->count; tet++) {
-        s->t.tet[tet] = from->tet[tet];
-        uint32_t *v = s->t.tet[tet].vertex;
-        for (int i = 0; i < 4; i++) v[i] = v[i] == BRIO_INFINITE ? s->t.infinite : record[v[i]];
-        s->state[tet] = TET_PLAIN;
-    }
-    s->t.count = from->count;
-    s->adopted = true;
-    for (size_t p = 0; p < s->num_points; p++) s->representative[record[p]] = record[from->vertex_of[p]];
-done:
-    brio_release(s->ctx, record);
+struct brio_adoption {
+    brio_store *store;
+    uint32_t *record; /* of each point of the caller */
+    size_t count;
+};
+
+static brio_status begin_adoption(brio_context *ctx, const brio_input *input, uint64_t seed, brio_adoption *a) {
+    brio_delaunay_options o = {.seed = seed};
+    size_t count = a->count;
+    BRIO_FORWARD(check_count(ctx, input->count));
+    settle(&o);
+    BRIO_FORWARD(brio_store_new(ctx, input, &o, NULL, &a->store));
+    BRIO_FORWARD(brio_start(a->store));
+    assert(a->store->dimension == 3);
+    if (count > a->store->t.count) BRIO_FORWARD(brio_store_reserve(a->store, count - a->store->t.count));
+    BRIO_FORWARD(BRIO_ALLOC(ctx, a->record, input->count));
+    for (uint32_t r = 0; r < input->count; r++) a->record[a->store->caller[r]] = r;
+    return BRIO_OK;
+}
+
+brio_status brio_adoption_begin(brio_context *ctx, const brio_input *input, uint64_t seed, size_t count,
+                                brio_adoption **out) {
+    brio_adoption *a;
+    *out = NULL;
+    BRIO_FORWARD(BRIO_ALLOC_ZERO(ctx, a, 1));
+    a->count = count;
+    brio_keep_begin(ctx);
+    brio_status status = begin_adoption(ctx, input, seed, a);
+    brio_keep_end(ctx);
+    if (status == BRIO_OK)
+        *out = a;
+    else
+        brio_adoption_free(ctx, a);
     return status;
 }
 
-brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, const brio_adopted *from,
-                                brio_triangulation **out) {
-    brio_delaunay_options o = {.seed = from->seed};
-    brio_store *store = NULL;
+void brio_adoption_free(brio_context *ctx, brio_adoption *a) {
+    if (!a) return;
+    brio_store_free(a->store);
+    brio_release(ctx, a->record);
+    brio_release(ctx, a);
+}
+
+brio_tetrahedron *brio_adoption_tetrahedra(const brio_adoption *a) {
+    return a->store->t.tet;
+}
+
+const uint32_t *brio_adoption_records(const brio_adoption *a) {
+    return a->record;
+}
+
+uint32_t brio_adoption_infinite(const brio_adoption *a) {
+    return a->store->t.infinite;
+}
+
+/* Begins what follows the last insertion, as if the tetrahedra had been inserted. */
+static void take_tetrahedra(brio_context *ctx, brio_adoption *a, const uint32_t *vertex_of) {
+    brio_store *s = a->store;
+    memset(s->state, TET_PLAIN, a->count * sizeof *s->state);
+    s->t.count = a->count;
+    s->adopted = true;
+    for (size_t p = 0; vertex_of && p < s->num_points; p++) s->representative[a->record[p]] = a->record[vertex_of[p]];
+    brio_release(ctx, a->record);
+    a->record = NULL;
+}
+
+brio_status brio_adoption_end(brio_context *ctx, brio_adoption *a, const uint32_t *vertex_of,
+                              brio_triangulation **out) {
     brio_inserter *ins = NULL;
     brio_status status = BRIO_OK;
     *out = NULL;
     brio_keep_begin(ctx);
-    BRIO_TRY(check_count(ctx, input->count));
-    settle(&o);
-    BRIO_TRY(brio_store_new(ctx, input, &o, NULL, &store));
-    BRIO_TRY(brio_start(store));
-    assert(store->dimension == 3);
-    BRIO_TRY(adopt(store, from));
-    BRIO_TRY(brio_inserter_new(store, &ins));
+    take_tetrahedra(ctx, a, vertex_of);
+    BRIO_TRY(brio_inserter_new(a->store, &ins));
     ins->reports = true;
     BRIO_TRY(brio_represent(ins, false));
     BRIO_TRY(sort_result(ins, false));
     BRIO_TRY(triangulation_new(ins, false, out));
 done:
     brio_inserter_free(ins);
-    brio_store_free(store);
     brio_keep_end(ctx);
     return status;
 }

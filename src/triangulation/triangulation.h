@@ -35,20 +35,27 @@ static inline uint64_t brio_tetrahedron_hash(const uint64_t rank[4]) {
     return brio_mix(brio_mix(least << 32 ^ second) + (third << 32 ^ most));
 }
 
-/** The tetrahedra of the perturbed regular triangulation of points of dimension 3, as brio_delaunay returns them, but
- *  in any order. */
-typedef struct {
-    const brio_tetrahedron *tet; /* vertices are indices of points, or BRIO_INFINITE in slot 3 */
-    size_t count;
-    const uint32_t *vertex_of; /* of a vertex: itself; of a duplicate: its vertex; of others: any vertex */
-    uint64_t seed;             /* of brio_delaunay, on which the order of its tetrahedra depends; 0: the default */
-} brio_adopted;
+/** The triangulation of points of dimension 3 whose tetrahedra somebody else finds, and writes in any order: what
+ *  brio_delaunay makes of these points, with a seed and defaults, equal in every byte of its tetrahedra and
+ *  representatives, without inserting a point. */
+typedef struct brio_adoption brio_adoption;
 
-/** Makes what brio_delaunay makes of these points, with this seed and defaults, equal in every byte of its tetrahedra
- *  and representatives, without inserting a point.
+/** Orders the points, and makes room for their tetrahedra.
+ *  seed   of brio_delaunay, on which the order of its tetrahedra depends; 0: the default.
+ *  count  of the perturbed regular triangulation, infinite ones included.
  *  Returns what brio_delaunay returns. */
-brio_status brio_delaunay_adopt(brio_context *ctx, const brio_input *input, const brio_adopted *from,
-                                brio_triangulation **out);
+brio_status brio_adoption_begin(brio_context *ctx, const brio_input *input, uint64_t seed, size_t count,
+                                brio_adoption **out);
+/** Returns room for `count` tetrahedra, to be written: their vertices are records, or the infinite one in slot 3. */
+brio_tetrahedron *brio_adoption_tetrahedra(const brio_adoption *a);
+/** Return the record of each point; the infinite vertex. */
+const uint32_t *brio_adoption_records(const brio_adoption *a);
+uint32_t brio_adoption_infinite(const brio_adoption *a);
+/** Makes the triangulation of the tetrahedra that were written. Call it once; free the adoption in any case.
+ *  vertex_of  of a vertex: itself; of a duplicate: its vertex; of others: any vertex. NULL: all points are vertices.
+ *  Returns what brio_delaunay returns. */
+brio_status brio_adoption_end(brio_context *ctx, brio_adoption *a, const uint32_t *vertex_of, brio_triangulation **out);
+void brio_adoption_free(brio_context *ctx, brio_adoption *a);
 
 /** Who makes the triangulations of a context, where one process in one memory is not to do it. A context has at most
  *  one, for the time of a call. */

@@ -746,6 +746,18 @@ static void a_tile_was_counted_twice(void) {
     brio_context_free(ctx);
 }
 
+/* Half-spaces met whole blocks in vain, and blocks near the hull were added as wholes: 31,000 points were found then. */
+static void half_spaces_took_whole_blocks(void) {
+    brio_context *ctx = new_context();
+    brio_context_set_threads(ctx, 1);
+    uniform_points(1, 20000, points);
+    brio_tiles *t = tiles_of(ctx, 8, 20000, false, 0);
+    EXPECT(brio_tiles_run(ctx, t) == BRIO_OK, "%s", brio_message(ctx));
+    EXPECT(brio_tiles_facts(t)->found < 20000, "%llu found", (unsigned long long)brio_tiles_facts(t)->found);
+    brio_tiles_free(t);
+    brio_context_free(ctx);
+}
+
 /* Each tile had one descriptor, then two: 600 tiles ended after all the work. */
 static void many_tiles_ran_out_of_descriptors(void) {
     enum { TILES = 100, MOST_FILES = 50 };
@@ -828,6 +840,7 @@ SUITE(test_tiles) {
     RUN(flat_points);
     RUN(cancelled_runs_leave_nothing);
     RUN(a_tile_was_counted_twice);
+    RUN(half_spaces_took_whole_blocks);
     RUN(many_tiles_ran_out_of_descriptors);
     RUN(a_link_emptied_another_folder);
     RUN(two_runs_had_one_folder);

@@ -169,11 +169,10 @@ static void shares_of_tiles_that_are_too_large_are_refused_before_the_work(void)
 static void more_tetrahedra_than_handles_are_refused(void) {
     brio_context *ctx = new_context();
     const uint64_t first[] = {0, 5, (UINT64_C(1) << 30) - 7};
-    brio_gather g;
+    brio_gather g = {.ctx = ctx, .input = {points, NULL, make_points(1, 100, 4)}};
     brio_context_set_memory_limit(ctx, 1000000);
-    EXPECT(brio_gather_new(ctx, first, 2, 7, &g) == BRIO_ERR_TOO_LARGE, "%s", brio_message(ctx));
-    brio_gather_free(&g);
-    EXPECT(brio_gather_new(ctx, first, 2, 6, &g) == BRIO_ERR_NO_MEMORY, "%s", brio_message(ctx));
+    EXPECT(brio_gather_begin(&g, first, 2, 7) == BRIO_ERR_TOO_LARGE, "%s", brio_message(ctx));
+    EXPECT(brio_gather_begin(&g, first, 2, 6) == BRIO_ERR_NO_MEMORY, "%s", brio_message(ctx));
     brio_gather_free(&g);
     brio_context_free(ctx);
 }

@@ -112,7 +112,6 @@ typedef struct {
 static space needed(double num_points, const brio_surface_options *o) {
     space need = {brio_method_bytes(brio_method_row_of(o->method), num_points, o), 0};
     if (!o->tiles) return need;
-    need.disk += brio_tiles_disk(num_points);
     need.tile = brio_tiles_least_memory(o->tiles, num_points);
     return need;
 }
