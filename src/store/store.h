@@ -26,8 +26,8 @@ typedef struct {
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY. */
 brio_status brio_store_begin(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out);
 /** Makes an empty folder that no process has: NAME-1, or with the next number. One that a killed process left is
- *  emptied and taken, so that there are never more than there were at one time. What is no store is left alone. WASI has
- *  no locks: one at a time there.
+ *  emptied and taken, so that there are never more than there were at one time. What is no store is left alone.
+ *  WASI has no locks: one at a time there.
  *  Returns BRIO_OK, BRIO_ERR_OPEN, BRIO_ERR_NO_MEMORY. */
 brio_status brio_store_begin_free(brio_context *ctx, const char *parent, const char *name, brio_store_folder *out);
 /** Removes the folder and all its files. */

@@ -232,7 +232,8 @@ static void ranks_have_their_own_tiles(void) {
     EXPECT(brio_surface(ctx, points, make_points(3, 500, 2), &options, &mesh, NULL) == BRIO_ERR_ARGUMENT && !mesh);
     EXPECT(strstr(brio_message(ctx), "ranks triangulate for this surface"), "%s", brio_message(ctx));
     EXPECT(brio_ranks_dismiss(team, BRIO_OK, NULL) == BRIO_OK);
-    EXPECT(brio_surface(ctx, points, make_points(8, MOST, 0), &options, &mesh, NULL) == BRIO_OK); /* no ranks any more */
+    /* there are no ranks any more */
+    EXPECT(brio_surface(ctx, points, make_points(8, MOST, 0), &options, &mesh, NULL) == BRIO_OK);
     brio_mesh_free(mesh);
     free(man.held[0]);
     brio_condition_free(&office.changed);
