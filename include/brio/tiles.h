@@ -130,10 +130,10 @@ typedef struct brio_tile_neighbour {
  *  The rows are those of brio_tiles_part, which are the same in every call and for every number of threads.
  *  part  of the tile, as brio_tiles_part made it.
  *  neighbours  #T by 4, the caller's: entry i receives the neighbour across the facet opposite to vertex i.
- *  Cost: the first call reads the parts of all tiles, and writes 96 bytes for each facet between two tiles, 32 for one
+ *  Cost: the first call reads the parts of all tiles, and writes 96 bytes for each facet between two tiles, 48 for one
  *  of the hull. Each call goes once along the facets of its tile. Memory: 20 bytes a tetrahedron of a tile; in the
- *  first call a part, too, and at most 4 MB, or 1 kB a tile. The files stay until brio_tiles_free. If the first
- *  call fails to make them, it removes them, and a further call tries again.
+ *  first call a part, too, and at most 4 MB, or 1 kB a tile. The files stay until brio_tiles_free. If the first call
+ *  fails to make them, it removes them, and a further call tries again.
  *  Returns BRIO_OK, BRIO_ERR_ARGUMENT (no result; no part of this tile), BRIO_ERR_TOO_LARGE (more than 2^30 tetrahedra
  *  of a tile), BRIO_ERR_WRITE (the disk is full), BRIO_ERR_OPEN (a scratch file was cut or changed),
  *  BRIO_ERR_NO_MEMORY, BRIO_ERR_CANCELLED.

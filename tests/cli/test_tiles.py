@@ -206,11 +206,11 @@ class Tiles(CliTest):
     def test_a_disk_too_small_for_a_surface_in_tiles_is_said_before_the_work(self):
         self.facts("generate", "scan", "--points", "5000", "-o", self.path("scan.ply"))
         line = 'mount -t tmpfs -o size=$2 none "$1" && shift 2 && exec "$0" "$@"'
-        run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, self.scratch(), "4300k", "surface", self.path("scan.ply"), "--tiles", "2",
+        run = subprocess.run(["unshare", "-rm", "sh", "-c", line, BRIO, self.scratch(), "3800k", "surface", self.path("scan.ply"), "--tiles", "2",
                               "--scratch", self.scratch(), "-o", self.path("o.ply"), "--quiet"], stderr=subprocess.PIPE, check=False)
         if run.returncode in (1, 32, 126, 127):
             self.skipTest("skipped: no disks of one's own here: " + run.stderr.decode())
-        self.assertEqual(run.returncode, 4, run.stderr)  # three quarters of 6.5 MB; without tiles of 5.5
+        self.assertEqual(run.returncode, 4, run.stderr)  # three quarters of 5.5 MB, as without tiles
         self.assertIn("4990 points need about 6 MB of scratch files, and this disk has room for 4 MB", run.stderr.decode())
 
     @posix_alone
