@@ -389,6 +389,13 @@ static void a_full_disk_is_a_status(void) {
     brio_context_free(ctx);
 }
 
+static void write_file(const char *path, const char *name) {
+    char file[200];
+    snprintf(file, sizeof file, "%s/%s", path, name);
+    FILE *f = fopen(file, "w");
+    EXPECT(f && fputs("half a face", f) >= 0 && fclose(f) == 0);
+}
+
 /* What a killed process left had a name that no later process took. */
 static void the_files_of_a_killed_process_stayed(void) {
     brio_context *ctx = new_context();
@@ -398,10 +405,10 @@ static void the_files_of_a_killed_process_stayed(void) {
     for (int killed = 1; killed <= 2; killed++) {
         snprintf(left, sizeof left, "%s/brio-faces-%d", folder, killed);
         EXPECT(mkdir(left, 0700) == 0);
-        strcat(left, "/faces-77");
-        FILE *f = fopen(left, "w");
-        EXPECT(f && fputs("half a face", f) >= 0 && fclose(f) == 0);
+        write_file(left, "lock");
+        write_file(left, "faces-77");
     }
+    strcat(left, "/faces-77");
     EXPECT(brio_parts_certificate_new(ctx, &o, &c) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(brio_parts_certificate_new(ctx, &o, &second) == BRIO_OK, "%s", brio_message(ctx));
     EXPECT(files_left() == 2, "%zu folders of two certificates", files_left());
