@@ -291,7 +291,7 @@ print(sum(len(part.simplices) for part in tri) == tri.facts["simplices"], len(pa
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="counts threads where Linux lists them")
 def test_contexts_are_used_again(folder):
-    """Each context of the library has threads of its own, which stay."""
+    """The threads of a context of the library stay."""
     counts = []
     for k in range(8):
         with brio.TiledDelaunay(CLOUD, scratch=folder, tiles=1, threads=3) as tri:
